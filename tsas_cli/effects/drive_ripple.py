@@ -16,11 +16,9 @@ Not validated: higher harmonics; a ripple that changes with torque; one so steep
 
 from typing import NamedTuple
 
-import numpy as np
-
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import wave_at
+from tsas_cli.numerics.wave import periods, wave_at
 
 PERIOD_MM = 0.7095
 LONGEST_MM, SHORTEST_MM, PERIODS = 10.0, 0.3, 60
@@ -58,10 +56,7 @@ DRIVE_RIPPLE = Effect(
             lower=0.05,
             upper=LONGEST_MM,  # a longer ripple is like a gain within the strokes of most rigs
             shape=True,
-            starts=(
-                PERIOD_MM,
-                *(1.0 / f for f in np.linspace(1 / LONGEST_MM, 1 / SHORTEST_MM, PERIODS).tolist()),
-            ),
+            starts=(PERIOD_MM, *periods(LONGEST_MM, SHORTEST_MM, PERIODS)),
         ),
     ),
     experiment="One slow stroke at two constant speeds: the wave keeps its period in x_in and "

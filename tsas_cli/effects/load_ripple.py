@@ -15,11 +15,9 @@ harmonics; a wave so steep that the force falls with x.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import wave_at
+from tsas_cli.numerics.wave import periods, wave_at
 
 LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 5.0, 8  # each start costs runs of the slip chain
 
@@ -56,9 +54,7 @@ LOAD_RIPPLE = Effect(
             lower=0.5,
             upper=LONGEST_MM,  # a longer one is like a gain within the strokes of most rigs
             shape=True,
-            starts=tuple(
-                1.0 / f for f in np.linspace(1 / LONGEST_MM, 1 / SHORTEST_MM, PERIODS).tolist()
-            ),
+            starts=periods(LONGEST_MM, SHORTEST_MM, PERIODS),
         ),
     ),
     experiment="Turn the pulley to another angle before the run: the wave moves along x_out with "

@@ -17,7 +17,7 @@ import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import wave_at
+from tsas_cli.numerics.wave import periods, wave_at
 
 LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 2.0, 24
 INVERSIONS = 50  # Newton's steps, far more than any wave that can be inverted needs
@@ -68,9 +68,7 @@ POSITION_SENSOR_RIPPLE = Effect(
             lower=0.5,
             upper=LONGEST_MM,  # a longer one is like a gain within the strokes of most rigs
             shape=True,
-            starts=tuple(
-                1.0 / f for f in np.linspace(1 / LONGEST_MM, 1 / SHORTEST_MM, PERIODS).tolist()
-            ),
+            starts=periods(LONGEST_MM, SHORTEST_MM, PERIODS),
         ),
     ),
     experiment="Turn the encoder on its shaft by half a turn: the wave changes its sign over "

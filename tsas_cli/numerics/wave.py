@@ -15,3 +15,8 @@ def wave_at(position: float, sine: float, cosine: float, period: float) -> tuple
     up: float = np.sin(angle)
     along: float = np.cos(angle)
     return sine * up + cosine * (along - 1.0), rate * (sine * along - cosine * up)
+
+
+def periods(longest: float, shortest: float, number: int) -> tuple[float, ...]:
+    """Return periods of equally spaced frequencies, the longest first."""
+    return tuple(1.0 / f for f in np.linspace(1.0 / longest, 1.0 / shortest, number).tolist())
