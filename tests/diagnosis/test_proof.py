@@ -44,10 +44,9 @@ def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
         estimate("force_sensor_offset.f_out_offset_N", 0.8, -0.2, 1.8),
     )
     assert of(*two)
-    assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, sum_known)
-    assert failures(
-        "force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, -sum_known + 2.0 * np.eye(2)
-    )
+    assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, correlation=sum_known)
+    unknown = -sum_known + 2.0 * np.eye(2)
+    assert failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, correlation=unknown)
 
 
 def test_a_gain_has_its_neutral_value_at_one():
@@ -81,6 +80,16 @@ def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refus
     friction = estimate("drive_friction.friction_N", value, value / 2, value, at_bound=True)
     said = failures("drive_friction", (friction,), CLEAR, SAME, SAME, NOISE)
     assert bool(said) == refused
+
+
+@pytest.mark.parametrize("effect", ["drive_ripple", "load_ripple", "position_sensor_ripple"])
+def test_a_wave_whose_period_is_longer_than_the_strokes_is_refused(effect):
+    sine = estimate(f"{effect}.sine_mm", 0.1, 0.09, 0.11, unit="mm")
+    period = estimate(f"{effect}.period_mm", 8.0, 7.9, 8.1, unit="mm")
+    rest = (sine, period), CLEAR, SAME, SAME, NOISE
+    assert failures(effect, *rest) == failures(effect, *rest, stroke_mm=8.1) == ()
+    (said,) = failures(effect, *rest, stroke_mm=7.9)
+    assert said == "has a period of 8 mm, longer than the strokes of 7.9 mm"
 
 
 def test_a_split_is_said_with_its_values():

@@ -6,6 +6,7 @@ effect that gains and fails one of these stands in for something that the catalo
 One that explains nearly all and is not constant is there, with another law than the catalogue's.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -53,6 +54,8 @@ def failures(
     without: Mapping[str, float],
     with_it: Mapping[str, float],
     noise: Mapping[str, float],
+    *,
+    stroke_mm: float = math.inf,
     correlation: Floats | None = None,
 ) -> tuple[str, ...]:
     """Return what an effect fails to prove, in sentences without their subject.
@@ -69,6 +72,8 @@ def failures(
         The RMS of each channel on held-out data, without the effect and with it.
     noise
         The noise level of each channel.
+    stroke_mm
+        The longest way of the drive; infinite where it is not known.
     correlation
         That of the parameters, shape (p, p); None where it is not known.
     """
@@ -87,6 +92,11 @@ def failures(
     if sizes and _may_be_none(estimates, neutral, correlation):
         values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
         out.append(f"may be zero: {', '.join(values)}")
+    out += [
+        f"has a period of {e.value:.3g} mm, longer than the strokes of {stroke_mm:.3g} mm"
+        for name, e in own.items()
+        if parameters[name].period and e.value > stroke_mm
+    ]
     changes = {
         name: (after**2 - without[name] ** 2) / noise[name] ** 2 for name, after in with_it.items()
     }

@@ -110,7 +110,12 @@ def _cause(
     again = gain(fewer.squares, all_of_them.squares)
     related = judged.trial(named).correlation([e.name for e in own])
     noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
-    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse, noise, related)
+    stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
+    failed = failures(
+        *(name, own, again, fewer.rmse, all_of_them.rmse, noise),
+        stroke_mm=stroke_mm,
+        correlation=related,
+    )
     law = "" if split is None else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
     if split is not None and structure > ANOTHER_LAW * excess:

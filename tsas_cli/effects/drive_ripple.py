@@ -56,6 +56,7 @@ DRIVE_RIPPLE = Effect(
             lower=0.05,
             upper=LONGEST_MM,  # a longer ripple is like a gain within the strokes of most rigs
             shape=True,
+            period=True,
             starts=(PERIOD_MM, *periods(LONGEST_MM, SHORTEST_MM, PERIODS)),
         ),
     ),

@@ -8,8 +8,9 @@ from typing import Literal
 class Parameter:
     """One parameter of an effect: unit, exact neutral value, initial value, plausible bounds.
 
-    A `shape` parameter matters only where another one of the effect is not neutral. `starts` are
-    the initial values that a fit tries one after the other; empty means `start` alone.
+    A `shape` parameter matters only where another one of the effect is not neutral; a `period` is
+    one of a wave over a position, which shows where the stroke is longer. `starts` are the initial
+    values that a fit tries one after the other; empty means `start` alone.
     """
 
     name: str
@@ -19,6 +20,7 @@ class Parameter:
     lower: float
     upper: float
     shape: bool = False
+    period: bool = False
     starts: tuple[float, ...] = ()
 
 

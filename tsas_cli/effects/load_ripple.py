@@ -54,6 +54,7 @@ LOAD_RIPPLE = Effect(
             lower=0.5,
             upper=LONGEST_MM,  # a longer one is like a gain within the strokes of most rigs
             shape=True,
+            period=True,
             starts=periods(LONGEST_MM, SHORTEST_MM, PERIODS),
         ),
     ),
