@@ -123,11 +123,20 @@ def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
     assert names(C) not in {fitted for fitted, _ in search.bench.fits}
 
 
-def test_where_no_better_one_convinces_what_is_hardly_seen_is_fitted_too(made):
-    search = made({names(): 4.0, names(A): 4.0, names(B): 2.0, names(C): 1.0})
-    seen(search, names(), (A, 0.5), (B, 0.011), (C, 0.009))  # a fiftieth of the best is 0.01
-    assert search._better(names()) == [names(B)]
-    assert names(C) not in {fitted for fitted, _ in search.bench.fits}
+@pytest.mark.parametrize(("least", "found"), [(0.99, [B, A]), (1.01, [A])])
+def test_what_cannot_reduce_the_squares_enough_is_not_fitted(made, least, found):
+    """Of 4.0, 0.4 of a reduction by one is a tenth."""
+    search = made({names(): 4.0, names(A): 3.0, names(B): 2.0})
+    seen(search, names(), (A, 0.4), (B, 0.1))
+    assert [name for name, _ in search.add(names(), least)] == found
+
+
+def test_a_further_cause_is_fitted_where_it_could_matter(made):
+    """Of 3.0 beyond the noise, a further cause takes away 0.6; 0.4 of that is 0.06 of 4.0."""
+    search = made({names(): 9.0, names(A): 4.0, names(A, B): 2.0, names(A, C): 1.0})
+    seen(search, names(A), (B, 0.061), (C, 0.059))
+    assert search._better(names(A)) == [names(A, B)]
+    assert names(A, C) not in {fitted for fitted, _ in search.bench.fits}
 
 
 def test_what_explains_next_to_nothing_is_not_fitted(made):
@@ -157,13 +166,21 @@ def test_it_starts_again_four_times_at_the_most(made):
 
 def test_rivals_convince_too_and_are_not_surely_worse(made):
     search = made({names(B): 1.001, names(C): 1.001, names(A): 1.0, names(): 4.0})
-    search.add = lambda _: [(A, CONVINCES), (B, CONVINCES), (C, DOES_NOT)]
+    search.add = lambda *_: [(A, CONVINCES), (B, CONVINCES), (C, DOES_NOT)]
     assert search.rivals(names(A), A) == (B,)  # itself is none, and C convinces nobody
     worse = made({names(B): 1.02, names(A): 1.0, names(): 4.0})
-    worse.add = lambda _: [(B, CONVINCES)]
+    worse.add = lambda *_: [(B, CONVINCES)]
     assert worse.rivals(names(A), A) == ()
     search.trial(names(B)).solution.converged = False
     assert search.rivals(names(A), A) == ()
+
+
+@pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (B,))])
+def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
+    """Of 4.0 the named one takes 3.0 away; 0.4 of that is 0.3 of the squares."""
+    search = made({names(): 4.0, names(A): 1.0, names(B): 1.0})
+    seen(search, names(), (A, 0.75), (B, part))
+    assert search.rivals(names(A), A) == rivals
 
 
 def test_the_simplest_that_is_not_surely_beaten(made):

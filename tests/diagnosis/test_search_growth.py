@@ -235,9 +235,16 @@ def paired(made, squares, surplus, needed=None):
 
 @pytest.mark.parametrize(("surplus", "looked"), [(0.024, False), (0.026, True)])
 def test_a_pair_has_to_explain_a_telling_part_more_than_both_alone(made, surplus, looked):
-    search = paired(made, {names(A, B): 1.0}, surplus)
+    search = paired(made, {names(): 1.3, names(A, B): 1.0}, surplus)
     assert (search._best_pair(names()) == names(A, B)) == looked
     assert (names(A, B) in {fitted for fitted, *_ in search.bench.fits}) == looked
+
+
+@pytest.mark.parametrize(("part", "looked"), [(0.067, False), (0.07, True)])
+def test_a_pair_has_to_promise_a_sufficient_reduction(made, part, looked):
+    """Of 8 − 1 it has to take 0.2 (7 − 0.15), of which 0.4 is 0.0685 of the squares."""
+    search = paired(made, {names(A, B): 1.0}, part)
+    assert (search._best_pair(names()) == names(A, B)) == looked
 
 
 def test_parts_of_each_alone_are_taken_off(made):
@@ -258,7 +265,7 @@ def test_what_a_pair_takes_away_lies_ahead(made):
 
 def test_four_pairs_are_fitted_at_the_most_the_most_promising_first(made):
     """Five signatures that are nearly one make ten pairs, none of which convinces."""
-    search = made(dict.fromkeys(every(), 8.0) | {names(): 8.0})
+    search = made(dict.fromkeys([*every(), names()], 1.3))
     common, *apart = pairs(6)
     search.trial(names()).solution.residual = sum(
         (k + 1.0) * at for k, at in enumerate(apart)

@@ -8,7 +8,7 @@ pairs are screened together, because effects of opposite sign mask each other.
 is fitted once, from the initial values of the path that reaches it first.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 
@@ -39,7 +39,7 @@ LEAST = 0.003  # least reduction of the nominal model's excess by a further caus
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
 LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain to be fitted
 SHARE_OF_BEST = 0.2  # the same, of the share of the best signature
-LEAST_SHARE_OF_BEST = 0.02  # the same, where no better one is significant
+LINEAR = 0.4  # the same, of the reduction that the effect has to make; at most 2.5 times as much
 ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
 REWEIGHTINGS = 3  # iterations of new weights and a new fit of the named effects
 PAIRS = 4  # of effects that are fitted, of those that explain most together
@@ -152,7 +152,7 @@ class Search:
         """Return the effects that are indistinguishable from a named one."""
         fewer = named - {name}
         out = []
-        for other, found in self.add(fewer):
+        for other, found in self.add(fewer, self.reduction(fewer, named)):
             instead = fewer | {other}
             if other in named or not found.convincing:
                 continue
@@ -193,30 +193,34 @@ class Search:
         at_residuals = signals_at_residuals(self.bench, trial)
         return remainder(self.bench, trial, self.folds, at_residuals).complete
 
-    def matters(self, before: Names, added: Iterable[str]) -> bool:
+    def matters(self, before: Names, added: Names) -> bool:
         """Return whether added effects reduce the excess over the noise by a sufficient share."""
-        mesh = self.bench.on_mesh(before | set(added))
-        excess = [
-            self.held_out(names, on_mesh=mesh).sum() / self.folds.block.size - 1.0
-            for names in (before, before | set(added))
-        ]
-        reduction = excess[0] - excess[1]
-        if not before:
-            return bool(reduction > SHARE * (excess[0] - EXCESS_OF_COMPLETE_MODEL))
-        first = self.held_out(frozenset(), on_mesh=mesh).sum() / self.folds.block.size - 1.0
-        return bool(reduction > max(SHARE * excess[0], LEAST * first))
+        after = before | added
+        return self.reduction(before, after) > self.sufficient(before, self.bench.on_mesh(after))
 
-    def add(
-        self, names: Names, share_of_best: float = SHARE_OF_BEST
-    ) -> list[tuple[str, Reduction]]:
+    def reduction(self, before: Names, after: Names) -> float:
+        """Return the reduction of the held-out mean square between two sets of effects."""
+        mesh = self.bench.on_mesh(before | after)
+        return self._excess(before, mesh) - self._excess(after, mesh)
+
+    def sufficient(self, names: Names, mesh: bool) -> float:
+        """Return the reduction of the held-out mean square that a further cause has to make."""
+        excess = self._excess(names, mesh)
+        if not names:
+            return SHARE * (excess - EXCESS_OF_COMPLETE_MODEL)
+        return max(SHARE * excess, LEAST * self._excess(frozenset(), mesh))
+
+    def add(self, names: Names, least: float = 0.0) -> list[tuple[str, Reduction]]:
         """Return each further effect that passes screening, fitted, with its gain, best first.
 
         Of 1,752 effects whose signature had less than `SHARE_OF_BEST`, a fit took away as much as
         half of what the best one did in one: what it explains is found once the best one is named.
+        `least` is the reduction of the mean square that the effects have to make.
         """
         screened = self.screen(names)
         best = max((s.part for s in screened), default=0.0)
-        candidates = [s for s in screened if s.part >= max(LEAST_SIGNATURE, share_of_best * best)]
+        part = max(LEAST_SIGNATURE, SHARE_OF_BEST * best, self._least_part(names, least))
+        candidates = [s for s in screened if s.part >= part]
         self.step.ahead(sum(self._is_new(names | {s.effect.name}) for s in candidates))
         found = []
         for s in candidates:
@@ -244,12 +248,13 @@ class Search:
 
     def _better(self, names: Names) -> list[Names]:
         """Return the extended sets: with the simplest effect, and with the best if it differs."""
-        for share in (SHARE_OF_BEST, LEAST_SHARE_OF_BEST):
-            fitted = self.add(names, share)
-            singles = [(n, g) for n, g in fitted if g.convincing and self.matters(names, {n})]
-            if singles:
-                branches = dict.fromkeys((self._simplest(names, singles), singles[0][0]))
-                return [names | {name} for name in branches]
+        fitted = self.add(names, self.sufficient(names, self.bench.on_mesh(names)))
+        singles = [
+            (n, g) for n, g in fitted if g.convincing and self.matters(names, frozenset({n}))
+        ]
+        if singles:
+            branches = dict.fromkeys((self._simplest(names, singles), singles[0][0]))
+            return [names | {name} for name in branches]
         pair = self._best_pair(names) if len(names) + 2 <= MOST_EFFECTS else None
         return [] if pair is None else [names | pair]
 
@@ -267,6 +272,8 @@ class Search:
     def _best_pair(self, names: Names) -> Names | None:
         """Return two effects that are significant only together."""
         screened = self.screen(names)
+        sufficient = self.sufficient(names, self.bench.on_mesh(names))
+        least = self._least_part(names, sufficient)
         parts = []
         for a, b in combinations(screened, 2):
             mesh = self.bench.on_mesh([*names, a.effect.name, b.effect.name])
@@ -274,7 +281,8 @@ class Search:
             residual = self.trial(names, on_mesh=mesh).solution.residual
             basis = np.linalg.qr(both)[0]
             part = float(np.sum((basis.T @ residual) ** 2)) / float(residual @ residual)
-            parts.append((part - a.part - b.part, a, b))
+            if part >= least:
+                parts.append((part - a.part - b.part, a, b))
         parts.sort(key=lambda p: -p[0])
         for surplus, a, b in parts[:PAIRS]:
             if surplus < LEAST_REDUCTION:
@@ -293,6 +301,14 @@ class Search:
             if fewer and not self.gain(fewer, names).convincing:
                 return self._without_redundant(fewer)
         return names
+
+    def _excess(self, names: Names, mesh: bool) -> float:
+        """Return by how much the held-out mean square exceeds that of noise alone."""
+        return float(self.held_out(names, on_mesh=mesh).sum()) / self.folds.block.size - 1.0
+
+    def _least_part(self, names: Names, reduction: float) -> float:
+        """Return the share of the squares that a signature explains at least, for a reduction."""
+        return LINEAR * reduction / self.trial(names).mean_square
 
     def _is_new(self, names: Names) -> bool:
         """Return whether a set of effects has not been fitted yet."""
