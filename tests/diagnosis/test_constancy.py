@@ -38,9 +38,10 @@ def trial(sizes, at_bound=False):
     return HypothesisFit((EFFECT,), unknowns, solution, (ROWS,) * RUNS, on_mesh=False)
 
 
-def worst(sizes, **more):
+def worst(sizes, tolerated=None, **more):
     ids = tuple("abcd")
-    return worst_split(trial(sizes, **more), EFFECT, FOLDS, SIGNALS, ids)
+    tolerated = np.zeros((RUN.size, 0)) if tolerated is None else tolerated
+    return worst_split(trial(sizes, **more), EFFECT, FOLDS, SIGNALS, ids, tolerated)
 
 
 def test_an_effect_with_one_value_has_no_split():
@@ -76,3 +77,13 @@ def test_a_value_of_one_run_is_split_by_run():
 
 def test_a_value_at_its_bound_is_not_split():
     assert worst(np.where(RUN == 2, 1.5, 1.0), at_bound=True) is None
+
+
+@pytest.mark.parametrize(("amount", "constant"), [(1.0, True), (60.0, False)])
+def test_a_difference_that_a_plausible_tolerance_makes_is_no_split(amount, constant):
+    """A load cell that is off by one standard deviation, or by sixty, changes pulls alone."""
+    column = trial(np.ones(RUN.size)).solution.jacobian[:, 1]
+    off = 0.1 * column * (SIGNALS["direction"] > 0.0)
+    found = worst(1.0 + 0.1 * amount * (SIGNALS["direction"] > 0.0), off[:, None])
+    assert worst(1.0 + 0.1 * amount * (SIGNALS["direction"] > 0.0)).by == "direction"
+    assert (found is None) == constant

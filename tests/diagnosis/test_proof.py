@@ -75,6 +75,15 @@ def test_a_channel_may_become_a_little_worse_where_another_gains_far_more():
     assert failures("force_sensor_offset", OFFSETS, CLEAR, before, after, NOISE)
 
 
+@pytest.mark.parametrize(("tolerance_N", "refused"), [(0.028, False), (0.026, True)])
+def test_a_rise_within_a_load_cells_tolerance_is_none(tolerance_N, refused):
+    """0.1036² − 0.1² is 0.0271²; one of another channel has no such tolerance."""
+    before, after = {"f_in_N": 0.1, "x_out_mm": 0.01}, {"f_in_N": 0.1036, "x_out_mm": 0.01}
+    rest = "force_sensor_offset", OFFSETS, CLEAR, before, after, {"f_in_N": 0.01, "x_out_mm": 0.01}
+    assert bool(failures(*rest, tolerance_N={"f_in_N": tolerance_N})) == refused
+    assert failures(*rest, tolerance_N={"f_out_N": 1.0})
+
+
 @pytest.mark.parametrize(("value", "refused"), [(1e-6, False), (1e9, True)])
 def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refused):
     friction = estimate("drive_friction.friction_N", value, value / 2, value, at_bound=True)

@@ -27,6 +27,14 @@ def test_a_complete_nominal_model_lacks_nothing():
     assert said == "The nominal model is at the noise level: these runs show no missing effect."
 
 
+def test_a_nominal_model_within_tolerances_is_not_said_to_be_at_the_noise():
+    said = reason_of("sufficient", [], [], left(4.0), left(4.0))
+    assert said == (
+        "The nominal model leaves 2.0 × the noise level: no more than slow noise and the "
+        "tolerances of load cells, bend and friction do. These runs show no missing effect."
+    )
+
+
 def test_what_no_effect_explains_is_said_with_what_it_depends_on():
     after = left(16.0, "time_s", "x_in_mm", late=("x_out_mm",))
     assert reason_of("unexplained", [], [], START, after) == (

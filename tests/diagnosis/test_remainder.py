@@ -51,7 +51,8 @@ def left_of(*errors, delays=(0.1, -0.2, 0.1, 0.0)):
     run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
     folds = Folds(block % 4, block, run, by_run=False)
     trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
-    return remainder(bench, trial, folds, signals_at_residuals(bench, trial))
+    none = np.zeros((residual.size, 0))
+    return remainder(bench, trial, folds, signals_at_residuals(bench, trial), none)
 
 
 def noise(seed):

@@ -211,7 +211,7 @@ def left_of(*errors, signals=None):
     at = signals_at_residuals(bench, trial)
     if signals is not None:
         at = AtResiduals(signals, np.repeat([0, 1], ROWS))
-    return r.remainder(bench, trial, folds, at)
+    return r.remainder(bench, trial, folds, at, np.zeros((residual.size, 0)))
 
 
 def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_none():

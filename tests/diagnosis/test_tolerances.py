@@ -1,11 +1,19 @@
-"""Friction that differs from run to run, on linear fits to data that are made up."""
+"""What every rig has by a small amount, on linear fits to data that are made up."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.held_out import folds_of
-from tsas_cli.diagnosis.tolerances import is_scatter, within_scatter, without_scatter
+from tsas_cli.diagnosis.tolerances import (
+    is_scatter,
+    tolerances,
+    within_scatter,
+    within_tolerances,
+    without_tolerances,
+)
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -15,6 +23,7 @@ FOLDS = folds_of([np.arange(ROWS) * 12 // ROWS for _ in range(RUNS)])
 RNG = np.random.default_rng(8)
 FRICTION = 50.0 * RNG.standard_normal(RUN.size)  # residuals by a relative change of the friction
 OTHER = RNG.standard_normal(RUN.size)
+NONE = np.zeros((RUN.size, 0))
 DRIFT = "friction_drift.session_rate_per_s"
 
 
@@ -35,14 +44,14 @@ def test_a_plausible_scatter_is_left_out_of_the_residual_and_a_large_one_less(sc
     per_run = scatter * np.array([1.0, -1.0, 1.0, -1.0])[RUN]
     trial = fit(FRICTION * per_run)
     before = float(np.mean(trial.solution.residual**2)) - 1.0
-    after = float(np.mean(without_scatter(trial, RUN) ** 2)) - 1.0
+    after = float(np.mean(without_tolerances(trial, NONE, RUN) ** 2)) - 1.0
     assert before == pytest.approx((50.0 * scatter) ** 2, rel=0.2)
     assert abs(after) < left * max(before, 1.0)
 
 
 def test_what_no_friction_explains_stays():
     trial = fit(3.0 * np.sign(OTHER))
-    left = without_scatter(trial, RUN)
+    left = without_tolerances(trial, NONE, RUN)
     assert float(left @ left) > 0.98 * float(trial.solution.residual @ trial.solution.residual)
 
 
@@ -59,7 +68,7 @@ def test_a_drift_from_run_to_run_that_follows_no_trend_is_scatter():
     def split(per_run):
         errors = FRICTION * np.array(per_run)[RUN]
         trial = fit(errors, (DRIFT, FRICTION * RUN))
-        return worst_split(trial, "friction_drift", FOLDS, signals, tuple("abcd"))
+        return worst_split(trial, "friction_drift", FOLDS, signals, tuple("abcd"), NONE)
 
     assert split([-0.03, -0.01, 0.01, 0.03]) is None
     found = split([-0.03, 0.04, -0.02, 0.05])
@@ -75,3 +84,67 @@ def test_most_of_what_is_within_scatter_is_one_friction_for_each_run():
     within_runs = 0.1 * np.sin(np.arange(RUN.size))
     assert not within_scatter(trial, FRICTION * (per_run + within_runs), RUN)
     assert not within_scatter(trial, FRICTION * (0.3 + 0.1 * per_run + 0.1 * within_runs), RUN)
+
+
+CELL = 10.0 * RNG.standard_normal(RUN.size)  # residuals by one standard deviation of a load cell
+CROSSTALK = "force_crosstalk.f_in_of_f_out"
+
+
+@pytest.mark.parametrize(("amount", "left"), [(1.0, 0.0), (-1.9, 0.0), (5.0, 3.0), (-5.0, 3.0)])
+def test_a_load_cell_is_left_out_as_far_as_it_is_plausible(amount, left):
+    """Two standard deviations; each is ten times the noise."""
+    residual = without_tolerances(fit(amount * CELL), CELL[:, None], RUN)
+    assert float(np.mean(residual**2)) == pytest.approx(1.0 + (10.0 * left) ** 2, rel=0.1)
+
+
+def test_what_a_free_parameter_does_is_not_left_out_for_a_second_time():
+    """A tolerance that the friction imitates takes nothing away, and moves no residual."""
+    trial = fit(3.0 * np.sign(OTHER))
+    residual = without_tolerances(trial, FRICTION[:, None], RUN * 0)
+    assert residual == pytest.approx(trial.solution.residual, abs=1e-6)
+
+
+@pytest.mark.parametrize(("amount", "within"), [(1.0, True), (1.9, True), (2.2, False)])
+def test_an_effect_that_does_what_a_plausible_load_cell_does_is_within_tolerances(amount, within):
+    trial = fit(amount * CELL, (CROSSTALK, CELL))
+    assert within_tolerances(trial, "force_crosstalk", CELL[:, None]) == within
+
+
+def test_an_effect_of_another_shape_is_not_within_tolerances():
+    """More than half of its squares are none of a load cell's."""
+    trial = fit(CELL + 12.0 * OTHER, (CROSSTALK, CELL + 12.0 * OTHER))
+    assert not within_tolerances(trial, "force_crosstalk", CELL[:, None])
+    trial = fit(CELL + 8.0 * OTHER, (CROSSTALK, CELL + 8.0 * OTHER))
+    assert within_tolerances(trial, "force_crosstalk", CELL[:, None])
+
+
+def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_what_is_fitted():
+    """A linear bench, of which each parameter changes one residual, and two modes of the bend."""
+    at = {
+        "force_sensor_gain.f_out_gain": 0,
+        "force_crosstalk.f_in_of_f_out": 1,
+        "force_crosstalk.f_out_of_f_in": 2,
+        "force_sensor_curvature.f_in_per_N": 3,
+        "force_sensor_curvature.f_out_per_N": 4,
+    }
+    fitted = {"force_crosstalk.f_in_of_f_out": 0.04}
+    neutral = {"force_sensor_gain.f_out_gain": 1.0}
+
+    def errors_at(trial, changes):
+        out = np.zeros(5)
+        for name, row in at.items():
+            out[row] = (neutral | fitted | changes).get(name, 0.0)
+        return out
+
+    measured = {"f_in_N": np.array([3.0, -50.0]), "f_out_N": np.array([20.0, 5.0])}
+    run = SimpleNamespace(samples=measured, run=SimpleNamespace(measured=measured))
+    bench = SimpleNamespace(
+        channels=["f_in_N", "f_out_N", "x_out_mm"],
+        closed=[run],
+        errors_at=errors_at,
+        unevenness=lambda trial: np.full((5, 2), 7.0),
+    )
+    columns = tolerances(bench, SimpleNamespace(values=lambda: fitted))
+    sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0]
+    assert columns[:, :5] == pytest.approx(np.diag(sizes))
+    assert np.all(columns[:, 5:] == 7.0)

@@ -4,10 +4,11 @@ A mechanism has one value; what stands in for another mechanism has another one 
 asked (invariant prediction, Peters, Buehlmann and Meinshausen 2016). An effect's columns of the
 Jacobian are split by direction, by thirds of each signal, and by run. Where values of their own for
 the parts predict held-out data better than one value does, the effect is not constant. Each run has
-a friction of its own meanwhile, unless that is what the effect does. Linear: no simulation.
+a friction of its own meanwhile, unless that is what the effect does, and load cells and bend are
+within their tolerances. Linear: no simulation.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -20,7 +21,12 @@ from tsas_cli.diagnosis.held_out import (
     in_stretches,
 )
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
-from tsas_cli.diagnosis.tolerances import is_scatter, with_friction_of_runs, within_scatter
+from tsas_cli.diagnosis.tolerances import (
+    is_scatter,
+    with_friction_of_runs,
+    within_scatter,
+    without_tolerances,
+)
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.support.arrays import Floats, Indices
@@ -52,6 +58,7 @@ def worst_split(
     folds: Folds,
     signals: dict[str, Floats],
     runs: tuple[str, ...],
+    tolerated: Floats,
 ) -> Split | None:
     """Return the split with the largest gain where an effect is not constant, else None.
 
@@ -65,6 +72,8 @@ def worst_split(
         The signals at each residual, shape (n,) each.
     runs
         The ids of the runs.
+    tolerated
+        The residuals' changes by one standard deviation of each tolerance, shape (n, m).
     """
     columns = [
         j
@@ -74,6 +83,8 @@ def worst_split(
     if not columns:
         return None
     J = trial.solution.jacobian
+    residual = without_tolerances(trial, tolerated)
+    trial = replace(trial, solution=replace(trial.solution, residual=residual))
     scatter = any(is_scatter(trial, J[:, j], folds.run) for j in columns)
     if not scatter:
         trial = with_friction_of_runs(trial, folds.run)

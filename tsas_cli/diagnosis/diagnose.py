@@ -11,6 +11,7 @@ from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, find_effects
 from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
 from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
@@ -149,7 +150,8 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
     final = judged.trial(named)
     after = start = proven.after
     if named:
-        start = remainder(bench, before, folds, signals_at_residuals(bench, before))
+        at_residuals = signals_at_residuals(bench, before)
+        start = remainder(bench, before, folds, at_residuals, tolerances(bench, before))
     complete = after.complete and not any(cause.law_differs for cause in causes)
     verdict = verdict_of(
         [cause.rivals for cause in causes],

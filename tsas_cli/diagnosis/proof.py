@@ -34,7 +34,7 @@ class FoundCause:
 
     `failed` is what it does not prove, in sentences without their subject; empty for a named one.
     `law_differs` says over which signal the law of a named one differs from the catalogue's.
-    `scatter` is whether it is no more than friction that differs from run to run.
+    `tolerated` is whether it is no more than what every rig has.
     """
 
     effect: str
@@ -44,7 +44,7 @@ class FoundCause:
     gain_interval_percent: tuple[float, float]
     failed: tuple[str, ...] = ()
     law_differs: str = ""
-    scatter: bool = False
+    tolerated: bool = False
 
 
 def failures(
@@ -55,6 +55,7 @@ def failures(
     with_it: Mapping[str, float],
     noise: Mapping[str, float],
     *,
+    tolerance_N: Mapping[str, float] | None = None,
     stroke_mm: float = math.inf,
     correlation: Floats | None = None,
 ) -> tuple[str, ...]:
@@ -72,6 +73,8 @@ def failures(
         The RMS of each channel on held-out data, without the effect and with it.
     noise
         The noise level of each channel.
+    tolerance_N
+        By how much a force sensor of a sound rig may be wrong.
     stroke_mm
         The longest way of the drive; infinite where it is not known.
     correlation
@@ -105,7 +108,9 @@ def failures(
         f"makes {name} worse on held-out data ({number_text(without[name])} to "
         f"{number_text(with_it[name])})"
         for name, change in changes.items()
-        if with_it[name] > (1.0 + LEAST_RISE) * without[name] and change > RISE_OF_FALL * fall
+        if with_it[name] > (1.0 + LEAST_RISE) * without[name]
+        and change > RISE_OF_FALL * fall
+        and with_it[name] ** 2 - without[name] ** 2 > (tolerance_N or {}).get(name, 0.0) ** 2
     ]
     return tuple(out)
 

@@ -15,6 +15,12 @@ from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.tolerances import (
+    LOAD_CELL,
+    largest_forces,
+    tolerances,
+    within_tolerances,
+)
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import HypothesisFit
@@ -51,7 +57,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
     The one that fails and gains least is left out, and the others are fitted again, until none
-    fails. Scatter of the friction from run to run is no stand-in: every rig has it.
+    fails. What every rig has is no stand-in.
     """
     stand_ins: list[FoundCause] = []
     first: tuple[Estimate, ...] | None = None
@@ -63,7 +69,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
         if not failing:
             return replace(proven, with_stand_ins=first)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
-        if not weakest.scatter:
+        if not weakest.tolerated:
             stand_ins.append(weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
         search = replace(search, named=frozenset(rest), rivals=rest)
@@ -81,9 +87,10 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     }
     estimates = estimates_with_unevenness(judged, final)
     at_residuals = signals_at_residuals(bench, final)
-    after = remainder(bench, final, judged.folds, at_residuals)
+    tolerated = tolerances(bench, final)
+    after = remainder(bench, final, judged.folds, at_residuals, tolerated)
     causes = tuple(
-        _cause(judged, name, estimates, held_out, at_residuals.signals, after.structure)
+        _cause(judged, name, estimates, held_out, at_residuals.signals, after.structure, tolerated)
         for name in judged.rivals
     )
     return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, after)
@@ -96,23 +103,26 @@ def _cause(
     held_out: Mapping[frozenset[str], HeldOutFit],
     signals: dict[str, Floats],
     structure: float,
+    tolerated: Floats,
 ) -> FoundCause:
     """Return an effect of the final set, with what it does not prove.
 
-    `structure` are the squares that the final set leaves and a regression explains.
+    `structure` are the squares that the final set leaves and a regression explains,
+    `tolerated` what tolerances change there, shape (n, m).
     """
     named = judged.named
     fewer, all_of_them = held_out[named - {name}], held_out[named]
     gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
     own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
     ids = tuple(run.run.run.id for run in judged.bench.closed)
-    split = worst_split(judged.trial(named), name, judged.folds, signals, ids)
+    split = worst_split(judged.trial(named), name, judged.folds, signals, ids, tolerated)
     again = gain(fewer.squares, all_of_them.squares)
     related = judged.trial(named).correlation([e.name for e in own])
     noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
     stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
         *(name, own, again, fewer.rmse, all_of_them.rmse, noise),
+        tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
         stroke_mm=stroke_mm,
         correlation=related,
     )
@@ -121,8 +131,10 @@ def _cause(
     if split is not None and structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
-    scatter = split is not None and split.scatter
-    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, scatter)
+    everywhere = split is not None and split.scatter
+    if within_tolerances(judged.trial(named), name, tolerated):
+        failed, everywhere = (*failed, "is no more than a tolerance of load cells and bend"), True
+    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, everywhere)
 
 
 def estimates_with_unevenness(search: Hypotheses, trial: HypothesisFit) -> list[Estimate]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
-from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.remainder import LEAST_SLOW, Remainder
 from tsas_cli.diagnosis.signals import signal_in_words
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.wording import listed
@@ -37,6 +37,12 @@ def reason_of(
         ]
         if rivals:
             sentences.append(f"Indistinguishable from it in these recordings: {', '.join(rivals)}.")
+    elif verdict == "sufficient" and after.mean_square > 1.0 + LEAST_SLOW:
+        return (
+            f"The nominal model leaves {_two_digits(math.sqrt(after.mean_square))} × the noise "
+            "level: no more than slow noise and the tolerances of load cells, bend and friction "
+            "do. These runs show no missing effect."
+        )
     elif verdict == "sufficient":
         return "The nominal model is at the noise level: these runs show no missing effect."
     else:

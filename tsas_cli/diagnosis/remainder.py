@@ -15,7 +15,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
-from tsas_cli.diagnosis.tolerances import without_scatter
+from tsas_cli.diagnosis.tolerances import without_tolerances
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.support.arrays import Floats
 
@@ -80,18 +80,23 @@ class Remainder:
 
 
 def remainder(
-    bench: Bench, trial: HypothesisFit, folds: Folds, at_residuals: AtResiduals
+    bench: Bench,
+    trial: HypothesisFit,
+    folds: Folds,
+    at_residuals: AtResiduals,
+    tolerated: Floats,
 ) -> Remainder:
     """Return the remaining residual of a trial, with the signals at its residuals.
 
-    What a friction of each run's own explains, within its plausible scatter, is left out.
+    What is plausible on every rig is left out: friction of each run's own, and `tolerated`, changes
+    of the residuals by one standard deviation of tolerances, shape (n, m).
     """
     runs = [e.errors(bench.rig(trial, k)) for k, e in enumerate(bench.errors_for(trial))]
     errors = {n: [run[n] for run in runs if n in run] for n in bench.channels}
     count = sum(part.size for parts in errors.values() for part in parts)
     squares = {n: sum(float(part @ part) for part in parts) for n, parts in errors.items()}
     signals, channel = at_residuals.signals, at_residuals.channel
-    residual = without_scatter(trial, folds.run)
+    residual = without_tolerances(trial, tolerated, folds.run)
     stretches = in_stretches(folds).fold
     names = [name for name in signals if name != DIRECTION]
     alone = dict.fromkeys(names, 0.0)
@@ -114,8 +119,8 @@ def remainder(
         reducible += explained[name] * samples / count
         shares[name] = best.part if explained[name] > 0.0 else 0.0
         beyond = max(float(own @ own) - own.size, 0.0)
-        scatter = float(np.sum(trial.solution.residual[here] ** 2)) - float(own @ own)
-        ratio = (squares[name] - scatter) / samples - explained[name] - 1.0
+        by_them = float(np.sum(trial.solution.residual[here] ** 2)) - float(own @ own)
+        ratio = (squares[name] - by_them) / samples - explained[name] - 1.0
         structure += shares[name] * float(own @ own) if ratio <= MOST_SLOW else beyond
         if ratio > LEAST_SLOW:
             slow[name] = SlowPart(math.sqrt(ratio), _memory_s(bench, name, errors[name]))

@@ -24,6 +24,7 @@ from tsas_cli.diagnosis.evidence import (
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.quantities import QUANTITIES
@@ -191,7 +192,8 @@ class Search:
         """Return whether a regression finds nothing that a further cause could explain."""
         trial = self.trial(names)
         at_residuals = signals_at_residuals(self.bench, trial)
-        return remainder(self.bench, trial, self.folds, at_residuals).complete
+        tolerated = tolerances(self.bench, trial)
+        return remainder(self.bench, trial, self.folds, at_residuals, tolerated).complete
 
     def matters(self, before: Names, added: Names) -> bool:
         """Return whether added effects reduce the excess over the noise by a sufficient share."""

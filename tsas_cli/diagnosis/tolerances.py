@@ -1,13 +1,19 @@
-"""What differs from run to run on every rig, and is no cause: the friction, by a small amount."""
+"""What every rig has by a small amount, and is no cause.
+
+Friction that differs from run to run, load cells whose scale is off or bent or that feel the other
+force, a sheath that is bent unevenly.
+"""
 
 import numpy as np
 
-from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.support.arrays import Floats, Indices
 
 FRICTION = "friction_coefficient"
 PLAUSIBLE = 2.0  # standard deviations of it
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
+LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
 
 def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
@@ -20,11 +26,77 @@ def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
     return np.asarray(slope[:, None] * (run[:, None] == runs))
 
 
-def without_scatter(trial: HypothesisFit, run: Indices) -> Floats:
-    """Return the residual without what a plausible friction of each run explains, shape (n,)."""
-    columns, residual = friction_of_runs(trial, run), trial.solution.residual
-    gram = columns.T @ columns + np.eye(columns.shape[1])
-    return np.asarray(residual - columns @ np.linalg.solve(gram, columns.T @ residual))
+def tolerances(bench: Bench, trial: HypothesisFit) -> Floats:
+    """Return the residuals' change by one standard deviation of load cells and bend, (n, m)."""
+    largest = largest_forces(bench)
+    sizes = {
+        "force_sensor_gain.f_out_gain": LOAD_CELL,
+        "force_crosstalk.f_in_of_f_out": LOAD_CELL,
+        "force_crosstalk.f_out_of_f_in": LOAD_CELL,
+        "force_sensor_curvature.f_in_per_N": LOAD_CELL / largest.get("f_in_N", 1.0),
+        "force_sensor_curvature.f_out_per_N": LOAD_CELL / largest.get("f_out_N", 1.0),
+    }
+    fitted, without = trial.values(), bench.errors_at(trial, {})
+    changes = [
+        bench.errors_at(trial, {name: fitted.get(name, QUANTITIES[name].default) + size}) - without
+        for name, size in sizes.items()
+    ]
+    return np.column_stack([*changes, bench.unevenness(trial)])
+
+
+def largest_forces(bench: Bench) -> dict[str, float]:
+    """Return the largest reading of each force sensor that is compared [N]."""
+    return {
+        name: max(
+            float(np.abs(run.run.measured[name]).max())
+            for run in bench.closed
+            if name in run.samples
+        )
+        for name in bench.channels
+        if name.endswith("_N")
+    }
+
+
+def without_tolerances(
+    trial: HypothesisFit, tolerated: Floats, run: Indices | None = None
+) -> Floats:
+    """Return the residual without what plausible tolerances explain, shape (n,).
+
+    `tolerated` are the residuals' changes by one standard deviation of each, shape (n, m). With
+    `run`, the run of each residual, each run has a friction of its own beside them.
+    """
+    from scipy.optimize import lsq_linear
+
+    residual = trial.solution.residual
+    own = np.zeros((residual.size, 0)) if run is None else friction_of_runs(trial, run)
+    most = np.repeat((np.inf, PLAUSIBLE), (own.shape[1], tolerated.shape[1]))
+    if not most.size:
+        return residual
+    J = trial.solution.jacobian[:, ~trial.solution.at_bound]
+    own = _beside(J, np.column_stack((own, tolerated)))
+    root = np.linalg.cholesky(own.T @ own + np.eye(most.size))
+    amounts = lsq_linear(root.T, np.linalg.solve(root, own.T @ residual), (-most, most)).x
+    return np.asarray(residual - own @ amounts)
+
+
+def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats) -> bool:
+    """Return whether most of what an effect changes is what plausible tolerances change too."""
+    own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
+    J, values = trial.solution.jacobian, trial.solution.values
+    neutral = [QUANTITIES[u.name].scaled(QUANTITIES[u.name].default) for u in trial.unknowns]
+    others = J[:, ~own & ~trial.solution.at_bound]
+    change = _beside(others, (J[:, own] @ (values - neutral)[own])[:, None])[:, 0]
+    columns = _beside(others, columns)
+    amounts = np.linalg.solve(columns.T @ columns + np.eye(columns.shape[1]), columns.T @ change)
+    left = change - columns @ amounts
+    plausible = bool(np.all(np.abs(amounts) <= PLAUSIBLE))
+    return plausible and float(left @ left) < 0.5 * float(change @ change)
+
+
+def _beside(J: Floats, columns: Floats) -> Floats:
+    """Return columns without what free parameters imitate, by their Jacobian."""
+    basis = np.linalg.qr(J)[0]
+    return np.asarray(columns - basis @ (basis.T @ columns))
 
 
 def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
