@@ -62,7 +62,7 @@ def test_why_nothing_can_be_diagnosed():
     assert reason([1], bad).endswith("did not converge (steps).")
 
 
-def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
+def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
     """Blocks are counted from 0 in each run; 3 and 4 make 5."""
     given = {}
     fitted = Fitted(*(np.full(1, v) for v in (7.0, 3.0, 2.0)), np.zeros(1, bool), True, "", 1)
@@ -72,14 +72,15 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
         return fitted
 
     monkeypatch.setattr(p, "with_errors", with_errors)
-    monkeypatch.setattr(p, "stderr_of_unevenness", lambda *_: np.full(1, 4.0))
+    monkeypatch.setattr(p, "stderr_of_tolerances", lambda *_: np.full(1, 4.0))
     monkeypatch.setattr(
         p, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
     )
     folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
     bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
-    trial = SimpleNamespace(unknowns=[], solution=None)
-    (told,) = p.estimates_with_unevenness(SimpleNamespace(folds=folds, bench=bench), trial)
+    trial = SimpleNamespace(unknowns=[], solution=None, effects=())
+    search = SimpleNamespace(folds=folds, bench=bench)
+    (told,) = p.estimates_with_tolerances(search, trial, np.zeros((6, 7)))
     assert told.value == 5.0
     assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
 

@@ -9,6 +9,7 @@ from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.diagnosis.tolerances import (
     is_scatter,
+    of_others,
     tolerances,
     within_scatter,
     within_tolerances,
@@ -148,3 +149,11 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
     sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0]
     assert columns[:, :5] == pytest.approx(np.diag(sizes))
     assert np.all(columns[:, 5:] == 7.0)
+
+
+def test_an_effect_that_is_named_has_no_tolerance_of_its_own():
+    given = np.arange(14.0).reshape(2, 7) + 1.0
+    others = of_others(SimpleNamespace(effects=("force_crosstalk",)), given)
+    assert others.tolist() == [[1, 0, 0, 4, 5, 6, 7], [8, 0, 0, 11, 12, 13, 14]]
+    assert given[0, 1] == 2.0
+    assert of_others(SimpleNamespace(effects=()), given).tolist() == given.tolist()

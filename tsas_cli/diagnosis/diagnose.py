@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.held_out import Folds, folds_of
 from tsas_cli.diagnosis.proof import FoundCause
-from tsas_cli.diagnosis.proven import Proven, estimates_with_unevenness, proven_effects
+from tsas_cli.diagnosis.proven import Proven, estimates_with_tolerances, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, find_effects
@@ -149,9 +149,9 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
     before = judged.trial(frozenset(), on_mesh=bench.on_mesh(named))
     final = judged.trial(named)
     after = start = proven.after
+    tolerated = tolerances(bench, before)
     if named:
-        at_residuals = signals_at_residuals(bench, before)
-        start = remainder(bench, before, folds, at_residuals, tolerances(bench, before))
+        start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
     verdict = verdict_of(
         [cause.rivals for cause in causes],
@@ -163,7 +163,7 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
         verdict,
         reason_of(verdict, causes, stand_ins, start, after),
         Model(proven.estimates).over(base.model),
-        Model(tuple(estimates_with_unevenness(judged, before))).over(base.model),
+        Model(tuple(estimates_with_tolerances(judged, before, tolerated))).over(base.model),
         causes,
         stand_ins,
         channel_errors(bench, *errors, start, after),

@@ -15,13 +15,14 @@ from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.tolerance_errors import stderr_of_tolerances
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
     largest_forces,
+    of_others,
     tolerances,
     within_tolerances,
 )
-from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import with_errors
@@ -85,9 +86,9 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
         names: refitted(bench, judged.trial(names, on_mesh=mesh), folds)
         for names in judged_sets(named)
     }
-    estimates = estimates_with_unevenness(judged, final)
     at_residuals = signals_at_residuals(bench, final)
     tolerated = tolerances(bench, final)
+    estimates = estimates_with_tolerances(judged, final, tolerated)
     after = remainder(bench, final, judged.folds, at_residuals, tolerated)
     causes = tuple(
         _cause(judged, name, estimates, held_out, at_residuals.signals, after.structure, tolerated)
@@ -137,14 +138,16 @@ def _cause(
     return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, everywhere)
 
 
-def estimates_with_unevenness(search: Hypotheses, trial: HypothesisFit) -> list[Estimate]:
-    """Return the estimates of a trial, with intervals that include an uneven bend."""
+def estimates_with_tolerances(
+    search: Hypotheses, trial: HypothesisFit, tolerated: Floats
+) -> list[Estimate]:
+    """Return the estimates of a trial, with intervals that include what tolerances change."""
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
-    uneven = stderr_of_unevenness(search.bench, trial, counted)
-    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, uneven))
+    besides = stderr_of_tolerances(trial, of_others(trial, tolerated), counted)
+    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, besides))
     estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
     return [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
 

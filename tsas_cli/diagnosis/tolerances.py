@@ -15,6 +15,15 @@ PLAUSIBLE = 2.0  # standard deviations of it
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
+# What is wrong of a load cell; with a channel, by newton of its largest reading.
+LOAD_CELLS = {
+    "force_sensor_gain.f_out_gain": None,
+    "force_crosstalk.f_in_of_f_out": None,
+    "force_crosstalk.f_out_of_f_in": None,
+    "force_sensor_curvature.f_in_per_N": "f_in_N",
+    "force_sensor_curvature.f_out_per_N": "f_out_N",
+}
+
 
 def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
     """Return the residuals' change by one standard deviation of each run's friction, (n, runs)."""
@@ -29,19 +38,21 @@ def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
 def tolerances(bench: Bench, trial: HypothesisFit) -> Floats:
     """Return the residuals' change by one standard deviation of load cells and bend, (n, m)."""
     largest = largest_forces(bench)
-    sizes = {
-        "force_sensor_gain.f_out_gain": LOAD_CELL,
-        "force_crosstalk.f_in_of_f_out": LOAD_CELL,
-        "force_crosstalk.f_out_of_f_in": LOAD_CELL,
-        "force_sensor_curvature.f_in_per_N": LOAD_CELL / largest.get("f_in_N", 1.0),
-        "force_sensor_curvature.f_out_per_N": LOAD_CELL / largest.get("f_out_N", 1.0),
-    }
     fitted, without = trial.values(), bench.errors_at(trial, {})
-    changes = [
-        bench.errors_at(trial, {name: fitted.get(name, QUANTITIES[name].default) + size}) - without
-        for name, size in sizes.items()
-    ]
+    changes = []
+    for name, channel in LOAD_CELLS.items():
+        size = LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
+        value = fitted.get(name, QUANTITIES[name].default)
+        changes.append(bench.errors_at(trial, {name: value + size}) - without)
     return np.column_stack([*changes, bench.unevenness(trial)])
+
+
+def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
+    """Return what tolerances change, without those that an effect of the trial is about."""
+    own = [name.partition(".")[0] in trial.effects for name in LOAD_CELLS]
+    others = tolerated.copy()
+    others[:, : len(own)][:, own] = 0.0
+    return others
 
 
 def largest_forces(bench: Bench) -> dict[str, float]:

@@ -1,12 +1,12 @@
-"""What an uneven bend leaves unsure, on a straight line and two made-up ways of being uneven."""
+"""What tolerances leave unsure, on a straight line and two made-up ones."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import uneven_bend
-from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
+from tsas_cli.diagnosis import tolerance_errors
+from tsas_cli.diagnosis.tolerance_errors import stderr_of_tolerances
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -26,8 +26,7 @@ def unsure(signature, truly=0.0):
         (), (Unknown("slope", None, 0.0, -9.0, 9.0, 1.0),), solution, (ROWS,) * RUNS, on_mesh=False
     )
     ways = np.column_stack((signature, np.zeros(X.size)))
-    bench = SimpleNamespace(unevenness=lambda _: -ways)
-    (found,) = stderr_of_unevenness(bench, trial, BLOCKS)
+    (found,) = stderr_of_tolerances(trial, -ways, BLOCKS)
     return found, abs(float(slope[0]))
 
 
@@ -61,7 +60,7 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
         given.update(names=[u.name for u in unknowns], solution=solution, by_run=by_run)
         return SimpleNamespace(stderr=np.array([7.0, 7.0, 0.5, np.inf]))
 
-    monkeypatch.setattr(uneven_bend, "with_errors", with_errors)
+    monkeypatch.setattr(tolerance_errors, "with_errors", with_errors)
     J = np.zeros((6, 2))
     J[0, 0] = J[1, 1] = 2.0
     ways = np.zeros((6, 2))
@@ -70,8 +69,7 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
     solution = Solution(np.array([5.0, 6.0]), np.array([False, True]), residual, J, True, "", 1)
     unknowns = tuple(Unknown(n, None, 0.0, -9.0, 9.0, 1.0) for n in ("a", "b"))
     trial = HypothesisFit((), unknowns, solution, (6,), on_mesh=False)
-    bench = SimpleNamespace(unevenness=lambda _: ways)
-    found = stderr_of_unevenness(bench, trial, [np.arange(6)])
+    found = stderr_of_tolerances(trial, ways, [np.arange(6)])
     first = (0.8 * -2.0) ** 2 + 0.8 * 0.25
     assert found == pytest.approx([np.sqrt(0.2**2 * first + 0.3**2 * 1.0), 0.0], rel=1e-6)
     assert len(given["names"]) == 4
@@ -81,3 +79,10 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
     assert beside.at_bound.tolist() == [False, True, False, False]
     assert not beside.jacobian[:, 1].any()  # what is at its bound does not move
     np.testing.assert_array_equal(beside.jacobian[:, 2:], ways)
+
+
+def test_no_tolerance_counts_for_more_than_is_plausible():
+    """The slope is off by ten times what two standard deviations do."""
+    found, off = unsure(0.3 * X + 5.0 * OTHER, 20.0)
+    assert off == pytest.approx(6.0, abs=0.1)
+    assert found == pytest.approx(0.3 * 2.0, rel=0.05)
