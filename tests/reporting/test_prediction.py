@@ -1,9 +1,11 @@
+import json
 import re
 
 import pytest
 
 import tsas_cli as tsas
 from tests.comparing.made import NOMINAL, ROUGH, calibrated, clean
+from tests.reporting.made_folders import make_dataset, make_prediction
 from tests.reporting.test_page import Outline
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
@@ -66,6 +68,19 @@ def test_names_from_files_show_as_text_and_the_call_is_repeated(folder):
     assert "&lt;script&gt;$x$" in text
     assert re.search(r"tsas predict \S+calibrated-1 \S+calibrated-2 \S+new --out", text)
     assert "B predicts best" in text or "A predicts best" in text
+
+
+def test_a_file_that_says_less_makes_a_page_all_the_same(tmp_path):
+    dataset = make_dataset(tmp_path / "data", ("a",), samples=400)
+    folder = make_prediction(dataset, tmp_path / "predict")
+    path = folder / "predict.json"
+    whole = json.loads(path.read_text())
+    elsewhere = [row | {"run": "b"} for row in whole["channels"]]
+    empty = {"channels": [], "ranges": [], "findings": [], "notes": [], "models": []}
+    for change in (empty, {"channels": elsewhere}):
+        path.write_text(json.dumps(whole | change))
+        assert section(read_inputs([folder])).groups == ()
+        assert "Prediction of other recordings" in page(read_inputs([folder]))
 
 
 def test_without_predictions_there_is_no_section(folder):

@@ -22,7 +22,7 @@ AVERAGED = 1.0 / 3.0  # of the variance of white noise, between two samples: ∫
 
 
 @dataclass(frozen=True)
-class Stroke:
+class StrokeAtTravel:
     """One stroke: its ends [mm], its duration [s], and each channel at `POINTS` of its travel."""
 
     start_mm: float
@@ -30,7 +30,7 @@ class Stroke:
     duration_s: float
     channels: Mapping[str, Floats]
 
-    def repeats(self, other: "Stroke") -> bool:
+    def repeats(self, other: "StrokeAtTravel") -> bool:
         """Say whether it is the same motion as another stroke."""
         room = SAME_END * abs(other.end_mm - other.start_mm)
         return (
@@ -72,7 +72,7 @@ def repeatability(
 
 
 def _scatter(
-    own: Sequence[Stroke], strokes: Sequence[Stroke], channel: str, noise: float
+    own: Sequence[StrokeAtTravel], strokes: Sequence[StrokeAtTravel], channel: str, noise: float
 ) -> float | None:
     """Return the standard deviation between the strokes that repeat one of a run's own."""
     squares, freedom = 0.0, 0
@@ -89,7 +89,7 @@ def _scatter(
     return math.sqrt(squares / freedom + averaged) if freedom else None
 
 
-def _strokes(run: Prepared) -> list[Stroke]:
+def _strokes(run: Prepared) -> list[StrokeAtTravel]:
     """Return the strokes of a run that is driven by displacement, but for the first, from rest."""
     if run.drive_column != "x_in_mm":
         return []
@@ -105,7 +105,7 @@ def _strokes(run: Prepared) -> list[Stroke]:
         }
         if not run.in_gap[rows].any():
             duration_s = float(time_s[-1] - time_s[0])
-            out.append(Stroke(float(x_mm[0]), float(x_mm[-1]), duration_s, channels))
+            out.append(StrokeAtTravel(float(x_mm[0]), float(x_mm[-1]), duration_s, channels))
     return out
 
 

@@ -40,7 +40,7 @@ def glance(inputs: Inputs) -> Glance | None:
     if tracking := inputs.get(TrackingFile):
         return _of_tracking(tracking)
     if prediction := inputs.get(PredictionFile):
-        best, _, _ = prediction.findings[0].partition(";")
+        best, _, _ = next(iter(prediction.findings), "").partition(";")
         facts = tuple(Fact(f"model {one.name}", one.path) for one in prediction.models)
         return Glance("Prediction of other recordings", best, facts=facts)
     if diagnosis := inputs.get(DiagnosisFile):

@@ -30,10 +30,10 @@ STAGES: tuple[type[StageFile], ...] = (
     CalibrationFile,
     SimulationFile,
     DiagnosisFile,
-    PredictionFile,
     DriveFile,
     TrackingFile,
     ClosingFile,
+    PredictionFile,
 )
 Stage = TypeVar("Stage", bound=StageFile)
 

@@ -1,6 +1,6 @@
 """What models predict of runs that no fit has seen: the errors, and the loops over the measured."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -31,7 +31,7 @@ def section(inputs: Inputs) -> Section | None:
     if prediction is None:
         return None
     recordings = {one.run.id: one for one in inputs.recordings}
-    shown = _order(prediction)
+    shown = _order(prediction, recordings)
     groups = tuple(
         Group(f"Run {run}", pictures)
         for number, run in enumerate(shown[:_MOST_RUNS])
@@ -49,17 +49,17 @@ def section(inputs: Inputs) -> Section | None:
     )
 
 
-def _order(prediction: PredictionFile) -> list[str]:
-    """Return the runs: first the one, new to every model, whose predictions differ most."""
-    runs = list(dict.fromkeys(row.run for row in prediction.channels))
+def _order(prediction: PredictionFile, known: Container[str]) -> list[str]:
+    """Return the known runs: first the one, new to every model, whose predictions differ most."""
+    runs = [run for run in dict.fromkeys(row.run for row in prediction.channels) if run in known]
     seen = {row.run for row in prediction.channels if row.seen}
     ratios = {
         (max(row.ratio, 1.0 / row.ratio), row.run)
         for row in prediction.channels
-        if row.ratio and row.channel == "f_in_N" and row.run not in seen
+        if row.ratio and row.channel == "f_in_N" and row.run in known and row.run not in seen
     }
-    _, first = max(ratios, default=(1.0, runs[0]))
-    return [first, *(run for run in runs if run != first)]
+    first = [run for _, run in sorted(ratios)[-1:]]
+    return list(dict.fromkeys([*first, *runs]))
 
 
 def _pictures(
