@@ -11,7 +11,7 @@ DAMPER_LEARNED := 0.5Hz20lbtension,0.5Hz80lbtension
 DAMPER_PREDICTED := 1Hz20lbtension,1Hz80lbtension
 
 .PHONY: friction-damper friction-damper-dataset
-friction-damper: $(damper_out)/report.html $(damper_out)/nominal/simulation.json $(damper_out)/extended/simulation.json  ## diagnose the public recordings of a friction damper at 0.5 Hz, predict those at 1 Hz
+friction-damper: $(damper_out)/report.html $(damper_out)/predict/predict.json  ## diagnose the public recordings of a friction damper at 0.5 Hz, predict those at 1 Hz
 
 friction-damper-dataset: $(PROGRAM)
 	+@test -d '$(call name,TSAS_DATA)/friction-damper' || { echo 'no recordings in $(TSAS_DATA)/friction-damper: set TSAS_DATA to the folder that holds friction-damper/ (docs/ingest.md says where to get it)' >&2; exit 2; }
@@ -25,11 +25,8 @@ $(damper_out)/calibrate/model.toml: $(damper_out)/dataset/dataset.toml $(PROGRAM
 $(damper_out)/diagnose/model-extended.toml: $(damper_out)/dataset/dataset.toml $(PROGRAM)
 	$(TSAS) diagnose '$(DAMPER)/dataset' --runs $(DAMPER_LEARNED) --out '$(DAMPER)/diagnose' $(STAGE)
 
-$(damper_out)/nominal/simulation.json: $(damper_out)/calibrate/model.toml $(PROGRAM)
-	$(TSAS) simulate '$(DAMPER)/dataset' --runs $(DAMPER_PREDICTED) --fit-own --model '$(DAMPER)/calibrate' --out '$(DAMPER)/nominal' $(STAGE)
-
-$(damper_out)/extended/simulation.json: $(damper_out)/diagnose/model-extended.toml $(PROGRAM)
-	$(TSAS) simulate '$(DAMPER)/dataset' --runs $(DAMPER_PREDICTED) --fit-own --model '$(DAMPER)/diagnose/model-extended.toml' --out '$(DAMPER)/extended' $(STAGE)
+$(damper_out)/predict/predict.json: $(damper_out)/calibrate/model.toml $(damper_out)/diagnose/model-extended.toml $(PROGRAM)
+	$(TSAS) predict '$(DAMPER)/calibrate' '$(DAMPER)/diagnose/model-extended.toml' '$(DAMPER)/dataset' --runs $(DAMPER_PREDICTED) --out '$(DAMPER)/predict' --force
 
 $(damper_out)/report.html: $(damper_out)/dataset/dataset.toml $(damper_out)/diagnose/model-extended.toml $(PROGRAM)
 	$(TSAS) report '$(DAMPER)/dataset' '$(DAMPER)/diagnose' --out '$@' --force

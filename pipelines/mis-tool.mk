@@ -36,21 +36,18 @@ $(mis_tool_out)/$(1)/diagnose/model-extended.toml: $(mis_tool_out)/L_4/dataset/d
 	$$(TSAS) diagnose '$$(MIS_TOOL_OUT)/L_4/dataset' --runs $(2) --out '$$(MIS_TOOL_OUT)/$(1)/diagnose' $$(STAGE)
 endef
 
-# Folder of the models, folder of the dataset, beginning of the outputs' names, which runs.
+# Folder of the models, folder of the dataset, folder of the predictions, which runs.
 define predicted
-mis-tool-predict: $(mis_tool_out)/$(3)nominal/simulation.json $(mis_tool_out)/$(3)extended/simulation.json
+mis-tool-predict: $(mis_tool_out)/$(3)/predict.json
 
-$(mis_tool_out)/$(3)nominal/simulation.json: $(mis_tool_out)/$(2)/dataset/dataset.toml $(mis_tool_out)/$(1)/calibrate/model.toml $(PROGRAM)
-	$$(TSAS) simulate '$$(MIS_TOOL_OUT)/$(2)/dataset' $(4) --fit-own --model '$$(MIS_TOOL_OUT)/$(1)/calibrate' --out '$$(MIS_TOOL_OUT)/$(3)nominal' $$(STAGE)
-
-$(mis_tool_out)/$(3)extended/simulation.json: $(mis_tool_out)/$(2)/dataset/dataset.toml $(mis_tool_out)/$(1)/diagnose/model-extended.toml $(PROGRAM)
-	$$(TSAS) simulate '$$(MIS_TOOL_OUT)/$(2)/dataset' $(4) --fit-own --model "$$$$(ls '$$(MIS_TOOL_OUT)/$(1)/diagnose/model-stand-in.toml' 2> /dev/null || echo '$$(MIS_TOOL_OUT)/$(1)/diagnose/model-extended.toml')" --out '$$(MIS_TOOL_OUT)/$(3)extended' $$(STAGE)
+$(mis_tool_out)/$(3)/predict.json: $(mis_tool_out)/$(2)/dataset/dataset.toml $(mis_tool_out)/$(1)/calibrate/model.toml $(mis_tool_out)/$(1)/diagnose/model-extended.toml $(PROGRAM)
+	$$(TSAS) predict '$$(MIS_TOOL_OUT)/$(1)/calibrate' "$$$$(ls '$$(MIS_TOOL_OUT)/$(1)/diagnose/model-stand-in.toml' 2> /dev/null || echo '$$(MIS_TOOL_OUT)/$(1)/diagnose/model-extended.toml')" '$$(MIS_TOOL_OUT)/$(2)/dataset' $(4) --out '$$(MIS_TOOL_OUT)/$(3)' --force
 endef
 
 .PHONY: mis-tool-predict
 mis-tool-predict:  ## learn from some recordings of mis-tool, predict other speeds, loads and the other instrument
 $(eval $(call learned,speeds,$(AT_0.1_HZ)))
 $(eval $(call learned,loads,$(UP_TO_HALF_LOAD)))
-$(eval $(call predicted,speeds,L_4,speeds/,--runs $(AT_0.5_HZ)))
-$(eval $(call predicted,loads,L_4,loads/,--runs $(FULL_LOAD)))
-$(eval $(call predicted,L_4,pitch,pitch/by-L_4-))
+$(eval $(call predicted,speeds,L_4,speeds/predict,--runs $(AT_0.5_HZ)))
+$(eval $(call predicted,loads,L_4,loads/predict,--runs $(FULL_LOAD)))
+$(eval $(call predicted,L_4,pitch,pitch/predict))

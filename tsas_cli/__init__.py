@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
     from tsas_cli.stages.ingest import ingest
     from tsas_cli.stages.plan import plan
+    from tsas_cli.stages.predict import predict
     from tsas_cli.stages.read import read, read_drive, read_model
     from tsas_cli.stages.report import report
     from tsas_cli.stages.runs import runs
@@ -47,6 +48,7 @@ __all__ = [
     "identify_harmonic_drive",
     "ingest",
     "plan",
+    "predict",
     "read",
     "read_drive",
     "read_model",

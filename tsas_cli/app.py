@@ -23,6 +23,7 @@ from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.init import init
 from tsas_cli.commands.plan import plan
+from tsas_cli.commands.predict import predict
 from tsas_cli.commands.report import report
 from tsas_cli.commands.runs import runs
 from tsas_cli.commands.simulate import simulate
@@ -74,6 +75,7 @@ PANELS: dict[str, tuple[Callable[..., None], ...]] = {
         identify_harmonic_drive,
         simulate,
         diagnose,
+        predict,
         track,
         report,
     ),

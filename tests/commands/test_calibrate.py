@@ -69,6 +69,9 @@ def test_the_model_holds_the_same_numbers_as_the_json(strict, folder, tmp_path):
         table = model["parameters"] if p["run"] is None else model["runs"][p["run"]]
         assert table[p["name"]]["value"] == p["value"]
         assert table[p["name"]]["unit"] == p["unit"]
+    low, high = model["fitted_to"]["ranges"]["f_in_N"]
+    assert 0.0 < low < high
+    assert model["fitted_to"]["words"] == {"load": ["spring"]}
 
 
 def test_it_prints_tables_and_says_what_cannot_be_told(strict, folder, tmp_path):

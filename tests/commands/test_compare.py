@@ -80,7 +80,7 @@ def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
         (("calibrated-1", "nowhere"), "nowhere: nothing that can be compared is here"),
         (("calibrated-1", "data-1"), "data-1: nothing that can be compared is here"),
         (("calibrated-1", "calibrated-2", "--runs", "slow"), "add --on"),
-        (("calibrated-1", "calibrated-2", "--fit-own"), "add --on DATASET"),
+        (("calibrated-1", "calibrated-2", "--fit-own"), "No such option: --fit-own"),
         (("calibrated-1", "calibrated-2", "--on", "data-1", "--runs", "sl"), "no run 'sl'"),
     ],
 )

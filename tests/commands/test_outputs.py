@@ -27,6 +27,7 @@ CALLS = {
     "simulate": ["home/tracked", "--model", "home/model/model.toml"],
     "diagnose": ["home/tracked", "--model", "home/model/model.toml"],
     "compare": ["home/model", "home/other/model.toml", "--on", "home/tracked"],
+    "predict": ["home/model", "home/other/model.toml", "home/tracked"],
     "plan": ["home/tracked"],
     "track": [
         *("--model", "home/model/model.toml", "--plant", "home/other/model.toml"),
@@ -47,7 +48,7 @@ NO_FILES |= {"fit_own", "nodes", "controller", "compare", "disturb", "as_printed
 NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
 NO_FILES |= {"tool", "what", "conditions"}
 FILES = {"sources", "map_path", "dataset", "model", "a", "b", "on", "path", "plant", "drive"}
-FILES |= {"settings", "reference", "datasets", "options", "folders", "sealed", "entries"}
+FILES |= {"given", "settings", "reference", "datasets", "options", "folders", "sealed", "entries"}
 WRITE_NO_FILE = {"verify", "view", "runs", "doctor", "effects", "explain"}
 WITHOUT_FORCE = {"init", "upload"}  # nothing is overwritten; to an address alone
 

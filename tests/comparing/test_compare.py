@@ -131,15 +131,6 @@ def test_another_recording_of_the_same_name_keeps_its_own_preload(root, tmp_path
     assert slow[0] > 10.0
 
 
-def test_own_values_can_be_fitted_to_each_recording_first(root, on_second):
-    models = (root / f"calibrated-{seed}" / "model.toml" for seed in (1, 2))
-    data = read_dataset(root / "data-2").only(["slow"])
-    it = compare(*models, on=data, fit_own=True)
-    assert len(it.errors) == len(CHANNELS)
-    assert it.errors[0].rmse_a < on_second.errors[0].rmse_a
-    assert record_of(it).own_values_fitted is True
-
-
 def test_two_model_files_alone_give_their_values_and_say_what_gives_more(root):
     it = compare(*(root / f"calibrated-{seed}" / "model.toml" for seed in (1, 2)))
     assert [p.name for p in it.differing] == ["friction_coefficient"]

@@ -8,12 +8,14 @@ import pytest
 
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import (
     CORRECTION,
     Model,
     _axial_stiffness,
     data_sheet,
     model_of,
+    read_fitted_to,
     read_model,
     source_of,
     stated_model,
@@ -47,6 +49,35 @@ def test_what_is_written_is_read_back(tmp_path):
     write_model(path, MODEL, version="1", dataset={"name": "x", "hashes": {"a/b.parquet": "0"}})
     for told in (path, tmp_path):  # the file, or the folder that calibrate has written
         assert set(read_model(told).estimates) == set(MODEL.estimates)
+
+
+def test_what_a_model_was_fitted_to_is_read_back(tmp_path):
+    ranges = FittedTo(ranges={"f_in_N": (-1.5, 80.0)}, words={"load": ("spring", 'a "b"')})
+    write_model(tmp_path / "model.toml", MODEL, version="1", dataset={}, fitted_to=ranges)
+    assert read_fitted_to(tmp_path) == ranges
+    assert set(read_model(tmp_path).estimates) == set(MODEL.estimates)
+    write_model(tmp_path / "model.toml", MODEL, version="1", dataset={})
+    assert read_fitted_to(tmp_path / "model.toml") is None
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        ("ranges.f_in_N = [80.0, 20.0]", "f_in_N begins at 80, above its end 20"),
+        ("ranges.f_in_N = [20.0]", "fitted_to.ranges.f_in_N"),
+        ("ranges.f_in_N = [0.0, inf]", "should be a finite number"),
+        ("words.load = [1]", "should be a valid string"),
+        ("span.f_in_N = [0.0, 1.0]", "unknown key fitted_to.span"),
+    ],
+)
+def test_a_range_that_cannot_be_is_one_line(tmp_path, table, says):
+    path = tmp_path / "model.toml"
+    path.write_text(f"format = 1\n[fitted_to]\n{table}\n", encoding="utf-8")
+    for read in (read_model, read_fitted_to):
+        with pytest.raises(InputError) as stopped:
+            read(path)
+        assert says in stopped.value.line()
+        assert "\n" not in stopped.value.line()
 
 
 def test_a_rig_takes_its_run_s_values_and_the_effects():

@@ -19,11 +19,12 @@ case $stage in
 report) echo page > "$2" ;;
 *) mkdir -p "$2"
    for name in dataset.toml check.json model.toml model-extended.toml simulation.json \\
-               diagnosis.json drive.toml tracking.json closing.json index.html; do
+               diagnosis.json predict.json drive.toml tracking.json closing.json index.html; do
        case $stage-$name in
        ingest-dataset.toml|check-check.json|calibrate-model.toml|simulate-simulation.json|\\
        diagnose-diagnosis.json|diagnose-model-extended.toml|identify-harmonic-drive-drive.toml|\\
-       track-tracking.json|close-loop-closing.json|reproduce-index.html) echo x > "$2/$name" ;;
+       predict-predict.json|track-tracking.json|close-loop-closing.json|\\
+       reproduce-index.html) echo x > "$2/$name" ;;
        esac
    done ;;
 esac

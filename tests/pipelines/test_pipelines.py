@@ -187,11 +187,11 @@ def test_public_recordings_run_once_and_again_when_one_changes(bench):
         f"MIS_TOOL_OUT={bench.folder / 'out'}",
     ]
     first = bench.make(*words)
-    assert sorted(set(first)) == sorted({"ingest", *CHAIN})
-    assert [first.count(s) for s in ("ingest", "calibrate", "simulate")] == [2, 4, 8]
+    assert sorted(set(first)) == sorted({"ingest", *CHAIN, "predict"})
+    assert [first.count(s) for s in ("ingest", "calibrate", "predict")] == [2, 4, 3]
     assert bench.make(*words) == []
     bench.touch("data/mis-tool/pitch/b.TXT")
-    assert bench.make(*words) == ["ingest", *CHAIN, "simulate", "simulate"]
+    assert bench.make(*words) == ["ingest", *CHAIN, "predict"]
     assert bench.make("-f", "pipelines/mis-tool.mk", *words[1:]) == []
 
 
@@ -200,7 +200,7 @@ def test_the_friction_damper_runs_once_and_alone_too(bench):
     (bench.folder / "data" / "friction-damper" / "a.json").touch()
     words = [f"TSAS_DATA={bench.folder / 'data'}", f"DAMPER={bench.folder / 'out'}"]
     first = bench.make("-f", "pipelines/friction-damper.mk", *words)
-    assert sorted(first) == ["calibrate", "diagnose", "ingest", "report", "simulate", "simulate"]
+    assert sorted(first) == ["calibrate", "diagnose", "ingest", "predict", "report"]
     assert bench.make("friction-damper", *words) == []
     missing = f"TSAS_DATA={bench.folder / 'none'}"
     assert bench.make("friction-damper", missing, words[1], code=2) == []

@@ -9,6 +9,9 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
+import tsas_cli as tsas
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.writing import write_dataset, write_parquet
@@ -250,6 +253,13 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
             "solver": "closed form",
         }
     return _write(folder, "diagnosis.json", content | more)
+
+
+def make_prediction(dataset: Path, folder: Path) -> Path:
+    """Write what two models, one of them with more friction, predict of the made dataset."""
+    rough = Model((Estimate("friction_coefficient", 0.2, "1", "given"),))
+    tsas.predict([Model(()), rough], dataset, out=folder, fit_own=False)
+    return folder
 
 
 def _cause(*, rivals):

@@ -14,6 +14,7 @@ from tests.reporting.made_folders import (
     make_closing,
     make_dataset,
     make_diagnosis,
+    make_prediction,
     make_simulation,
     make_tracking,
 )
@@ -47,6 +48,11 @@ def _diagnosis(root: Path) -> str:
     return page(read_inputs([make_diagnosis(dataset, root / "diagnose", "ambiguous")]))
 
 
+def _prediction(root: Path) -> str:
+    dataset = make_dataset(root / "dataset", samples=1000)
+    return page(read_inputs([make_prediction(dataset, root / "predict")]))
+
+
 def _tracking(root: Path) -> str:
     return page(read_inputs([make_tracking(root / "tracked")]))
 
@@ -68,6 +74,7 @@ def _reproduction(root: Path) -> str:
 PAGES: dict[str, Callable[[Path], str]] = {
     "pipeline": _pipeline,
     "diagnosis": _diagnosis,
+    "prediction": _prediction,
     "tracking": _tracking,
     "drive": _drive,
     "closing": _closing,

@@ -9,7 +9,7 @@ import pytest
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, read_model
+from tsas_cli.identification.model import Model, read_fitted_to, read_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.stages import diagnose as diagnose_stage
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
@@ -65,6 +65,16 @@ def test_the_models_differ_by_what_is_named(diagnosed):
     )
     assert extended.keys() - nominal.keys() == {(LENGTH.name, None)}
     assert nominal.items() <= extended.items()
+
+
+def test_each_model_says_the_ranges_that_it_was_fitted_to(diagnosed):
+    recording, _, out = diagnosed
+    extended, nominal = (read_fitted_to(out / f"model-{n}.toml") for n in ("extended", "nominal"))
+    assert extended == nominal
+    assert extended.ranges["total_bend_rad"] == (recording.run.total_bend_rad,) * 2
+    low, high = extended.ranges["f_in_N"]
+    f_in_N = recording.columns["f_in_N"]
+    assert np.mean((f_in_N >= low) & (f_in_N <= high)) == pytest.approx(0.99, abs=1e-3)
 
 
 def test_the_phases_follow_each_other_over_the_whole_run(diagnosed):

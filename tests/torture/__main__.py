@@ -22,7 +22,7 @@ from tsas_cli.support.text_table import table_text
 SHARES = {
     "init": 14, "ingest": 15, "check": 15, "calibrate": 10, "simulate": 16, "diagnose": 6,
     "identify-harmonic-drive": 1, "track": 13, "close-loop": 1, "report": 4, "compare": 4,
-    "make": 1,
+    "predict": 4, "make": 1,
 }  # fmt: skip
 
 

@@ -33,7 +33,7 @@ class Stage:
 
 
 def _stage(name: str, words: str, *needs: str) -> Stage:
-    rrd = () if name == "compare" else ("--rrd",)
+    rrd = () if name in ("compare", "predict") else ("--rrd",)
     return Stage(name, (name, *words.split(), "--out", f"out/{name}", *rrd), f"out/{name}", needs)
 
 
@@ -54,6 +54,7 @@ STAGES = (
         "out/report.html",
         PAGE,
     ),
+    _stage("predict", "in/calibrate in/diagnose in/dataset", "dataset", "calibrate", "diagnose"),
     _stage("compare", "in/calibrate in/diagnose --on in/dataset", *PAGE),
 )
 

@@ -17,10 +17,6 @@ def compare(
         str | None,
         typer.Option(metavar="DATASET", help="Simulate both models on these recordings."),
     ] = None,
-    fit_own: Annotated[
-        bool,
-        typer.Option(help="With --on: first fit the preload and zeros of each run."),
-    ] = False,
     runs: ChosenRuns = None,
     out: Annotated[
         Path | None,
@@ -35,7 +31,5 @@ def compare(
     A and B are model files, or outputs of `tsas calibrate`, `diagnose`, `simulate` or `track`.
     """
     with progress("compare", quiet=quiet) as step:
-        result = tsas.compare(
-            a, b, out=out, on=on, runs=names(runs), fit_own=fit_own, force=force, step=step
-        )
+        result = tsas.compare(a, b, out=out, on=on, runs=names(runs), force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)

@@ -19,8 +19,7 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 class Comparison:
     """What two sides say, side by side.
 
-    `on` is the dataset that both models are held to, None where each is held to what it has read;
-    `own_fitted` says whether each run's own preload and zeros were fitted to it first.
+    `on` is the dataset that both models are held to, None where each is held to what it has read.
     """
 
     a: Side
@@ -31,7 +30,6 @@ class Comparison:
     errors: list[ErrorRow]
     maps: dict[str, Maps]
     on: Dataset | None = None
-    own_fitted: bool = False
 
     @property
     def sides(self) -> dict[str, Side]:
@@ -59,7 +57,6 @@ def compare(
     b: Path | Model,
     *,
     on: Dataset | None = None,
-    fit_own: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> Comparison:
     """Hold two models, or what two stages wrote, against each other.
@@ -71,8 +68,6 @@ def compare(
     on
         A dataset that both models are simulated on. Without it a folder's model is held to the
         recordings that the stage has read, and a model file to none.
-    fit_own
-        Whether each run's own preload and zeros are fitted to `on` first, all else kept.
     step
         Called after each simulation.
 
@@ -85,9 +80,7 @@ def compare(
     _refuse(sides, on)
     predictions = Predictions(step)
     predicted = [
-        predictions.of(
-            side, on or (None if side.kind == "model" else side.dataset), fit_own=fit_own
-        )
+        predictions.of(side, on or (None if side.kind == "model" else side.dataset))
         for side in sides
     ]
     recordings = matched(*predicted)
@@ -99,7 +92,6 @@ def compare(
         error_rows(*sides, recordings),
         residual_maps(recordings),
         on,
-        fit_own,
     )
 
 

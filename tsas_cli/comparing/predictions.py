@@ -1,6 +1,7 @@
 """What each side answers to recordings, and how far that is from what was measured."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -22,11 +23,17 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """One run: the model's tension at the drive, and measured less simulated, shape (n,) each."""
+    """One run: the model's tension at the drive, and what it simulates, shape (n,) each."""
 
     run: Prepared
     f_in_N: Floats
-    errors: dict[str, Floats]
+    simulated: dict[str, Floats]
+
+    @cached_property
+    def errors(self) -> dict[str, Floats]:
+        """Measured less simulated of each channel that has both, shape (n,)."""
+        simulated = self.simulated
+        return {n: v - simulated[n] for n, v in self.run.measured.items() if n in simulated}
 
     def rmse(self, channel: str) -> float | None:
         """Return the root mean square of a channel's error, None where it has none."""
@@ -128,8 +135,8 @@ def _error_row(a: Side, b: Side, both: Both, channel: str) -> ErrorRow:
         rmse_a=rmse_a,
         rmse_b=rmse_b,
         noise=None if compared is None else compared.noise(channel),
-        fitted_a=_fitted(a, both),
-        fitted_b=_fitted(b, both),
+        fitted_a=a.has_seen(both.digest),
+        fitted_b=b.has_seen(both.digest),
         ratio=rmse_b / rmse_a if rmse_a and rmse_b is not None else None,
     )
 
@@ -140,13 +147,6 @@ def channels(both: Both) -> list[str]:
         name for compared in (both.a, both.b) if compared is not None for name in compared.errors
     }
     return [name for name in CHANNELS if name in there]
-
-
-def _fitted(side: Side, both: Both) -> bool | None:
-    """Say whether the side's fit has seen a recording; a simulation does not say it."""
-    if side.recordings is None or side.kind == "simulation":
-        return None
-    return both.digest in side.recordings.values()
 
 
 def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model:
@@ -171,8 +171,7 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
 
 def _simulated(model: Model, side: Side, run: Prepared) -> ComparedRun:
     compared = simulated(run, model, side.dynamics)
-    errors = {name: measured - compared.channels[name] for name, measured in run.measured.items()}
-    return ComparedRun(run, compared.response.f_in_N, errors)
+    return ComparedRun(run, compared.response.f_in_N, compared.channels)
 
 
 def _written(side: Side, run: Prepared) -> ComparedRun:
@@ -181,6 +180,5 @@ def _written(side: Side, run: Prepared) -> ComparedRun:
     columns = columns_of(path, names_of(path))
     for values in columns.values():
         check_rows(path, values.size, run.time_s.size, stage="`tsas simulate`")
-    errors = {n: values - columns[n] for n, values in run.measured.items() if n in columns}
     f_in = columns.get("f_in_N", run.channel("f_in_N"))
-    return ComparedRun(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, errors)
+    return ComparedRun(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, columns)

@@ -45,6 +45,21 @@ class Side:
     not_converged: str = ""
 
     @property
+    def model_file(self) -> Path | None:
+        """The file of the model, None of a simulation or a model in memory."""
+        folder = self.path.parent if self.kind == "model" else self.path
+        return next((folder / file for file in self.files if file.endswith(".toml")), None)
+
+    def has_seen(self, digest: str) -> bool | None:
+        """Say whether the fit has read the recording of a checksum; None where that is unknown.
+
+        A simulation does not say it.
+        """
+        if self.recordings is None or self.kind == "simulation":
+            return None
+        return digest in self.recordings.values()
+
+    @property
     def effects(self) -> tuple[str, ...]:
         """The effects that the model holds, in the order of its file."""
         groups = [e.name.rpartition(".")[0] for e in self.model.estimates] if self.model else []

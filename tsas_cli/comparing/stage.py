@@ -26,7 +26,6 @@ def record_of(it: Comparison) -> ModelComparison:
         a=_side(it.a),
         b=_side(it.b),
         on=None if it.on is None else _on(it.on),
-        own_values_fitted=it.own_fitted,
         same_recordings=it.overlap,
         parameters=it.pairs,
         effects=effects(it),

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.physics.bristles import Bristles
@@ -200,15 +201,23 @@ class _ModelTables(BaseModel):
     kind: Literal["model"] = "model"
     version: str = ""
     dataset: dict[str, object] = {}
+    fitted_to: FittedTo | None = None
     parameters: dict[str, StoredValue] = {}
     runs: dict[str, dict[str, StoredValue]] = {}
     bristles: dict[str, StoredValue] = {}
     effects: dict[str, dict[str, StoredValue]] = {}
 
 
-def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str, object]) -> None:
-    """Write `model.toml`."""
-    file = _ModelTables(format=1, version=version, dataset=dict(dataset))
+def write_model(
+    path: Path,
+    model: Model,
+    *,
+    version: str,
+    dataset: Mapping[str, object],
+    fitted_to: FittedTo | None = None,
+) -> None:
+    """Write `model.toml`, with the recordings that the model was fitted to and their ranges."""
+    file = _ModelTables(format=1, version=version, dataset=dict(dataset), fitted_to=fitted_to)
     for e in model.estimates:
         entry = StoredValue.model_validate(e, from_attributes=True)
         group, _, name = e.name.rpartition(".")
@@ -234,9 +243,7 @@ def read_model(path: Path) -> Model:
         The file is missing, not TOML, of another format, or has an unknown or duplicate parameter,
         one of a single run that all runs share, or an invalid value.
     """
-    if path.is_dir():
-        path = path / MODEL_FILE
-    file = parse(_ModelTables, read_toml(path), path)
+    file = _read(path)
     values: list[_Value] = []
     values += [(name, None, v) for name, v in file.parameters.items()]
     values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
@@ -246,7 +253,23 @@ def read_model(path: Path) -> Model:
         for effect, named in file.effects.items()
         for name, v in named.items()
     ]
-    return _checked(values, path)
+    return _checked(values, path / MODEL_FILE if path.is_dir() else path)
+
+
+def read_fitted_to(path: Path) -> FittedTo | None:
+    """Return the ranges of what a model was fitted to, None where its file does not say them.
+
+    Raises
+    ------
+    InputError
+        As from `read_model`, but for the values.
+    """
+    return _read(path).fitted_to
+
+
+def _read(path: Path) -> _ModelTables:
+    path = path / MODEL_FILE if path.is_dir() else path
+    return parse(_ModelTables, read_toml(path), path)
 
 
 def _checked(values: Sequence[_Value], where: object) -> Model:

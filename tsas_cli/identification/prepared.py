@@ -32,7 +32,8 @@ class Prepared:
     """One run: conditioned inputs of a model, and measured channels to compare.
 
     Of a run that is too long for memory it has one in `every` of `all_rows` samples, those at
-    reversals of the drive, and `all_noise`, the noise level of all samples.
+    reversals of the drive, and `all_noise`, the noise level of all samples. `temperature_C` is from
+    the lowest to the highest, where it was recorded.
     """
 
     run: Run
@@ -45,6 +46,7 @@ class Prepared:
     every: int = 1
     all_rows: int = 0
     all_noise: Mapping[str, float] | None = None
+    temperature_C: tuple[float, float] | None = None
 
     @cached_property
     def drive(self) -> DriveInput:
@@ -168,7 +170,22 @@ def prepare(
         raise nothing_to_compare(run, list(recording.columns))
     conditioned = {name: condition(time_s, columns[name]) for name in driving}
     session_s = seconds_into(session_start, run.started)
-    return Prepared(run, time_s, driving[0], conditioned, measured, gap, session_s)
+    return Prepared(
+        run,
+        time_s,
+        driving[0],
+        conditioned,
+        measured,
+        gap,
+        session_s,
+        temperature_C=_span(recording.columns.get("temperature_C")),
+    )
+
+
+def _span(values: Floats | None) -> tuple[float, float] | None:
+    """Return the lowest and the highest value, None where there is none."""
+    finite = np.empty(0) if values is None else values[np.isfinite(values)]
+    return (float(finite.min()), float(finite.max())) if finite.size else None
 
 
 def driving_columns(run: Run, columns: Sequence[str]) -> list[str]:

@@ -57,5 +57,16 @@ def nominal_name(name: str) -> str:
     >>> nominal_name("x_in_mm")
     'x_in_nominal_mm'
     """
+    return name_by(name, "nominal")
+
+
+def name_by(name: str, model: str) -> str:
+    """Return the name of the column with the prediction of a column by a model.
+
+    Examples
+    --------
+    >>> name_by("f_in_N", "A")
+    'f_in_A_N'
+    """
     quantity, unit = name.rsplit("_", 1)
-    return f"{quantity}_nominal_{unit}"
+    return f"{quantity}_{model}_{unit}"

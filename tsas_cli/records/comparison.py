@@ -138,7 +138,6 @@ class ModelComparison(ComparisonFile):
     a: ModelSide
     b: ModelSide
     on: ComparedOn | None = None
-    own_values_fitted: bool
     same_recordings: str
     parameters: tuple[ParameterPair, ...]
     effects: tuple[EffectPlaces, ...]

@@ -6,6 +6,7 @@ from statistics import median
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.records.drive import DriveDiagnosis, DriveFile
+from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.channels import called
@@ -38,6 +39,10 @@ def glance(inputs: Inputs) -> Glance | None:
         return _of_closing(closing)
     if tracking := inputs.get(TrackingFile):
         return _of_tracking(tracking)
+    if prediction := inputs.get(PredictionFile):
+        best, _, _ = next(iter(prediction.findings), "").partition(";")
+        facts = tuple(Fact(f"model {one.name}", one.path) for one in prediction.models)
+        return Glance("Prediction of other recordings", best, facts=facts)
     if diagnosis := inputs.get(DiagnosisFile):
         return _of_diagnosis(diagnosis)
     if drive := inputs.get(DriveFile):

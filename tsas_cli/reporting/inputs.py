@@ -18,6 +18,7 @@ from tsas_cli.records.check import CheckFile
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.support.arrays import Floats
@@ -32,6 +33,7 @@ STAGES: tuple[type[StageFile], ...] = (
     DriveFile,
     TrackingFile,
     ClosingFile,
+    PredictionFile,
 )
 Stage = TypeVar("Stage", bound=StageFile)
 

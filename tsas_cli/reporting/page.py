@@ -4,8 +4,9 @@ from collections.abc import Callable
 
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.reporting import repeat, simulation, summary
+from tsas_cli.reporting import prediction, repeat, simulation, summary
 from tsas_cli.reporting.calibration import parameters, stiffness, transfer
 from tsas_cli.reporting.closing import section as closing
 from tsas_cli.reporting.content import Section
@@ -21,6 +22,7 @@ from tsas_cli.reporting.tracking import section as tracking
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,
     tracking.section,
+    prediction.section,
     diagnosis.section,
     drive.section,
     recordings.section,
@@ -36,15 +38,16 @@ SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
 def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
 
-    A page of a drive, of tracked runs, or of what a better model is worth in tracking, leaves out
-    what was not given; any other says what is missing.
+    A page of a drive, of predictions, of tracked runs, or of what a better model is worth in
+    tracking, leaves out what was not given; any other says what is missing.
 
     Raises
     ------
     InputError
         A recording or a simulated run cannot be read.
     """
-    alone = any(inputs.get(kind) is not None for kind in (ClosingFile, TrackingFile, DriveFile))
+    kinds = (ClosingFile, TrackingFile, DriveFile, PredictionFile)
+    alone = any(inputs.get(kind) is not None for kind in kinds)
     sections = []
     for make in SECTIONS:
         section = make(inputs)

@@ -13,6 +13,7 @@ from tsas_cli.records.check import CheckFile
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.closing import call as closing_call
@@ -26,6 +27,7 @@ _WROTE: dict[type[StageFile], str] = {
     CalibrationFile: "calibration",
     SimulationFile: "simulation",
     DiagnosisFile: "diagnosis",
+    PredictionFile: "prediction",
     TrackingFile: "tracking",
     DriveFile: "drive",
     ClosingFile: "close-loop",
@@ -39,6 +41,8 @@ def section(inputs: Inputs) -> Section:
     for stage in (inputs.get(SimulationFile), inputs.get(DiagnosisFile)):
         if stage and stage.model.sha256:
             hashes[stage.model.file] = stage.model.sha256
+    if prediction := inputs.get(PredictionFile):
+        hashes |= {one.path: one.sha256 for one in prediction.models if one.sha256}
     if tracking := inputs.get(TrackingFile):
         hashes |= call.files_read(tracking)
     tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
@@ -109,6 +113,12 @@ def _of_dataset(
         if simulation.own_values_fitted:
             options += ["--fit-own"]
         yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
+    if prediction := inputs.get(PredictionFile):
+        options = [] if prediction.own_values_fitted else ["--as-is"]
+        if prediction.chosen is not None:
+            options += ["--runs", ",".join(prediction.chosen)]
+        options += ["--out", folder[PredictionFile]]
+        yield ["tsas", "predict", *(one.path for one in prediction.models), dataset, *options]
     if drive := inputs.get(DriveFile):
         options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
         yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[DriveFile]]

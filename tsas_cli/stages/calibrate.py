@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tsas_cli.identification.calibration import Calibration, calibrate_runs
+from tsas_cli.identification.fitted_to import fitted_to
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import (
     Model,
@@ -141,7 +142,11 @@ def calibrate(
         if folder is not None:
             fitted = record.source().content()
             write_model(
-                folder / records.MODEL_FILE, result.model, version=record.version, dataset=fitted
+                folder / records.MODEL_FILE,
+                result.model,
+                version=record.version,
+                dataset=fitted,
+                fitted_to=fitted_to(data.manifest.rig, prepared),
             )
             record.write(folder)
     return CalibrationResult(record.content(), path, record, result)

@@ -51,7 +51,6 @@ def compare(
     out: Named | None = None,
     on: Dataset | Named | None = None,
     runs: Iterable[str] | None = None,
-    fit_own: bool = False,
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> CompareResult:
@@ -70,8 +69,6 @@ def compare(
         A dataset that both models are simulated on.
     runs
         The ids of its runs that are taken; all without it.
-    fit_own
-        Fit each run's own preload and zeros to `on` first.
     force
         Replace the folder if it is there.
     step
@@ -92,16 +89,12 @@ def compare(
     sides: list[Path | Model] = [path_of(a, Model), path_of(b, Model)]
     paths = [side for side in sides if isinstance(side, Path)]
     tracks = len(paths) == len(sides) and are_tracked(*paths)
-    _refuse(on=on is not None, runs=runs is not None, fit_own=fit_own, tracks=tracks)
+    _refuse(on=on is not None, runs=runs is not None, tracks=tracks)
     data = None if on is None else dataset_of(on, runs)
     inputs = [*paths, *([] if data is None else [data.folder])]
     path = path_of(out)
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
-        both = (
-            compare_tracked(*paths)
-            if tracks
-            else compare_sides(*sides, on=data, fit_own=fit_own, step=step)
-        )
+        both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
         record: ComparisonFile = (
             tracked_stage.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)
         )
@@ -118,15 +111,9 @@ def _page(both: Comparison | Tracks, step: Steps) -> str:
     return tracked_page(both, step) if isinstance(both, Tracks) else comparison_page(both, step)
 
 
-def _refuse(*, on: bool, runs: bool, fit_own: bool, tracks: bool) -> None:
+def _refuse(*, on: bool, runs: bool, tracks: bool) -> None:
     """Refuse options that have nothing to work on."""
     if tracks and on:
         raise InputError("closed loops have recordings of their own", where="--on")
     if runs and not on:
         raise InputError("there is no dataset to take runs of", where="--runs", remedy="add --on")
-    if fit_own and not on:
-        raise InputError(
-            "there are no recordings to fit each run's own values to",
-            where="--fit-own",
-            remedy="add --on DATASET",
-        )

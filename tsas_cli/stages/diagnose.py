@@ -10,6 +10,7 @@ from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.comparison import compare
+from tsas_cli.identification.fitted_to import FittedTo, fitted_to
 from tsas_cli.identification.model import Model, source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
@@ -156,12 +157,17 @@ def diagnose(
         )
         step()
         if folder is not None:
-            _write(folder, record, result, prepared)
+            ranges = fitted_to(data.manifest.rig, prepared)
+            _write(folder, record, result, prepared, ranges)
     return DiagnosisResult(record.content(), path, record, result)
 
 
 def _write(
-    folder: Path, record: records.DiagnosisFile, result: Diagnosis, runs: Sequence[Prepared]
+    folder: Path,
+    record: records.DiagnosisFile,
+    result: Diagnosis,
+    runs: Sequence[Prepared],
+    ranges: FittedTo,
 ) -> None:
     record.write(folder)
     fitted = record.source().content()
@@ -171,7 +177,8 @@ def _write(
         (records.STAND_IN_MODEL, result.stand_in_model),
     ):
         if model is not None:
-            write_model(folder / name, model, version=record.version, dataset=fitted)
+            path = folder / name
+            write_model(path, model, version=record.version, dataset=fitted, fitted_to=ranges)
     (folder / "runs").mkdir()
     for run in runs:
         write_result(folder / "runs", _predictions(run, result.model, result.nominal))

@@ -87,6 +87,9 @@ def _of_stage(path: Path, content: Mapping[str, Any]) -> Iterator[Claim]:
     yield from _of_dataset(path, content.get("on"))
     for key in _INPUTS:
         yield from _of_file(path, content.get(key))
+    models = content.get("models")  # of `tsas predict`
+    for model in models if isinstance(models, list) else ():
+        yield from _of_file(path, model)
     rig = content.get("rig")  # of `tsas plan`, whose path is relative to the plan's folder
     yield from _of_file(path, rig | {"folder": ""} if isinstance(rig, dict) else None)
     for side in (content.get("a"), content.get("b")):  # of `tsas compare`

@@ -54,6 +54,7 @@ def seeds() -> Iterable[bytes]:
         made.make_calibration(data, folder / "calibrate")
         made.make_simulation(data, folder / "simulate")
         made.make_diagnosis(data, folder / "diagnose", "named")
+        made.make_prediction(data, folder / "predict")
         made.make_tracking(folder / "track")
         made.make_closing(folder / "close")
         for path in sorted(folder.glob("*/*.json")):

@@ -56,8 +56,7 @@ def _held_to(it: Comparison) -> Iterator[str]:
     if it.on is None:
         yield "Each side is held to the recordings that it has read."
     else:
-        own = " Each run's own preload and zeros are fitted to it first." if it.own_fitted else ""
-        yield f"Both models are simulated on the recordings of {it.on.manifest.name}.{own}"
+        yield f"Both models are simulated on the recordings of {it.on.manifest.name}."
     if it.shared:
         yield "A ratio below 1 means that B is nearer to the measurement than A."
 
@@ -68,7 +67,6 @@ def _repeat(it: Comparison) -> Section:
         command += ["--on", str(it.on.folder)]
         if it.on.chosen is not None:
             command += ["--runs", ",".join(it.on.chosen)]
-    command += ["--fit-own"] if it.own_fitted else []
     files = tuple(
         (name, file, digest)
         for name, side in it.sides.items()

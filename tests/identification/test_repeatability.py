@@ -1,0 +1,78 @@
+"""The scatter between strokes of the same motion is that which was made."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification.fitted_to import fitted_to
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.identification.repeatability import repeatability
+from tsas_cli.recordings.manifest import RigSheet, Run
+from tsas_cli.recordings.recording import Recording
+
+RATE_HZ, NOISE_N = 193, 0.1  # samples that fall between those of other strokes
+
+
+def run(amplitudes_mm=(10.0,) * 8, *, offsets_N=None, seed=0, stroke_s=2.0, run_id="a", **told):
+    """Return strokes up and down, of each amplitude in turn; f_in has a loop, noise and offsets."""
+    rng = np.random.default_rng(seed)
+    corners = [0.0]
+    for number, amplitude in enumerate(amplitudes_mm):
+        corners.append(corners[-1] + (amplitude if number % 2 == 0 else -amplitude))
+    time_s = np.arange(int(len(amplitudes_mm) * stroke_s * RATE_HZ)) / RATE_HZ
+    x_mm = np.interp(time_s, np.arange(len(corners)) * stroke_s, corners)
+    stroke = np.minimum((time_s / stroke_s).astype(int), len(amplitudes_mm) - 1)
+    offsets = np.zeros(len(amplitudes_mm)) if offsets_N is None else np.asarray(offsets_N)
+    pulling = np.where(stroke % 2 == 0, 1.0, -1.0)
+    f_N = 50.0 + 2.0 * x_mm + 10.0 * pulling + offsets[stroke]
+    columns = {"time_s": time_s, "x_in_mm": x_mm, "f_in_N": f_N + rng.normal(0, NOISE_N, x_mm.size)}
+    return prepare(Recording(Run(id=run_id, file="a", sha256="0" * 64, **told), columns))
+
+
+def found(*runs):
+    ranges = [fitted_to(RigSheet(), [one]) for one in runs]
+    return [channels["f_in_N"] for channels in repeatability(runs, ranges)]
+
+
+def test_noise_alone_is_the_repeatability_of_strokes_that_repeat():
+    (one,) = found(run())
+    assert one == pytest.approx(NOISE_N, rel=0.1)  # and not the loop of 20 N
+
+
+def test_what_differs_from_stroke_to_stroke_is_in_it():
+    offsets = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0]
+    (one,) = found(run(offsets_N=offsets))
+    # Without the first stroke three pull, with 1, 0 and -1 N, and four release, with 0, 1, 0, -1 N.
+    variance = (2.0 + 2.0) / (2 + 3) + NOISE_N**2
+    assert one == pytest.approx(math.sqrt(variance), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "amplitudes", [(10.0,), (10.0, 10.0), (10.0, 10.0, 10.0), (10.0, 9.0, 8.0, 7.0, 6.0, 5.0)]
+)
+def test_where_no_motion_repeats_nothing_is_claimed(amplitudes):
+    assert found(run(amplitudes)) == [None]
+
+
+def test_runs_of_the_same_conditions_repeat_each_other():
+    pair = [run((10.0,) * 3, seed=k, run_id=f"{k}", total_bend_rad=1.0) for k in (1, 2)]
+    assert found(*pair) == pytest.approx([NOISE_N] * 2, rel=0.15)
+    bent = run((10.0,) * 3, seed=3, total_bend_rad=2.0)
+    faster = run((10.0,) * 3, seed=3, stroke_s=1.0, total_bend_rad=1.0)
+    for other in (bent, faster):
+        assert found(pair[0], other) == [None, None]
+
+
+def test_strokes_within_a_run_count_alone_where_they_repeat():
+    same = {"total_bend_rad": 1.0}
+    higher = run(seed=2, run_id="b", offsets_N=[0.8] * 8, **same)
+    assert found(run(seed=1, **same), higher) == pytest.approx([NOISE_N] * 2, rel=0.1)
+
+
+def test_a_run_that_is_driven_by_force_has_none():
+    one = run()
+    columns = {"time_s": one.time_s, "f_in_N": one.measured["f_in_N"]}
+    columns |= {"x_out_mm": one.conditioned["x_in_mm"].values}
+    driven = prepare(Recording(one.run, columns))
+    assert repeatability([driven], [fitted_to(RigSheet(), [driven])]) == [{"x_out_mm": None}]
