@@ -40,8 +40,8 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
     sum_known = np.array([[1.0, -0.99], [-0.99, 1.0]])
     two = (
-        estimate("force_sensor_offset.f_in_offset_N", 0.8, -0.2, 1.8),
-        estimate("force_sensor_offset.f_out_offset_N", 0.8, -0.2, 1.8),
+        estimate("force_sensor_offset.f_in_offset_N", 0.9, -0.1, 1.9),
+        estimate("force_sensor_offset.f_out_offset_N", 0.7, -0.3, 1.7),
     )
     assert of(*two)
     assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, correlation=sum_known)
@@ -89,6 +89,18 @@ def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refus
     friction = estimate("drive_friction.friction_N", value, value / 2, value, at_bound=True)
     said = failures("drive_friction", (friction,), CLEAR, SAME, SAME, NOISE)
     assert bool(said) == refused
+
+
+@pytest.mark.parametrize(("f_out", "refused"), [(1.09, True), (1.12, False), (-1.0, False)])
+def test_an_offset_that_is_the_same_for_both_sensors_may_be_friction(f_out, refused):
+    """A friction of μ(T + c) is the capstan's with c added to both forces."""
+    f_in = estimate("force_sensor_offset.f_in_offset_N", 1.0, 0.99, 1.01)
+    both = f_in, estimate("force_sensor_offset.f_out_offset_N", f_out, f_out - 0.01, f_out + 0.01)
+    said = of(*both)
+    assert bool(said) == refused
+    if refused:
+        assert said[0].startswith("is the same for both sensors (1 and 1.09 N), which friction")
+    assert of(f_in) == ()
 
 
 @pytest.mark.parametrize("effect", ["drive_ripple", "load_ripple", "position_sensor_ripple"])

@@ -23,7 +23,11 @@ from tsas_cli.support.arrays import Floats
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
+ALIKE = 0.1  # relative difference of two offsets within which they are alike
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
+
+# A law of friction μ(T + c) is the capstan's with c added to both forces.
+OFFSET, OFFSETS = "force_sensor_offset", ("f_in_offset_N", "f_out_offset_N")
 
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
@@ -100,6 +104,12 @@ def failures(
         for name, e in own.items()
         if parameters[name].period and e.value > stroke_mm
     ]
+    offsets = [own[name].value for name in OFFSETS if effect == OFFSET and name in own]
+    if len(offsets) == len(OFFSETS) and abs(np.ptp(offsets)) < ALIKE * abs(np.mean(offsets)):
+        out.append(
+            f"is the same for both sensors ({offsets[0]:.3g} and {offsets[1]:.3g} N), "
+            "which friction that does not vanish with the tension does too"
+        )
     changes = {
         name: (after**2 - without[name] ** 2) / noise[name] ** 2 for name, after in with_it.items()
     }
