@@ -40,8 +40,8 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
     sum_known = np.array([[1.0, -0.99], [-0.99, 1.0]])
     two = (
-        estimate("force_sensor_offset.f_in_offset_N", 0.9, -0.1, 1.9),
-        estimate("force_sensor_offset.f_out_offset_N", 0.7, -0.3, 1.7),
+        estimate("force_sensor_offset.f_in_offset_N", 0.85, -0.15, 1.85),
+        estimate("force_sensor_offset.f_out_offset_N", 0.75, -0.25, 1.75),
     )
     assert of(*two)
     assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, correlation=sum_known)
