@@ -46,9 +46,9 @@ LONGEST = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the longest modules first, in each process alike."""
-    first = {f"tests/{name}.py" for name in LONGEST}
-    items.sort(key=lambda item: item.nodeid.partition("::")[0] not in first)
+    """Put the longest modules first, in their order, in each process alike."""
+    place = {f"tests/{name}.py": k for k, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
 
 
 @pytest.hookimpl(wrapper=True)
