@@ -31,20 +31,24 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Begun first: at the end a module of minutes would keep one process busy and the others waiting.
 LONGEST = (
-    *("diagnosis/test_plan", "diagnosis/test_counted_once", "identification/test_dynamic_fit"),
-    *("identification/test_calibration", "identification/test_odd_recordings"),
-    *("studies/challenge/test_found", "studies/challenge/rig/test_tendon"),
-    *("studies/challenge/test_names_hold", "metamorphic/test_relations"),
-    *("commands/test_plan", "commands/test_close_loop", "whole_job/test_whole_job"),
-    *("project/test_start", "stages/test_api", "effects/test_contract", "effects/test_adding_one"),
-    *("torture/test_torture", "physics/plant/test_lugre_plant"),
+    *("whole_job/test_whole_job", "metamorphic/test_relations", "studies/challenge/test_found"),
+    *("identification/test_dynamic_fit", "studies/challenge/test_same_numbers"),
+    *("diagnosis/test_plan", "hostile/test_hostile_files", "commands/test_close_loop"),
+    *("identification/test_odd_recordings", "studies/challenge/test_run"),
+    *("commands/test_calibrate", "reporting/test_in_browser", "diagnosis/test_counted_once"),
+    *("identification/test_long_runs", "sweeping/test_cluster", "identification/test_calibration"),
+    *("numerics/test_conditioning", "stages/test_identify_harmonic_drive", "docs/test_examples"),
+    *("commands/test_live", "fuzz/test_replay", "studies/challenge/test_names_hold"),
+    *("effects/test_contract", "identification/test_phases", "comparing/test_compare"),
+    *("project/test_start", "commands/test_view", "numerics/test_compiled"),
+    *("studies/challenge/rig/test_tendon", "torture/test_torture", "fuzz/test_search"),
 )
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the longest modules first, in each process alike."""
-    first = {f"tests/{name}.py" for name in LONGEST}
-    items.sort(key=lambda item: item.nodeid.partition("::")[0] not in first)
+    """Put the longest modules first, in their order, in each process alike."""
+    place = {f"tests/{name}.py": k for k, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
 
 
 @pytest.hookimpl(wrapper=True)

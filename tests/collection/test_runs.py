@@ -136,7 +136,8 @@ def test_a_wrong_manifest_is_reported_and_the_rest_is_answered(rigs):
     assert result.summary["runs"][2]["rows"] is None
 
 
-def test_a_damaged_footer_is_reported_or_taken_and_ends_nothing(tmp_path):
+@pytest.mark.parametrize("every", [11, pytest.param(1, marks=pytest.mark.large)])
+def test_a_damaged_footer_is_reported_or_taken_and_ends_nothing(tmp_path, every):
     folder = write(tmp_path / "a[1] *", {}, {})
     path = folder / "runs" / "r0.parquet"
     whole = path.read_bytes()
@@ -144,13 +145,14 @@ def test_a_damaged_footer_is_reported_or_taken_and_ends_nothing(tmp_path):
     (run, other) = entry_of(connection, folder, "dataset.toml")["runs"]
     assert run["duration_s"] == other["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
     faults = 0
-    for place in range(len(whole) - 8 - int.from_bytes(whole[-8:-4], "little"), len(whole)):
+    footer = range(len(whole) - 8 - int.from_bytes(whole[-8:-4], "little"), len(whole))
+    for place in footer[::every]:
         for bits in (1, 48):  # 48: some column has a lowest value and no highest one
             path.write_bytes(whole[:place] + bytes([whole[place] ^ bits]) + whole[place + 1 :])
             entry = entry_of(connection, folder, "dataset.toml")
             faults += len(entry["problems"])
             assert entry["runs"][1] == other
-    assert faults > 100
+    assert faults > 100 / every
 
 
 def test_folders_are_named_as_they_were_given(rigs):
@@ -234,7 +236,7 @@ def test_an_index_that_is_damaged_is_made_again(rigs, cache):
     (beside,) = (cache / "runs").glob("*.sha256")
     whole = index.read_bytes()
     flipped = [
-        whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1 :] for at in range(7, len(whole), 199)
+        whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1 :] for at in range(7, len(whole), 997)
     ]
     for damaged in [b"", b"damaged", whole[:-1], *flipped]:
         index.write_bytes(damaged)

@@ -50,8 +50,10 @@ def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict
 
 
 def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tmp_path):
+    settings = tmp_path / "slow.toml"
+    settings.write_text("[sensor]\nrate_Hz = 500.0\n[loop]\nnodes = 10\n")
     call = ("close-loop", "--hide", "friction_coefficient=0.125", "--seeds", "1")
-    done = strict(*call, "--out", tmp_path / "out", "--json")
+    done = strict(*call, "--settings", settings, "--out", tmp_path / "out", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     case = json.loads(done.stdout)["cases"][0]
     assert (case["verdict"], case["named"]) == ("sufficient", [])

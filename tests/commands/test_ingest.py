@@ -92,22 +92,6 @@ def test_an_existing_dataset_stays_without_force(bench, ingest):
     assert ingest("a.csv", "--force").returncode == 0
 
 
-def test_what_is_read_is_not_replaced_by_force(bench, ingest, tsas):
-    assert ingest("a.csv").returncode == 0
-    made = next(path.parent for path in bench.rglob("dataset.toml"))
-    (made / "raw").mkdir()
-    source = made / "raw" / "a.csv"
-    source.write_bytes((bench / "a.csv").read_bytes())
-    done = ingest(str(source), "--force")
-    assert done.returncode == 2
-    assert "is an input, and would be replaced" in done.stderr
-    before = (bench / "a.csv").read_bytes()
-    done = tsas("ingest", bench / "a.csv", "--guess", "--out", bench / "a.csv", "--force")
-    assert done.returncode == 2
-    assert "is an input, and would be replaced" in done.stderr
-    assert (bench / "a.csv").read_bytes() == before == source.read_bytes()
-
-
 def test_two_files_with_one_id_are_refused_and_both_named(bench, ingest):
     (bench / "other").mkdir()
     (bench / "other" / "a.csv").write_text(CSV)

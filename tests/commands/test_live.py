@@ -87,8 +87,10 @@ def test_simulated_runs_arrive_and_the_files_are_the_same(dataset, tmp_path, mon
 
 
 def test_tracked_runs_arrive(tmp_path):
-    call = ("track", "--controller", "pid", "--out", tmp_path / "out", "--live", "--json")
-    with started(*call, state=tmp_path) as process:
+    settings = tmp_path / "short.toml"
+    settings.write_text("[reference]\nduration_s = 2.0\n")
+    call = ("track", "--controller", "pid", "--settings", settings, "--out", tmp_path / "out")
+    with started(*call, "--live", "--json", state=tmp_path) as process:
         copy = tmp_path / "copy.rrd"
         with saved(line_with_address(process.stderr)[0], copy):
             assert any(DONE in line for line in process.stderr)

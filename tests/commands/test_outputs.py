@@ -8,6 +8,7 @@ import pytest
 import typer
 
 import tsas_cli as tsas
+from tests.drives import drive_dataset
 from tsas_cli.identification.model import data_sheet, write_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError
@@ -94,8 +95,8 @@ def inputs(tmp_path_factory):
     """Return a folder with what every command reads, each in a folder of its own."""
     home = tmp_path_factory.mktemp("inputs") / "home"
     tsas.track(out=home / "tracked", controllers="pid", settings={"reference": {"duration_s": 2.0}})
-    tsas.identify_harmonic_drive(SHIPPED / "drive-chirp", out=home / "drive")
-    shutil.copytree(SHIPPED / "drive-chirp", home / "drive-chirp")
+    drive_dataset(home / "drive-chirp", only=("chirp",), duration_s=4.0)
+    tsas.identify_harmonic_drive(home / "drive-chirp", out=home / "drive")
     for name in ("model", "other"):
         (home / name).mkdir()
         sheet = data_sheet(read_dataset(SHIPPED / "paper-groups").manifest)

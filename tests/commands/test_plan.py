@@ -1,4 +1,4 @@
-"""`tsas plan` in a process of its own, with every warning an error."""
+"""`tsas plan`, with every warning an error."""
 
 import json
 import re
@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+import tsas_cli.app
+from tsas_cli.diagnosis import plan as planning
+from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.effects import EFFECTS
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
@@ -13,6 +16,7 @@ from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 DOCS = Path(__file__).parents[2] / "docs" / "plan.md"
+FEW = ("a fast sine", "another preload")
 
 
 @pytest.fixture
@@ -30,24 +34,45 @@ def documented():
     return {key for row in rows for key in re.findall(r"`(\w+)`", row)}
 
 
-def test_it_writes_what_is_documented(strict, rig_file, tmp_path):
-    done = strict("plan", rig_file, "--out", tmp_path / "out", "--json")
-    assert (done.returncode, done.stderr) == (0, "")
-    summary = json.loads((tmp_path / "out" / "plan.json").read_text(encoding="utf-8"))
-    assert json.loads(done.stdout) == summary
+def is_documented(summary, rig_file, out):
+    assert json.loads((out / "plan.json").read_text(encoding="utf-8")) == summary
     assert set(summary) == documented() - {"dataset"}
     assert summary["rig"]["name"] == "bench-42"
-    assert (tmp_path / "out" / summary["rig"]["file"]).resolve() == rig_file.resolve()
+    assert (out / summary["rig"]["file"]).resolve() == rig_file.resolve()
     parameters = [(row["effect"], row["parameter"]) for row in summary["effects"]]
     assert parameters == [(e.name, p.name) for e in EFFECTS for p in e.parameters if not p.shape]
     for row in summary["effects"]:
         if row["named_from"] is not None:
             assert row["found_from"] <= row["named_from"]
+    assert summary["proposals"]
     for proposal in summary["proposals"]:
         run = proposal["run"]
         assert run["amplitude_mm"] <= 10.0
         assert run["speed_mm_per_s"] <= 40.0
         assert run["preload_N"] in (15.0, 25.0, 40.0)
+
+
+def test_it_writes_what_is_documented(rig_file, tmp_path, monkeypatch, capsys):
+    """In this process, with few runs that might be added."""
+
+    def few(*asked):
+        return [one for one in candidates(*asked) if one.title in FEW]
+
+    monkeypatch.setattr(planning, "candidates", few)
+    call = ["tsas", "plan", str(rig_file), "--out", str(tmp_path / "out"), "--json"]
+    monkeypatch.setattr("sys.argv", call)
+    with pytest.raises(SystemExit) as ended:
+        tsas_cli.app.run()
+    said, talk = capsys.readouterr()
+    assert (ended.value.code, talk) == (0, "")
+    is_documented(json.loads(said), rig_file, tmp_path / "out")
+
+
+@pytest.mark.large
+def test_it_writes_what_is_documented_of_all_runs(strict, rig_file, tmp_path):
+    done = strict("plan", rig_file, "--out", tmp_path / "out", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    is_documented(json.loads(done.stdout), rig_file, tmp_path / "out")
 
 
 @pytest.mark.large

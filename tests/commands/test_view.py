@@ -80,7 +80,9 @@ def shown_by(address):
 
 
 @on_linux
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.large)]
+)
 def test_the_page_is_served_here_alone_and_ends_without_a_trace(stream, tmp_path, number):
     with started("view", stream, state=tmp_path) as process:
         address = line_with_address(process.stdout)

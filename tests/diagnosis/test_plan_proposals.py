@@ -6,10 +6,9 @@ from types import SimpleNamespace
 import pytest
 
 from tests.counted import Counted
-from tests.diagnosis.planned import rig_file, run
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, cause, seen
 from tsas_cli.diagnosis import plan as p
-from tsas_cli.diagnosis.plan import FurtherRun, plan_rig, propose
+from tsas_cli.diagnosis.plan import FurtherRun, propose
 from tsas_cli.effects import EFFECTS
 
 
@@ -171,23 +170,3 @@ def test_where_no_run_helps_that_is_said(monkeypatch, after):
     said, _ = proposed(monkeypatch, runs, PLAY, MASS)
     titles = f"{OF[PLAY].title.lower()} and {OF[MASS].title.lower()}"
     assert said == f"No further run within the range of these distinguishes {titles}."
-
-
-def test_a_rig_file_is_planned_by_its_own_rig_and_limits(monkeypatch):
-    given = {}
-    monkeypatch.setattr(p, "simulated_recordings", lambda runs, *_: runs)
-    monkeypatch.setattr(p, "prepare", lambda planned, _: SimpleNamespace(run=planned))
-    monkeypatch.setattr(
-        p, "simulated_candidates", lambda proposed, *rest: given.update(proposed=proposed)
-    )
-    monkeypatch.setattr(p, "joined_runs", lambda runs, *_: runs)
-    monkeypatch.setattr(p, "_plan", lambda runs, step: runs)
-    steps = Counted()
-    runs = plan_rig(rig_file(run(5.0), run(7.0, "b", preload_N=40.0)), steps)
-    assert [r.run.id for r in runs] == ["a", "b"]
-    assert steps.total == 1
-    found = {c.title: c.run for c in given["proposed"]}
-    assert found["run a again"].id == "proposed: a again"
-    assert found["a fast sine"].speed == 14.0
-    assert found["a fast sine"].preload_N == 25.0  # as in the first run
-    assert found["another preload"].preload_N == 60.0

@@ -19,7 +19,7 @@ NOT_RUN_HERE = {
     "docs/tracking.md": ["track"],
 }
 # Of the others these take longest: `make test-large` runs them too.
-LARGE = ("tutorial.md", "compare.md", "object-storage.md", "predict.md")
+LARGE = ("tutorial.md", "compare.md", "object-storage.md", "predict.md", "sweep.md")
 SHOWING = [
     pytest.param(page, id=page.name, marks=pytest.mark.large if page.name in LARGE else ())
     for page in PAGES

@@ -91,38 +91,9 @@ def test_with_the_gear_the_structure_is_chosen_again(folded):
     assert folded == [NOTHING, terms("lag", "play")]
 
 
-def test_it_ends_after_three_rounds_at_the_latest(monkeypatch, folded):
-    asked = []
-    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("lag") | gear)
-    monkeypatch.setattr(
-        ds, "_with_gear", lambda search, named: asked.append(named) or named | {f"t{len(asked)}"}
-    )
-    monkeypatch.setattr(ds, "_without_idle_gear", lambda search, named: named)
-    assert ds.find_terms(MadeUp({}))[0] == terms("lag")
-    assert len(asked) == 3
-
-
-def test_gear_that_is_idle_is_left_out_and_the_rest_stays(monkeypatch):
-    search = MadeUp({terms("lag", "play", "ripple"): 1.0, terms("lag", "ripple"): 1.01}, 9.0)
-    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("chosen") | gear)
-    named = terms("lag", "play", "ripple")
-    assert ds._without_idle_gear(search, named) == terms("chosen", "ripple")
-
-
-def test_rivals_help_and_are_not_worse_by_a_hundredth():
-    squares = {NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.009, terms("spring"): 1.011}
-    assert ds.rivals(MadeUp(squares), terms("lag"), "lag") == ("delay",)
-
-
 def test_the_gear_is_tried_from_the_blur_on():
     assert ds._with_gear(MadeUp({NOTHING: 1.149}, 0.5), NOTHING) == NOTHING
     assert ds._with_gear(MadeUp({NOTHING: 1.15}, 0.5), NOTHING) != NOTHING
-
-
-def test_what_is_left_of_the_gear_is_tried_alone():
-    search = MadeUp({terms("play"): 4.0, terms("play", "ripple"): 1.0})
-    assert ds._with_gear(search, terms("play")) == terms("play", "ripple")
-    assert search.fitted == [terms("play", "ripple")]
 
 
 def test_the_best_of_single_gears_is_not_beaten_by_the_first_one():
@@ -218,8 +189,8 @@ def test_few_blocks_are_all_held_out(banded, monkeypatch):
 
 
 def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():
-    search = MadeUp({NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.005, terms("play"): 1.02})
-    assert ds.rivals(search, terms("lag"), "lag") == ("delay",)
+    squares = {NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.009, terms("play"): 1.011}
+    assert ds.rivals(MadeUp(squares), terms("lag"), "lag") == ("delay",)
     closer = MadeUp({NOTHING: 5.0, terms("lag"): 1.0, terms("play"): 1.005})
     assert ds.rivals(closer, terms("lag"), "lag") == ("play",)
     alone = MadeUp({NOTHING: 1.01, terms("lag"): 1.0, terms("delay"): 1.0})
@@ -238,14 +209,18 @@ def test_the_gear_is_looked_at_where_something_is_left():
     assert ds._with_gear(both, NOTHING) == terms("ripple", "play")
     neither = MadeUp({NOTHING: 4.0}, default=3.99)
     assert ds._with_gear(neither, NOTHING) == NOTHING
+    rest = MadeUp({terms("play"): 4.0, terms("play", "ripple"): 1.0})
+    assert ds._with_gear(rest, terms("play")) == terms("play", "ripple")
+    assert rest.fitted == [terms("play", "ripple")]  # what is left, alone
     found = MadeUp({terms("ripple", "play"): 4.0}, default=1.0)
     assert ds._with_gear(found, terms("ripple", "play")) == terms("ripple", "play")
 
 
 def test_a_gear_that_lags_explain_as_well_is_left_out(monkeypatch):
-    search = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 1.01})
     monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("lag") | gear)
-    assert ds._without_idle_gear(search, terms("lag", "play")) == terms("lag")
+    search = MadeUp({terms("lag", "play", "ripple"): 1.0, terms("lag", "ripple"): 1.01}, 9.0)
+    named = terms("lag", "play", "ripple")
+    assert ds._without_idle_gear(search, named) == terms("lag", "ripple")
     needed = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 3.0})
     assert ds._without_idle_gear(needed, terms("lag", "play")) == terms("lag", "play")
 

@@ -70,6 +70,10 @@ LINES = {
     },
 }
 
+NEAREST = ("bent_scale", "force_sensor_gain")
+# Rows and rate of each run, its bends, the effects to choose from; as plain Python, and compiled.
+SMALL = (200, 20.0, (3.0, 1.0), NEAREST)
+WHOLE = (1500, 100.0, (3.0, 2.0, 1.0), (*NEAREST, "force_sensor_offset", "free_tendon"))
 SCRIPT = """
 import numpy as np
 from tsas_cli.diagnosis.held_out import folds_of
@@ -89,9 +93,10 @@ from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.manifest import RigSheet as Sheet
 
 rng = np.random.default_rng(1)
-time_s = np.arange(1500) / 100.0
+ROWS, RATE_HZ, BENDS, AMONG = SIZE
+time_s = np.arange(ROWS) / RATE_HZ
 runs = []
-for k, bend in enumerate((3.0, 2.0, 1.0)):
+for k, bend in enumerate(BENDS):
     x_in = 8.0 * (1.0 - np.cos((1.0 + 0.2 * k) * time_s))
     rig = with_values(Rig(0.12, 6e4, 1.5, 600.0, bend, 25.0), {"bent_scale.curvature_per_N": 4e-4})
     r = simulate(rig, DriveInput(x_in, time_s=time_s))
@@ -106,8 +111,7 @@ parts = [segment(run) for run in runs]
 slopes = [slopes_of(run, p) for run, p in zip(runs, parts)]
 fit = solve_fit(base_fit(data_sheet(manifest), runs, parts, slopes))
 folds = folds_of([e.blocks(rig, 200) for e, rig in zip(fit.errors, fit.rigs)])
-among = ("bent_scale", "force_sensor_gain", "force_sensor_offset", "free_tendon")
-search = Search(bench_of(fit), folds, effects=tuple(e for e in EFFECTS if e.name in among))
+search = Search(bench_of(fit), folds, effects=tuple(e for e in EFFECTS if e.name in AMONG))
 named = search.run()
 print(sorted(named), *search.trial(named).values().values())
 """
@@ -129,8 +133,9 @@ def extended(tmp_path_factory):
     return root
 
 
-def run(extended, *arguments):
+def run(extended, *arguments, plain=""):
     env = os.environ | {"PYTHONPATH": str(extended), "TSAS_CACHE_DIR": str(extended / "cache")}
+    env["TSAS_PLAIN_PYTHON"] = plain
     done = subprocess.run(
         [sys.executable, *arguments],
         env=env,
@@ -150,7 +155,10 @@ def test_it_is_explained_from_its_file(extended):
     assert "bent_scale" in run(extended, "-m", "tsas_cli", "effects")
 
 
-def test_hidden_in_recordings_it_is_found(extended):
-    name, value = run(extended, "-c", SCRIPT).split("] ")
+@pytest.mark.parametrize(
+    ("size", "plain"), [(SMALL, "1"), pytest.param(WHOLE, "", marks=pytest.mark.large)]
+)
+def test_hidden_in_recordings_it_is_found(extended, size, plain):
+    name, value = run(extended, "-c", f"SIZE = {size}\n{SCRIPT}", plain=plain).split("] ")
     assert name == "['bent_scale'"
     assert float(value) == pytest.approx(4e-4, rel=0.05)

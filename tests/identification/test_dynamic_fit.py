@@ -148,10 +148,10 @@ def f_in(rig, tolerance=3e-6, step_ends_s=OWN_STEPS):
     ("name", "within"),
     [
         ("friction_coefficient", 3e-3),
-        ("bristles.stiffness_N_per_mm", 1e-2),
         ("bristles.damping_N_s_per_mm", 4e-2),
-        ("viscous_friction.coefficient_N_s_per_mm", 5e-3),
-        ("stribeck_friction.excess", 5e-3),
+        pytest.param("bristles.stiffness_N_per_mm", 1e-2, marks=pytest.mark.large),
+        pytest.param("viscous_friction.coefficient_N_s_per_mm", 5e-3, marks=pytest.mark.large),
+        pytest.param("stribeck_friction.excess", 5e-3, marks=pytest.mark.large),
         ("stribeck_friction.velocity_mm_per_s", 1e-2),
     ],
 )

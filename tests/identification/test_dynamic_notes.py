@@ -53,25 +53,6 @@ def test_notes_come_in_order(monkeypatch):
     assert [note.split()[0] for note in said] == ["the", "unstable", "200", "aborted"]
 
 
-@pytest.mark.parametrize(
-    ("found", "count"), [(None, 0), (SimpleNamespace(unstable=False), 0), ("unstable", 1)]
-)
-def test_unstable_sliding_is_said_where_it_is_found(monkeypatch, found, count):
-    looked = {}
-    slow = SimpleNamespace(x_in_mm="x", f_in_N="f", phase="p")
-    monkeypatch.setattr(d, "simulate", lambda rig, drive: looked.update(drive=drive) or slow)
-
-    def stability(*asked):
-        looked["asked"] = asked
-        return SimpleNamespace(unstable=True) if found == "unstable" else found
-
-    monkeypatch.setattr(d, "stability", stability)
-    monkeypatch.setattr(d, "_unstable", lambda found, rig: f"said of {rig}")
-    said = list(d.unstable_sliding("rig", "t", "drive"))
-    assert said == ["said of rig"] * count
-    assert looked == {"drive": "drive", "asked": ("rig", "t", "x", "f", "p")}
-
-
 def unstable(damping_times, *, whole=True):
     critical = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan")))
     damping = damping_times * bristles_of(critical).damping

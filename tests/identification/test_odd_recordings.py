@@ -16,7 +16,7 @@ from tsas_cli.physics.rig import Rig as ModelRig
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.errors import InputError
-from tsas_studies.challenge.rig.motions import dwell, nested, triangle
+from tsas_studies.challenge.rig.motions import dwell, nested, sine, triangle
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
 from tsas_studies.challenge.rig.sensors import PERFECT, Sensor, Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig
@@ -181,7 +181,7 @@ def test_sampling_may_be_irregular():
     is_right(calibrated(ran(recorded(sensors=replace(SENSORS, jitter_s=0.3 / 200.0)))))
 
 
-@pytest.mark.parametrize("motion", [triangle(), dwell(), nested()])
+@pytest.mark.parametrize("motion", [make(rate_Hz=400.0) for make in (triangle, dwell, nested)])
 def test_other_motions(motion):
     is_right(calibrated(ran(recorded(motion))))
 
@@ -221,7 +221,7 @@ def test_without_any_noise():
 
 def test_almost_no_friction_is_found_to_be_that():
     rig = Rig(friction_coefficient=0.001 / math.pi)
-    result = calibrated(ran(recorded(rig=rig), rig=rig))
+    result = calibrated(ran(recorded(sine(rate_Hz=400.0), rig=rig), rig=rig))
     assert fitted(result)["friction_coefficient"].value < 0.002
     assert fitted(result)["load_stiffness_N_per_mm"].value == pytest.approx(1.579, rel=2e-3)
     assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
@@ -229,7 +229,7 @@ def test_almost_no_friction_is_found_to_be_that():
 
 def test_much_friction():
     rig = Rig(friction_coefficient=2.5 / math.pi)
-    result = calibrated(ran(recorded(rig=rig), rig=rig))
+    result = calibrated(ran(recorded(sine(rate_Hz=400.0), rig=rig), rig=rig))
     assert fitted(result)["friction_coefficient"].value == pytest.approx(2.5 / math.pi, rel=1e-3)
 
 

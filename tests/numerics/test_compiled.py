@@ -47,29 +47,27 @@ def copy(tmp_path: Path) -> Path:
     return tmp_path / "copy"
 
 
-def test_the_second_process_compiles_nothing(tmp_path: Path) -> None:
-    first, place, turns = use_a_kernel(tmp_path, tmp_path / "cache")
-    second, same_place, same_turns = use_a_kernel(tmp_path, tmp_path / "cache")
-    assert first > 0
-    assert second == 0
-    assert (same_place, same_turns) == (place, turns)
-    assert Path(place).is_relative_to(tmp_path / "cache")
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, tuple[int, str, list[int]]]:
+    """Return a cache that was empty, and the first use of a kernel with it."""
+    cache = tmp_path_factory.mktemp("first") / "cache"
+    return cache, use_a_kernel(cache.parent, cache)
 
 
-def test_an_edit_in_any_kernel_file_is_compiled_anew(copy: Path, tmp_path: Path) -> None:
-    _, before, _ = use_a_kernel(copy, tmp_path / "cache")
-    with (copy / "tsas_cli" / "physics" / "__init__.py").open("a") as source:
-        source.write("# edited\n")
-    compilations, after, _ = use_a_kernel(copy, tmp_path / "cache")
-    assert after != before
+def test_the_second_process_compiles_nothing(first, tmp_path: Path) -> None:
+    cache, (compilations, *found) = first
     assert compilations > 0
+    assert use_a_kernel(tmp_path, cache) == (0, *found)
+    assert Path(found[0]).is_relative_to(cache)
 
 
-def test_an_edit_elsewhere_compiles_nothing(copy: Path, tmp_path: Path) -> None:
-    use_a_kernel(copy, tmp_path / "cache")
-    with (copy / "tsas_cli" / "commands" / "common.py").open("a") as source:
-        source.write("# edited\n")
-    assert use_a_kernel(copy, tmp_path / "cache")[0] == 0
+def test_an_edit_of_any_kernel_file_is_compiled_anew_and_no_other(copy: Path, tmp_path: Path):
+    _, before, _ = use_a_kernel(copy, tmp_path / "cache")
+    for edited, anew in (("commands/common.py", False), ("physics/__init__.py", True)):
+        with (copy / "tsas_cli" / edited).open("a") as source:
+            source.write("# edited\n")
+        compilations, after, _ = use_a_kernel(copy, tmp_path / "cache")
+        assert (after != before, compilations > 0) == (anew, anew)
 
 
 def test_kernels_live_only_where_edits_are_seen() -> None:
@@ -78,16 +76,15 @@ def test_kernels_live_only_where_edits_are_seen() -> None:
     assert {path.relative_to(PACKAGE).parts[0] for path in users} <= set(PARTS)
 
 
-def test_without_a_cache_kernels_still_run(tmp_path: Path) -> None:
+def test_without_a_cache_kernels_still_run(first, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    _, with_cache, turns = use_a_kernel(tmp_path, tmp_path / "cache")
-    compilations, none, same_turns = use_a_kernel(tmp_path, tmp_path / "file")
-    assert (with_cache != "", none) == (True, "")
+    compilations, none, turns = use_a_kernel(tmp_path, tmp_path / "file")
+    assert (first[1][1] != "", none) == (True, "")
     assert compilations > 0
-    assert same_turns == turns
+    assert turns == first[1][2]
 
 
-def test_plain_python_gives_the_same_and_loads_no_compiler(tmp_path: Path) -> None:
+def test_plain_python_gives_the_same_and_loads_no_compiler(first, tmp_path: Path) -> None:
     program = """
 import json, sys
 import numpy as np
@@ -95,10 +92,9 @@ from tsas_cli.numerics.turning_points import turning_points
 turns = turning_points(np.cumsum(np.random.default_rng(1).standard_normal(5000)), 3.0)
 print(json.dumps(["numba" in sys.modules, turns.tolist()]))
 """
-    compiled_loaded, compiled = json.loads(run(program, tmp_path).stdout)
-    plain_loaded, plain = json.loads(run(program, tmp_path, TSAS_PLAIN_PYTHON=1).stdout)
-    assert (compiled_loaded, plain_loaded) == (True, False)
-    assert plain == compiled
+    loaded, plain = json.loads(run(program, tmp_path, TSAS_PLAIN_PYTHON=1).stdout)
+    assert not loaded
+    assert plain == first[1][2]
     assert len(plain) > 20
 
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from tests.identification.recorded import clean
 from tsas_cli.numerics.conditioning import condition, monotone_between
 from tsas_cli.physics.response import DriveInput, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_studies.challenge.rig.motions import dwell, nested, sine, triangle
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
-from tsas_studies.challenge.rig.tendon import simulate as rig_run
 
 NOISE_mm = 0.005
 FORCE_NOISE_N = 0.08
@@ -33,10 +33,10 @@ def rms(values):
 @pytest.mark.parametrize("name", MOTIONS)
 def test_a_true_model_stays_within_twice_the_force_noise(name):
     """Raw noise costs the model ten times the force sensor's noise and more."""
-    clean = rig_run(VirtualRig(), MOTIONS[name])
-    t, x, f_in = (clean.columns[c] for c in ("time_s", "x_in_mm", "f_in_N"))
+    true = clean(VirtualRig(), MOTIONS[name])
+    t, x, f_in = (true.columns[c] for c in ("time_s", "x_in_mm", "f_in_N"))
     errors = []
-    for seed in range(5):
+    for seed in range(3):
         cleaned = condition(t, noisy(x, seed)).values
         errors.append(rms(simulate(MODEL, DriveInput(cleaned)).f_in_N - f_in))
     assert np.median(errors) < 2.0 * FORCE_NOISE_N

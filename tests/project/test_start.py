@@ -1,13 +1,16 @@
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
 
 from tests.recordings.guess.rig_files import CHANNELS, run, write_csv
+from tsas_cli.app import app
 from tsas_cli.project.start import start
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.support.errors import InputError
@@ -75,8 +78,13 @@ def test_what_cannot_be_read_leaves_no_project(tmp_path, tsas):
         start(tmp_path / "new", [tmp_path / "a.csv", tmp_path / "b" / "a.csv"])
 
 
+STEPS = ["ingest", "check", "calibrate", "simulate", "diagnose", "report"]
+PAGE, CHECK = "result/report.html", "result/check/check.json"
+
+
 @pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
-def test_from_a_recording_to_a_page_and_back_to_one_that_is_broken(tmp_path):
+@pytest.mark.parametrize("output", [CHECK, pytest.param(PAGE, marks=pytest.mark.large)])
+def test_from_a_recording_to_an_output_and_back_to_one_that_is_broken(tmp_path, output):
     source = recording(tmp_path / "a [1].csv", step=50)
     start(tmp_path / "new", [source])
     bench = tmp_path / "new" / "bench.toml"
@@ -94,31 +102,28 @@ def test_from_a_recording_to_a_page_and_back_to_one_that_is_broken(tmp_path):
             check=False,
         )
 
-    page = tmp_path / "new" / "result" / "report.html"
-    done = make()
+    made = tmp_path / "new" / output
+    done = make(output)
     assert done.returncode == 0, done.stderr
     assert "Force" not in done.stderr
-    first = page.read_bytes()
-    assert make("-q").returncode == 0
+    first = made.read_bytes()
+    assert make("-q", output).returncode == 0
 
     raw = tmp_path / "new" / "raw" / "a [1].csv"
     whole = raw.read_text()
     raw.write_text(whole.replace("Force in", "Farce in"))
     for _ in range(2):  # what a failed step leaves is not taken for done
-        done = make()
+        done = make(output)
         assert done.returncode == 2
         assert "column Force in [N] is missing; did you mean Farce in [N]?" in done.stderr
-        assert page.read_bytes() == first
+        assert made.read_bytes() == first
     raw.write_text(whole)
-    (tmp_path / "new" / "result" / "check" / "check.json").touch()
-    assert [line.split()[1] for line in make("-n").stdout.splitlines()] == [
-        "ingest",
-        "check",
-        "calibrate",
-        "simulate",
-        "diagnose",
-        "report",
-    ]
+    (tmp_path / "new" / CHECK).touch()
+    lines = make("-n").stdout.splitlines()
+    calls = [shlex.split(line)[1:] for line in lines if line.startswith("tsas ")]
+    assert [step for step, *_ in calls] == STEPS
+    for step, *words in calls:
+        typer.main.get_command(app).commands[step].make_context(step, words)
 
 
 def test_a_project_that_was_killed_half_way_is_finished_by_the_same_call(tmp_path):

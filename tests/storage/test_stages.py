@@ -46,7 +46,10 @@ NAMES = {
 }
 
 
-@pytest.mark.parametrize("stage", ["check", "calibrate", "simulate", "diagnose"])
+@pytest.mark.parametrize(
+    "stage",
+    ["check", "calibrate", "simulate", pytest.param("diagnose", marks=pytest.mark.large)],
+)
 def test_a_stage_writes_the_same_bytes(both, tmp_path, stage):
     local, address = both
     for place, out in ((local, tmp_path / "a"), (address, tmp_path / "b")):

@@ -12,7 +12,7 @@ STAGES = (
     "check dataset --out check",
     "calibrate dataset --out calibrate --rrd",
     "simulate dataset --model calibrate/model.toml --out simulate --rrd",
-    "diagnose dataset --out diagnose --rrd",
+    "diagnose dataset --runs a --out diagnose --rrd",
     "track --model diagnose/model-extended.toml --settings track.toml --seeds 2 --out track --rrd",
     "identify-harmonic-drive drive --out identify --rrd",
     "report dataset check calibrate simulate diagnose --out report.html",

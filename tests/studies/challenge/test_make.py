@@ -23,7 +23,7 @@ CASES = tuple(case for case in cases(5) if case.name in NAMES)
 def sealed(tmp_path_factory):
     out = tmp_path_factory.mktemp("set")
     steps = []
-    make(out, CASES[::-1], rate_Hz=50.0, step=lambda: steps.append(1))
+    make(out, CASES[::-1], rate_Hz=25.0, step=lambda: steps.append(1))
     assert len(steps) == len(CASES)
     return out
 
@@ -66,11 +66,11 @@ def test_the_product_reads_a_case(sealed):
         for recording in dataset:
             assert all(np.isfinite(values).all() for values in recording.columns.values())
             assert recording.time_s[-1] == pytest.approx(20.0, abs=0.2)
-            assert np.diff(recording.time_s) == pytest.approx(0.02)
+            assert np.diff(recording.time_s) == pytest.approx(0.04)
 
 
 def test_the_same_cases_give_the_same_bytes_in_any_order(sealed, tmp_path):
-    make(tmp_path, CASES, rate_Hz=50.0)
+    make(tmp_path, CASES, rate_Hz=25.0)
     assert files(tmp_path) == files(sealed)
 
 
@@ -116,14 +116,14 @@ def test_wear_over_the_session_is_counted_from_the_first_run():
     bench = drawn_bench(np.random.default_rng(1))
     worn = (Hidden("friction_drift", {"session_rate_per_s": 1e-3}),)
     for run, same in (("a", True), ("b", False)):
-        plain, _ = clean_run(bench, (), run, rate_Hz=50.0)
-        later, _ = clean_run(bench, worn, run, rate_Hz=50.0)
+        plain, _ = clean_run(bench, (), run, rate_Hz=25.0)
+        later, _ = clean_run(bench, worn, run, rate_Hz=25.0)
         assert np.array_equal(plain.columns["f_in_N"], later.columns["f_in_N"]) is same
 
 
 def test_several_seeds_make_one_set_of_the_same_cases(sealed, tmp_path):
     other = tuple(case for case in cases(6) if case.name == "nothing 1")
-    make(tmp_path, (*other, *CASES), rate_Hz=50.0)
+    make(tmp_path, (*other, *CASES), rate_Hz=25.0)
     assert read_truth(tmp_path).seed == (5, 6)
     content = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))
     assert sorted(case["seed"] for case in content["cases"].values()) == [5, 5, 5, 5, 6]
@@ -134,4 +134,4 @@ def test_several_seeds_make_one_set_of_the_same_cases(sealed, tmp_path):
 
 def test_a_set_of_no_cases(tmp_path):
     with pytest.raises(ValueError, match="no cases"):
-        make(tmp_path, (), rate_Hz=50.0)
+        make(tmp_path, (), rate_Hz=25.0)

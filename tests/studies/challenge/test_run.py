@@ -56,30 +56,22 @@ def test_somebody_has_to_do_the_work(tmp_path):
         run_set(tmp_path, out=tmp_path / "entry", workers=0)
 
 
-def test_an_entry_is_not_overwritten_unasked(tmp_path):
-    sealed = write_set(tmp_path / "set", {"well": case()})
-    run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
-    with pytest.raises(InputError, match="already exists"):
-        run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
-    run_cases(sealed, tmp_path / "entry", workers=1, force=True, diagnose=tool)
-
-
-def test_a_case_has_one_thread_for_linear_algebra(tmp_path, monkeypatch):
+def test_a_case_has_one_thread_and_modules_of_its_own_and_nothing_is_overwritten_unasked(
+    tmp_path, monkeypatch
+):
+    """A folder of recordings may hold a re.py or a signal.py of somebody's own."""
     for name in ("OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"):
         monkeypatch.delenv(name, raising=False)
-    sealed = write_set(tmp_path / "set", {"threads": case()})
+    sealed = write_set(tmp_path / "set", {"threads": case(), "well": case()})
+    for name in ("re", "signal", "json"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
+    monkeypatch.chdir(tmp_path)
     log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
     assert log["no_answer"] == {"threads": "RuntimeError: 1 threads"}
     assert "OPENBLAS_NUM_THREADS" not in os.environ  # of the caller
     assert "PYTHONSAFEPATH" not in os.environ
     assert log["tool"] == "tool"
-
-
-def test_a_file_where_it_is_called_is_no_module(tmp_path, monkeypatch):
-    """A folder of recordings may hold a re.py or a signal.py of somebody's own."""
-    sealed = write_set(tmp_path / "set", {"well": case()})
-    for name in ("re", "signal", "json"):
-        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
-    monkeypatch.chdir(tmp_path)
-    log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
-    assert log["no_answer"] == {}
+    with pytest.raises(InputError, match="already exists"):
+        run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    again = run_cases(sealed, tmp_path / "entry", workers=1, force=True, diagnose=tool)
+    assert again["no_answer"] == log["no_answer"]

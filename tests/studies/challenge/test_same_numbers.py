@@ -23,13 +23,13 @@ from tsas_studies.challenge.rig.tendon import simulate as run_rig
 
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")
 SENSORS = replace(PERFECT, rate_Hz=100.0)
-MOTION = motion("b", 400.0)
+MOTION = motion("b", 200.0)
 _, _, RADIUS, BEND = RUNS["b"]
 VIRTUAL = VirtualRig(
     total_bend_rad=BEND,
     sheath_length_mm=RADIUS * BEND,
     load_end=LoadEnd(loose_share=LOOSE_SHARE),
-    cells=100,
+    cells=60,
 )
 MODEL = Rig(0.125, VIRTUAL.axial_stiffness, 1.579, RADIUS * BEND, BEND, 25.0)
 SESSION_S = 600.0
