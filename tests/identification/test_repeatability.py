@@ -11,7 +11,7 @@ from tsas_cli.identification.repeatability import repeatability
 from tsas_cli.recordings.manifest import RigSheet, Run
 from tsas_cli.recordings.recording import Recording
 
-RATE_HZ, NOISE_N = 193, 0.1  # samples that fall between those of other strokes
+RATE_HZ, NOISE_N, NOISE_MM = 193, 0.1, 0.005  # samples that fall between those of other strokes
 
 
 def run(amplitudes_mm=(10.0,) * 8, *, offsets_N=None, seed=0, stroke_s=2.0, run_id="a", **told):
@@ -27,6 +27,7 @@ def run(amplitudes_mm=(10.0,) * 8, *, offsets_N=None, seed=0, stroke_s=2.0, run_
     pulling = np.where(stroke % 2 == 0, 1.0, -1.0)
     f_N = 50.0 + 2.0 * x_mm + 10.0 * pulling + offsets[stroke]
     columns = {"time_s": time_s, "x_in_mm": x_mm, "f_in_N": f_N + rng.normal(0, NOISE_N, x_mm.size)}
+    columns["x_out_mm"] = x_mm - 0.5 * pulling + rng.normal(0, NOISE_MM, x_mm.size)
     return prepare(Recording(Run(id=run_id, file="a", sha256="0" * 64, **told), columns))
 
 
@@ -46,6 +47,13 @@ def test_what_differs_from_stroke_to_stroke_is_in_it():
     # Without the first stroke three pull, with 1, 0 and -1 N, and four release, with 0, 1, 0, -1 N.
     variance = (2.0 + 2.0) / (2 + 3) + NOISE_N**2
     assert one == pytest.approx(math.sqrt(variance), rel=0.05)
+
+
+def test_x_out_repeats_where_strokes_begin_and_end_a_little_apart():
+    """By 0.1 mm, twenty times the noise of x_out."""
+    one = run((10.0, 9.9, 10.0, 10.1) * 3)
+    (channels,) = repeatability([one], [fitted_to(RigSheet(), [one])])
+    assert channels["x_out_mm"] == pytest.approx(NOISE_MM, rel=0.3)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """The repeatability of a channel: its scatter between strokes of the same motion.
 
-Strokes are compared at the same travel since their reversal, pulling and releasing apart. No model
-that is driven by the same motion predicts better than that.
+Strokes are compared at the same travel since their reversal, pulling and releasing apart; x_out
+counts from where x_in turns back. No model that is driven by the same motion predicts better.
 """
 
 import math
@@ -23,12 +23,12 @@ AVERAGED = 1.0 / 3.0  # of the variance of white noise, between two samples: ∫
 
 @dataclass(frozen=True)
 class StrokeAtTravel:
-    """One stroke: its ends [mm], its duration [s], and each channel at `POINTS` of its travel."""
+    """One stroke: its ends [mm], its duration [s]; each channel's travels [mm] and values."""
 
     start_mm: float
     end_mm: float
     duration_s: float
-    channels: Mapping[str, Floats]
+    channels: Mapping[str, tuple[Floats, Floats]]
 
     def repeats(self, other: "StrokeAtTravel") -> bool:
         """Say whether it is the same motion as another stroke."""
@@ -81,7 +81,12 @@ def _scatter(
         if not way:
             continue
         first = max(way, key=lambda stroke: sum(other.repeats(stroke) for other in way))
-        same = [s.channels[channel] for s in strokes if channel in s.channels and s.repeats(first)]
+        at = (np.arange(POINTS) + 0.5) / POINTS * abs(first.end_mm - first.start_mm)
+        same = [
+            np.interp(at, *s.channels[channel])
+            for s in strokes
+            if channel in s.channels and s.repeats(first)
+        ]
         if len(same) > 1:
             squares += float(np.sum((np.array(same) - np.mean(same, axis=0)) ** 2))
             freedom += (len(same) - 1) * POINTS
@@ -98,21 +103,14 @@ def _strokes(run: Prepared) -> list[StrokeAtTravel]:
     for start, end in zip(x_in.reversals[1:-1], x_in.reversals[2:], strict=True):
         rows = slice(int(start), int(end) + 1)
         x_mm, time_s = x_in.values[rows], run.time_s[rows]
-        channels = {
-            name: at
-            for name, values in run.measured.items()
-            if (at := _at_travel(np.abs(x_mm - x_mm[0]), values[rows])) is not None
-        }
+        channels = {}
+        for name, values in run.measured.items():
+            finite = np.isfinite(values[rows])
+            if np.count_nonzero(finite) >= FEWEST_SAMPLES:
+                from_mm = x_mm[0] if name == "x_out_mm" else 0.0
+                travel_mm = np.abs(x_mm - x_mm[0])[finite]
+                channels[name] = (travel_mm, values[rows][finite] - from_mm)
         if not run.in_gap[rows].any():
             duration_s = float(time_s[-1] - time_s[0])
             out.append(StrokeAtTravel(float(x_mm[0]), float(x_mm[-1]), duration_s, channels))
     return out
-
-
-def _at_travel(travel_mm: Floats, values: Floats) -> Floats | None:
-    """Return a channel at equal steps of a stroke's travel, None with too few samples."""
-    finite = np.flatnonzero(np.isfinite(values))
-    if finite.size < FEWEST_SAMPLES:
-        return None
-    at = (np.arange(POINTS) + 0.5) / POINTS * travel_mm[-1]
-    return np.asarray(np.interp(at, travel_mm[finite], values[finite]))
