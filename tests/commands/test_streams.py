@@ -23,7 +23,10 @@ VERBS = {  # of commands whose function has another name
     "challenge run": "tsas_studies.challenge.stages.run_set",
     "challenge score": "tsas_studies.challenge.stages.score_set",
 }
-NEEDED_BESIDES = {"ingest": ("--map", "some", "--out", "some")}  # but for --guess
+NEEDED_BESIDES = {
+    "ingest": ("--map", "some", "--out", "some"),  # but for --guess
+    "predict": ("some",),  # a model and a dataset
+}
 OTHERS = ("doctor", "init", "view")  # commands about the program itself and its window
 STAGES = [name for name in CALLS if name not in OTHERS]
 BAR = """

@@ -137,8 +137,10 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
             out[row] = (neutral | fitted | changes).get(name, 0.0)
         return out
 
-    measured = {"f_in_N": np.array([3.0, -50.0]), "f_out_N": np.array([20.0, 5.0])}
-    run = SimpleNamespace(samples=measured, run=SimpleNamespace(measured=measured))
+    # What is not compared, as between the samples of a slower clock, is no reading.
+    measured = {"f_in_N": np.array([3.0, np.nan, -50.0]), "f_out_N": np.array([20.0, 5.0, 900.0])}
+    samples = {"f_in_N": np.array([0, 2]), "f_out_N": np.array([0, 1])}
+    run = SimpleNamespace(samples=samples, run=SimpleNamespace(measured=measured))
     bench = SimpleNamespace(
         channels=["f_in_N", "f_out_N", "x_out_mm"],
         closed=[run],

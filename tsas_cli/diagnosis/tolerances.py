@@ -59,7 +59,7 @@ def largest_forces(bench: Bench) -> dict[str, float]:
     """Return the largest reading of each force sensor that is compared [N]."""
     return {
         name: max(
-            float(np.abs(run.run.measured[name]).max())
+            float(np.abs(run.run.measured[name][run.samples[name]]).max())
             for run in bench.closed
             if name in run.samples
         )
