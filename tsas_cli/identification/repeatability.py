@@ -1,7 +1,7 @@
 """The repeatability of a channel: its scatter between strokes of the same motion.
 
 Strokes are compared at the same travel since their reversal, pulling and releasing apart; x_out
-counts from where x_in turns back. No model that is driven by the same motion predicts better.
+counts from the reversal of x_in. No model that is driven by the same motion predicts better.
 """
 
 import math
