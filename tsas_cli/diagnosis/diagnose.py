@@ -149,8 +149,10 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
     before = judged.trial(frozenset(), on_mesh=bench.on_mesh(named))
     final = judged.trial(named)
     after = start = proven.after
-    tolerated = tolerances(bench, before)
+    nominal = list(proven.estimates)
     if named:
+        tolerated = tolerances(bench, before)
+        nominal = estimates_with_tolerances(judged, before, tolerated)
         start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
     verdict = verdict_of(
@@ -163,7 +165,7 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
         verdict,
         reason_of(verdict, causes, stand_ins, start, after),
         Model(proven.estimates).over(base.model),
-        Model(tuple(estimates_with_tolerances(judged, before, tolerated))).over(base.model),
+        Model(tuple(nominal)).over(base.model),
         causes,
         stand_ins,
         channel_errors(bench, *errors, start, after),

@@ -23,8 +23,8 @@ from tsas_cli.support.arrays import Floats
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
-ALIKE = 0.1  # relative difference of two offsets within which they are alike
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
+ALIKE = 0.1  # relative difference of two offsets within which they are alike
 
 # A law of friction μ(T + c) is the capstan's with c added to both forces.
 OFFSET, OFFSETS = "force_sensor_offset", ("f_in_offset_N", "f_out_offset_N")

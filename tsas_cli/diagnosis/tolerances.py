@@ -4,10 +4,13 @@ Friction that differs from run to run, load cells whose scale is off or bent or 
 force, a sheath that is bent unevenly.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.screening import projector
 from tsas_cli.support.arrays import Floats, Indices
 
 FRICTION = "friction_coefficient"
@@ -83,8 +86,7 @@ def without_tolerances(
     most = np.repeat((np.inf, PLAUSIBLE), (own.shape[1], tolerated.shape[1]))
     if not most.size:
         return residual
-    J = trial.solution.jacobian[:, ~trial.solution.at_bound]
-    own = _beside(J, np.column_stack((own, tolerated)))
+    own = _beside(projector(trial), np.column_stack((own, tolerated)))
     root = np.linalg.cholesky(own.T @ own + np.eye(most.size))
     amounts = lsq_linear(root.T, np.linalg.solve(root, own.T @ residual), (-most, most)).x
     return np.asarray(residual - own @ amounts)
@@ -95,8 +97,9 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats) -> boo
     own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
     J, values = trial.solution.jacobian, trial.solution.values
     neutral = [QUANTITIES[u.name].scaled(QUANTITIES[u.name].default) for u in trial.unknowns]
-    others = J[:, ~own & ~trial.solution.at_bound]
-    change = _beside(others, (J[:, own] @ (values - neutral)[own])[:, None])[:, 0]
+    held = replace(trial.solution, at_bound=trial.solution.at_bound | own)
+    others = projector(replace(trial, solution=held))
+    change = _beside(others, J[:, own] @ (values - neutral)[own])
     columns = _beside(others, columns)
     amounts = np.linalg.solve(columns.T @ columns + np.eye(columns.shape[1]), columns.T @ change)
     left = change - columns @ amounts
@@ -104,9 +107,8 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats) -> boo
     return plausible and float(left @ left) < 0.5 * float(change @ change)
 
 
-def _beside(J: Floats, columns: Floats) -> Floats:
-    """Return columns without what free parameters imitate, by their Jacobian."""
-    basis = np.linalg.qr(J)[0]
+def _beside(basis: Floats, columns: Floats) -> Floats:
+    """Return columns, shape (n,) or (n, m), without what an orthonormal basis spans."""
     return np.asarray(columns - basis @ (basis.T @ columns))
 
 
@@ -133,6 +135,5 @@ def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
     columns = friction_of_runs(trial, run)
     if not columns.shape[1]:
         return False
-    basis = np.linalg.qr(columns)[0]
-    left = column - basis @ (basis.T @ column)
+    left = _beside(np.linalg.qr(columns)[0], column)
     return float(left @ left) < 0.1 * float(column @ column)
