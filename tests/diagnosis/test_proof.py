@@ -37,6 +37,13 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
     assert said.startswith("may be zero: f_in_offset_N 0.05 [-0.01, 0.11] N")
 
 
+def test_an_interval_that_is_cut_at_the_neutral_value_holds_it():
+    cut = estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)
+    assert failures("drive_friction", (cut,), CLEAR, SAME, SAME, NOISE)
+    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)
+    assert not failures("drive_friction", (clear,), CLEAR, SAME, SAME, NOISE)
+
+
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
     sum_known = np.array([[1.0, -0.99], [-0.99, 1.0]])
     two = (

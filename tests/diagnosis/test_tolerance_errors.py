@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import tolerance_errors
-from tsas_cli.diagnosis.tolerance_errors import stderr_of_tolerances
+from tsas_cli.diagnosis.tolerance_errors import covariance_of_tolerances
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -26,8 +26,8 @@ def unsure(signature, truly=0.0):
         (), (Unknown("slope", None, 0.0, -9.0, 9.0, 1.0),), solution, (ROWS,) * RUNS, on_mesh=False
     )
     ways = np.column_stack((signature, np.zeros(X.size)))
-    (found,) = stderr_of_tolerances(trial, -ways, BLOCKS)
-    return found, abs(float(slope[0]))
+    ((found,),) = covariance_of_tolerances(trial, -ways, BLOCKS)
+    return float(np.sqrt(found)), abs(float(slope[0]))
 
 
 def test_what_looks_like_a_parameter_leaves_it_as_unsure_as_is_plausible():
@@ -69,7 +69,7 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
     solution = Solution(np.array([5.0, 6.0]), np.array([False, True]), residual, J, True, "", 1)
     unknowns = tuple(Unknown(n, None, 0.0, -9.0, 9.0, 1.0) for n in ("a", "b"))
     trial = HypothesisFit((), unknowns, solution, (6,), on_mesh=False)
-    found = stderr_of_tolerances(trial, ways, [np.arange(6)])
+    found = np.sqrt(np.diag(covariance_of_tolerances(trial, ways, [np.arange(6)])))
     first = (0.8 * -2.0) ** 2 + 0.8 * 0.25
     assert found == pytest.approx([np.sqrt(0.2**2 * first + 0.3**2 * 1.0), 0.0], rel=1e-6)
     assert len(given["names"]) == 4

@@ -152,7 +152,7 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
     nominal = list(proven.estimates)
     if named:
         tolerated = tolerances(bench, before)
-        nominal = estimates_with_tolerances(judged, before, tolerated)
+        nominal, _ = estimates_with_tolerances(judged, before, tolerated)
         start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
     verdict = verdict_of(

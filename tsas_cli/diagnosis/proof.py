@@ -160,7 +160,10 @@ def _may_be_none(
         away = e.value - neutral[e.name]
         if away == 0.0:
             continue
-        half = e.value - e.interval_low if away > 0.0 else e.interval_high - e.value
+        low, high = e.value - e.interval_low, e.interval_high - e.value
+        half = low if away > 0.0 else high
+        if half == abs(away):  # the interval is cut at the neutral value
+            half = max(low, high)
         deviations.append(away / half if half > 0.0 else 0.0)
         rows.append(row)
     if not rows:

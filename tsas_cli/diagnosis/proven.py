@@ -15,7 +15,7 @@ from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerance_errors import stderr_of_tolerances
+from tsas_cli.diagnosis.tolerance_errors import covariance_of_tolerances
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
     largest_forces,
@@ -24,7 +24,7 @@ from tsas_cli.diagnosis.tolerances import (
     within_tolerances,
 )
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.extension import HypothesisFit, correlation_of
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import estimates_of
 from tsas_cli.records.base import TWO_SIDED
@@ -88,10 +88,13 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     }
     at_residuals = signals_at_residuals(bench, final)
     tolerated = tolerances(bench, final)
-    estimates = estimates_with_tolerances(judged, final, tolerated)
+    estimates, correlation = estimates_with_tolerances(judged, final, tolerated)
     after = remainder(bench, final, judged.folds, at_residuals, tolerated)
     causes = tuple(
-        _cause(judged, name, estimates, held_out, at_residuals.signals, after.structure, tolerated)
+        _cause(
+            *(judged, name, estimates, correlation),
+            *(held_out, at_residuals.signals, after.structure, tolerated),
+        )
         for name in judged.rivals
     )
     return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, after)
@@ -101,6 +104,7 @@ def _cause(
     judged: Hypotheses,
     name: str,
     estimates: Sequence[Estimate],
+    correlation: Floats,
     held_out: Mapping[frozenset[str], HeldOutFit],
     signals: dict[str, Floats],
     structure: float,
@@ -108,24 +112,24 @@ def _cause(
 ) -> FoundCause:
     """Return an effect of the final set, with what it does not prove.
 
-    `structure` are the squares that the final set leaves and a regression explains,
-    `tolerated` what tolerances change there, shape (n, m).
+    `correlation` is that of all estimates, shape (p, p), `structure` the squares that the final set
+    leaves and a regression explains, `tolerated` what tolerances change there, shape (n, m).
     """
     named = judged.named
     fewer, all_of_them = held_out[named - {name}], held_out[named]
     gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
-    own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
+    at = [k for k, e in enumerate(estimates) if e.name.startswith(f"{name}.")]
+    own = tuple(estimates[k] for k in at)
     ids = tuple(run.run.run.id for run in judged.bench.closed)
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, tolerated)
     again = gain(fewer.squares, all_of_them.squares)
-    related = judged.trial(named).correlation([e.name for e in own])
     noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
     stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
         *(name, own, again, fewer.rmse, all_of_them.rmse, noise),
         tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
         stroke_mm=stroke_mm,
-        correlation=related,
+        correlation=correlation[np.ix_(at, at)],
     )
     law = "" if split is None else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
@@ -140,16 +144,19 @@ def _cause(
 
 def estimates_with_tolerances(
     search: Hypotheses, trial: HypothesisFit, tolerated: Floats
-) -> list[Estimate]:
-    """Return the estimates of a trial, with intervals that include what tolerances change."""
+) -> tuple[list[Estimate], Floats]:
+    """Return the estimates of a trial and their correlation, with what tolerances change."""
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
-    besides = stderr_of_tolerances(trial, of_others(trial, tolerated), counted)
-    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, besides))
+    by_tolerances = covariance_of_tolerances(trial, of_others(trial, tolerated), counted)
+    known = np.where(np.isfinite(fitted.stderr), fitted.stderr, 0.0)
+    by_noise = trial.correlation() * np.outer(known, known)
+    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, np.sqrt(np.diag(by_tolerances))))
     estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
-    return [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
+    estimates = [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
+    return estimates, correlation_of(by_noise + by_tolerances)
 
 
 def _with_data_sheet_interval(ratio: Estimate, trial: HypothesisFit) -> Estimate:

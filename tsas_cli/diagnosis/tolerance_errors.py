@@ -16,10 +16,10 @@ from tsas_cli.identification.fit import with_errors
 from tsas_cli.support.arrays import Floats, Indices
 
 
-def stderr_of_tolerances(
+def covariance_of_tolerances(
     trial: HypothesisFit, tolerated: Floats, blocks: Sequence[Indices]
 ) -> Floats:
-    """Return the standard error of a trial's scaled values by tolerances, shape (p,).
+    """Return the covariance of a trial's scaled values by tolerances, shape (p, p).
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def stderr_of_tolerances(
     trusted = 1.0 / (1.0 + stderr**2)  # weight against the prior, of standard deviation 1
     likely = np.clip(trusted * estimate, -PLAUSIBLE, PLAUSIBLE)
     moves = trial.moved_by(tolerated)
-    return np.asarray(np.sqrt(moves**2 @ (likely**2 + trusted * stderr**2)))
+    return np.asarray((moves * (likely**2 + trusted * stderr**2)) @ moves.T)
 
 
 def _estimated(

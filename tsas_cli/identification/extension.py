@@ -54,18 +54,13 @@ class HypothesisFit:
         moves[free] = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ changes)
         return moves
 
-    def correlation(self, names: Sequence[str]) -> Floats:
-        """Return the correlation of some unknowns, by name, shape (p, p)."""
+    def correlation(self) -> Floats:
+        """Return the correlation of the unknowns by noise alone, shape (p, p)."""
         J, free = self.solution.jacobian, ~self.solution.at_bound
         covariance = np.zeros((free.size, free.size))
         inverse = np.linalg.pinv(J[:, free].T @ J[:, free], hermitian=True)
         covariance[np.ix_(free, free)] = inverse
-        at = [next(j for j, u in enumerate(self.unknowns) if u.name == name) for name in names]
-        sizes = np.sqrt(np.diag(covariance))[at]
-        scale = np.where(sizes > 0.0, sizes, 1.0)
-        out: Floats = covariance[np.ix_(at, at)] / np.outer(scale, scale)
-        np.fill_diagonal(out, 1.0)  # also of what is at a bound
-        return out
+        return correlation_of(covariance)
 
     def with_columns(self, names: Sequence[tuple[str, int | None, float]], columns: Floats) -> Self:
         """Return the fit with further free unknowns at zero, by their columns, shape (n, m).
@@ -228,6 +223,15 @@ def reweighted_bench(bench: Bench, trial: HypothesisFit) -> Bench:
         meshed=tuple(meshed(e, NODES) for e in errors),
         coarse=tuple(meshed(e, COARSE_NODES) for e in errors),
     )
+
+
+def correlation_of(covariance: Floats) -> Floats:
+    """Return the correlation for a covariance; what does not vary is correlated with nothing."""
+    sizes = np.sqrt(np.diag(covariance))
+    scale = np.where(sizes > 0.0, sizes, 1.0)
+    out: Floats = covariance / np.outer(scale, scale)
+    np.fill_diagonal(out, 1.0)
+    return out
 
 
 def _pairs(trial: HypothesisFit) -> list[tuple[Unknown, float]]:
