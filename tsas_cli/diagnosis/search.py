@@ -99,11 +99,12 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
     step.ahead(REWEIGHTINGS + len(sets))
     for _ in range(REWEIGHTINGS):
         bench = reweighted_bench(bench, trial)
-        trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
+        trial = bench.fit(sorted(named), near=trial, on_mesh=mesh, values_only=True)
         step()
     trials = {}
+    known = {**found.trials, (named, mesh): trial}
     for names in sets:
-        near = found.trials.get((names, mesh), trial)
+        near = known.get((names, mesh), trial)
         trials[names, mesh] = bench.fit(sorted(names), near=near, on_mesh=mesh)
         step()
     squares = {key: held_out_squares(trial, found.folds) for key, trial in trials.items()}

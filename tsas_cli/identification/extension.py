@@ -82,6 +82,13 @@ class HypothesisFit:
         )
         return replace(self, unknowns=(*self.unknowns, *further), solution=extended)
 
+    def slopes_of(self, unknowns: Sequence[Unknown]) -> Floats:
+        """Return the Jacobian by some unknowns, shape (n, p), NaN for those of another fit."""
+        columns = {(u.name, u.run): j for j, u in enumerate(self.unknowns)}
+        at = [columns.get((u.name, u.run), len(columns)) for u in unknowns]
+        other = np.full((self.solution.residual.size, 1), np.nan)
+        return np.hstack((self.solution.jacobian, other))[:, at]
+
     @property
     def solver(self) -> str:
         """The name of the solver."""
@@ -124,6 +131,7 @@ class Bench:
         *,
         near: HypothesisFit | None = None,
         on_mesh: bool = False,
+        values_only: bool = False,
     ) -> HypothesisFit:
         """Return a fit of the free parameters of the base fit and those of the effects.
 
@@ -135,9 +143,11 @@ class Bench:
             Initial values of their parameters, in their units; else those of `near`, else each
             parameter's own.
         near
-            A trial with the initial values of the others.
+            A trial with the initial values and slopes of the others.
         on_mesh
             Whether to use the slip chain even where the closed form is valid.
+        values_only
+            Whether the Jacobian of the fit may be rough.
         """
         known = {} if near is None else {(u.name, u.run): float(v) for u, v in _pairs(near)}
         base = [replace(u, initial=known.get((u.name, u.run), u.initial)) for u in self.free]
@@ -158,7 +168,15 @@ class Bench:
         def residuals(k: int, values: Floats) -> Floats:
             return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, values))
 
-        solution = solve(unknowns, runs, residuals, tolerance=tolerance)
+        slopes = None if near is None else near.slopes_of(unknowns)
+        solution = solve(
+            unknowns,
+            runs,
+            residuals,
+            tolerance=tolerance,
+            known=slopes,
+            values_only=values_only,
+        )
         sizes = tuple(residuals(k, solution.values).size for k in range(runs))
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
 
