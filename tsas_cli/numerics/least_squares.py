@@ -20,7 +20,7 @@ from tsas_cli.support.arrays import Floats, Mask
 FIRST_DAMPING = 1e-4  # of the diagonal of the normal equations
 MOST_DAMPING = 1e8
 STEP = 1e-7  # change of all unknowns below which a step is the last
-LAST = 0.01  # of the tolerance, below which a step by calculated slopes is not worth its residual
+LAST = 0.01  # of the tolerance, below which a further step from known slopes is not worth its residual
 AS_PREDICTED = 0.5  # share of the predicted reduction, beyond which corrected slopes are kept
 
 
@@ -82,7 +82,7 @@ def least_squares(
         predicted = -2.0 * float(gradient @ step + 0.5 * step @ gram @ step)
         squares = float(r @ r)
         reliable = exact or values_only
-        if predicted <= tolerance * (LAST if exact and slopes is not None else 1.0) * squares:
+        if predicted <= tolerance * (LAST if reliable and slopes is not None else 1.0) * squares:
             if reliable:
                 return Minimum(x, r, J, True, "no step reduces the squares further", evaluations)
             J, exact = jacobian(x), True
