@@ -167,4 +167,4 @@ def _may_be_none(
         return True
     related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
     z = TWO_SIDED * np.array(deviations)
-    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= chdtri(len(rows), 0.05)
+    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= float(chdtri(len(rows), 0.05))

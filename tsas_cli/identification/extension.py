@@ -13,6 +13,7 @@ from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
 from tsas_cli.identification.unknowns import unknown_of
+from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
@@ -190,9 +191,11 @@ class Bench:
         scaled = [QUANTITIES[name].scaled(value) for name, value in changes.items()]
         at = np.concatenate((trial.solution.values, scaled))
         errors = self.coarse if trial.on_mesh else self.closed
-        return np.concatenate(
-            [run.residuals(rig_at(self.rigs[k], k, unknowns, at)) for k, run in enumerate(errors)]
-        )
+
+        def residuals(k: int) -> Floats:
+            return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, at))
+
+        return np.concatenate(each(residuals, range(len(errors)), at_once=trial.on_mesh))
 
     def unevenness(self, trial: HypothesisFit) -> Floats:
         """Return the sensitivity of a trial's residuals to an unevenly bent sheath.
@@ -239,7 +242,8 @@ def bench_of(base: FittedModel) -> Bench:
 
 def reweighted_bench(bench: Bench, trial: HypothesisFit) -> Bench:
     """Return a bench with the residuals weighted at a trial's model."""
-    errors = tuple(reweighted(e, bench.rig(trial, k)) for k, e in enumerate(bench.closed))
+    runs = range(len(bench.closed))
+    errors = tuple(each(lambda k: reweighted(bench.closed[k], bench.rig(trial, k)), runs))
     return replace(
         bench,
         closed=errors,

@@ -90,10 +90,11 @@ def jacobian(
         change: Floats = residuals(r, moved) - base[r]
         return change / float(moved[j] - values[j])
 
-    new = np.full(len(unknowns), True) if known is None else np.isnan(known).any(axis=0)
+    known = np.full((int(starts[-1]), len(unknowns)), np.nan) if known is None else known
+    new: Mask = np.asarray(np.isnan(known).any(axis=0))
     owned = [(r, j) for j, u in enumerate(unknowns) for r in range(runs) if u.run in (None, r)]
     places = [(r, j) for r, j in owned if new[j]]
-    out = np.zeros((int(starts[-1]), len(unknowns))) if known is None else np.where(new, 0.0, known)
+    out = np.where(new, 0.0, known)
     for (r, j), column in zip(places, each(slope, places, at_once=at_once), strict=True):
         out[starts[r] : starts[r + 1], j] = column
     return out

@@ -20,7 +20,7 @@ from tsas_cli.support.arrays import Floats, Mask
 FIRST_DAMPING = 1e-4  # of the diagonal of the normal equations
 MOST_DAMPING = 1e8
 STEP = 1e-7  # change of all unknowns below which a step is the last
-LAST = 0.01  # of the tolerance, below which a further step from known slopes is not worth its residual
+LAST = 0.01  # of the tolerance, below which a step is not worth its residual; with known slopes
 AS_PREDICTED = 0.5  # share of the predicted reduction, beyond which corrected slopes are kept
 
 
