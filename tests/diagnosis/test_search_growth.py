@@ -33,7 +33,7 @@ class Bench:
     def on_mesh(self, effects):
         return bool(set(effects) & set(self.mesh))
 
-    def fit(self, effects, start=None, *, near=None, on_mesh=False):
+    def fit(self, effects, start=None, *, near=None, on_mesh=False, values_only=False):
         self.fits.append((frozenset(effects), near, on_mesh))
         solution = SimpleNamespace(converged=True, residual=np.ones(SIZE))
         value = self.mean_squares.get(frozenset(effects), 8.0)

@@ -128,8 +128,8 @@ def solved_at(values):
     """Return a fit that ends where it is told, and remembers what it was asked."""
     asked = {}
 
-    def solve(unknowns, runs, residuals, *, tolerance):
-        asked.update(unknowns=unknowns, runs=runs, tolerance=tolerance)
+    def solve(unknowns, runs, residuals, *, tolerance, known, values_only):
+        asked.update(unknowns=unknowns, runs=runs, tolerance=tolerance, known=known)
         found = [residuals(k, np.array(values)) for k in range(runs)]
         asked["found"] = found
         size = sum(f.size for f in found)
@@ -171,10 +171,13 @@ def test_near_a_trial_it_begins_there_and_is_as_rough_as_that_missed(
         [zero_of(0), zero_of(1), unknown_of(PROXIMAL)],
         [7.0, 8.0, 9.0],
         np.full(3, np.sqrt(mean_square)),
+        J=np.arange(9.0).reshape(3, 3),
     )
     trial = bench().fit(["free_tendon"], near=near)
     assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
     assert asked["tolerance"] == pytest.approx(tolerance)
+    np.testing.assert_array_equal(asked["known"][:, :3], np.arange(9.0).reshape(3, 3))
+    assert np.isnan(asked["known"][:, 3]).all()
     told = bench().fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
     assert told.unknowns[2].initial == pytest.approx(0.5)
 

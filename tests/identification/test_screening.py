@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.effects import FREE_TENDON, STRIBECK_FRICTION
 from tsas_cli.identification.fit import Unknown
-from tsas_cli.identification.screening import projector, screen
+from tsas_cli.identification.screening import projector, refined, screen, screen_again
 
 RNG = np.random.default_rng(7)
 N = 60
@@ -75,6 +75,28 @@ def test_the_amounts_are_those_that_take_the_residual_away():
     )
     own = OWN - basis @ (basis.T @ OWN)
     np.testing.assert_allclose(found.signatures, own, atol=1e-9)
+
+
+def test_known_changes_are_screened_again_without_a_simulation_and_refined_by_one():
+    """At another trial the same changes explain another residual; a third of them, after one."""
+    residual = -(2.0 * OWN[:, 0] + 0.5 * OWN[:, 1])
+    basis = np.zeros((N, 0))
+    known = screen(Bench(FREE_TENDON), trial_of(residual), FREE_TENDON, basis)
+    other = trial_of(-OWN[:, 1])
+    again = screen_again(known, other, basis)
+    assert again.part == pytest.approx(1.0, abs=1e-6)
+    _, distal = FREE_TENDON.parameters
+    assert again.initial[f"free_tendon.{distal.name}"] == pytest.approx(distal.start, rel=1e-4)
+
+    class Weaker(Bench):
+        def errors_at(self, trial, values):
+            full = super().errors_at(trial, values)
+            return trial.solution.residual + (full - trial.solution.residual) / 3.0
+
+    anew = refined(Weaker(FREE_TENDON), other, again, basis)
+    three = pytest.approx(3.0 * distal.start, rel=1e-4)
+    assert anew.initial[f"free_tendon.{distal.name}"] == three
+    np.testing.assert_allclose(anew.changes[anew.values], OWN / 3.0, atol=1e-9)
 
 
 def test_a_length_cannot_be_negative_nor_ten_times_the_plausible_one():

@@ -45,6 +45,40 @@ def test_it_is_scipys_minimum_with_and_without_a_bound_that_holds(upper_rate):
     np.testing.assert_allclose(found.jacobian, slopes(found.values))
 
 
+def test_slopes_that_are_nearly_known_lead_to_the_same_minimum_by_fewer_jacobians():
+    data, asked = decay([2.0, 0.5, 3.0]), []
+
+    def counted(p):
+        asked.append(p)
+        return slopes(p)
+
+    start, near = np.array([1.9, 0.45, 2.95]), slopes([1.7, 0.6, 2.8])
+    found = least_squares(
+        lambda p: decay(p) - data, counted, start, FREE, tolerance=1e-9, most=100, slopes=near
+    )
+    np.testing.assert_allclose(found.values, [2.0, 0.5, 3.0], rtol=1e-6)
+    np.testing.assert_allclose(found.jacobian, slopes(found.values), atol=1e-3)
+    with_all, without = len(asked), found.evaluations
+    assert with_all < without
+    asked.clear()
+    known = {"slopes": near, "values_only": True}
+    rough = least_squares(
+        lambda p: decay(p) - data, counted, start, FREE, tolerance=1e-9, most=100, **known
+    )
+    np.testing.assert_allclose(rough.values, [2.0, 0.5, 3.0], rtol=1e-4)
+    assert len(asked) < with_all
+
+
+def test_slopes_that_are_known_wrongly_are_calculated_where_no_step_helps():
+    data = decay([2.0, 0.5, 3.0])
+    start = np.array([1.0, 0.1, 2.5])
+    found = least_squares(
+        *(lambda p: decay(p) - data, slopes, start, FREE),
+        tolerance=1e-9, most=100, slopes=-slopes(start),
+    )  # fmt: skip
+    np.testing.assert_allclose(found.values, [2.0, 0.5, 3.0], rtol=1e-6)
+
+
 def test_a_start_outside_of_the_bounds_is_moved_inside():
     bounds = (np.zeros(3), np.array([5.0, 1.0, 4.0]))
     found, _ = fitted([2.0, 0.5, 3.0], [9.0, -1.0, 2.9], bounds)

@@ -151,7 +151,7 @@ def _may_be_none(
 
     Two offsets that only their sum is known of may each be zero, and not both.
     """
-    from scipy.stats import chi2
+    from scipy.special import chdtri
 
     deviations, rows = [], []
     for row, e in enumerate(estimates):
@@ -170,4 +170,4 @@ def _may_be_none(
         return True
     related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
     z = TWO_SIDED * np.array(deviations)
-    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= chi2.ppf(0.95, len(rows))
+    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= float(chdtri(len(rows), 0.05))

@@ -78,6 +78,10 @@ def _solved(
         for u, v, is_free in zip(trial.unknowns, values, free, strict=True)
         if is_free
     ]
+    known = trial.solution.jacobian[np.concatenate(kept)][:, free]
+    fitted = solve(
+        unknowns, len(runs), residuals, tolerance=TOLERANCE, known=known, values_only=True
+    )
     out = values.copy()
-    out[free] = solve(unknowns, len(runs), residuals, tolerance=TOLERANCE).values
+    out[free] = fitted.values
     return out

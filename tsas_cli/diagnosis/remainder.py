@@ -29,6 +29,7 @@ FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
 FAR, FARTHEST = 4.0, 10.0  # standard deviations, and where one error counts for no more
 FEWEST_FAR = 8  # errors that far: fewer may be a reversal out of place
+UPPER_QUARTILE = 0.67449  # of the normal distribution, in standard deviations
 BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run with brief errors
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
@@ -153,9 +154,8 @@ def _is_brief(errors: Floats) -> bool:
 
     Noise is as large at any time, and seldom far beyond its own standard deviation.
     """
-    from scipy.stats import median_abs_deviation
-
-    size = np.minimum(np.abs(errors) / median_abs_deviation(errors, scale="normal"), FARTHEST)
+    sd = float(np.median(np.abs(errors - np.median(errors)))) / UPPER_QUARTILE
+    size = np.minimum(np.abs(errors) / sd, FARTHEST)
     beyond = np.where(size > FAR, size, 0.0) ** 2
     brief = np.count_nonzero(beyond) >= FEWEST_FAR and float(np.mean(beyond)) > BRIEF
     return bool(brief) and float(np.mean(errors**2)) > 1.0 + LEAST_SLOW

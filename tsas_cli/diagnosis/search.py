@@ -28,7 +28,7 @@ from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.screening import Screened, projector, screen
+from tsas_cli.identification.screening import Screened, projector, refined, screen, screen_again
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -40,6 +40,7 @@ LEAST = 0.003  # least reduction of the nominal model's excess by a further caus
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
 LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain to be fitted
 SHARE_OF_BEST = 0.2  # the same, of the share of the best signature
+ROUGH = 0.5  # the same, of a share by a signature of another set of effects
 LINEAR = 0.4  # the same, of the reduction that the effect has to make; at most 2.5 times as much
 ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
 REWEIGHTINGS = 3  # iterations of new weights and a new fit of the named effects
@@ -99,11 +100,12 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
     step.ahead(REWEIGHTINGS + len(sets))
     for _ in range(REWEIGHTINGS):
         bench = reweighted_bench(bench, trial)
-        trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
+        trial = bench.fit(sorted(named), near=trial, on_mesh=mesh, values_only=True)
         step()
     trials = {}
+    known = {**found.trials, (named, mesh): trial}
     for names in sets:
-        near = found.trials.get((names, mesh), trial)
+        near = known.get((names, mesh), trial)
         trials[names, mesh] = bench.fit(sorted(names), near=near, on_mesh=mesh)
         step()
     squares = {key: held_out_squares(trial, found.folds) for key, trial in trials.items()}
@@ -232,19 +234,34 @@ class Search:
         return sorted(found, key=lambda f: -f[1].part)
 
     def screen(self, names: Names) -> list[Screened]:
-        """Return all further effects screened linearly, the one that explains most first."""
+        """Return all further effects screened linearly, the one that explains most first.
+
+        An effect changes the residuals of two sets alike: what explains little with the changes
+        known from the nearest set is not simulated anew.
+        """
         if names not in self.screened:
-            bases = {}
-            out = []
+            near = min(self.screened, key=lambda other: len(other ^ names), default=None)
+            known = {} if near is None else {s.effect.name: s for s in self.screened[near]}
             further = [effect for effect in self.effects if effect.name not in names]
+            trials = {
+                mesh: self.trial(names, on_mesh=mesh)
+                for mesh in {self.bench.on_mesh([*names, effect.name]) for effect in further}
+            }
+            at = {mesh: (trial, projector(trial)) for mesh, trial in trials.items()}
             self.step.ahead(len(further))
+            rough, out = [], []
             for effect in further:
-                mesh = self.bench.on_mesh([*names, effect.name])
-                trial = self.trial(names, on_mesh=mesh)
-                if mesh not in bases:
-                    bases[mesh] = projector(trial)
-                out.append(screen(self.bench, trial, effect, bases[mesh]))
+                trial, basis = at[self.bench.on_mesh([*names, effect.name])]
+                if effect.name in known:
+                    rough.append(screen_again(known[effect.name], trial, basis))
+                else:
+                    out.append(screen(self.bench, trial, effect, basis))
                 self.step()
+            best = max((s.part for s in [*rough, *out]), default=0.0)
+            least = ROUGH * max(LEAST_SIGNATURE, SHARE_OF_BEST * best)
+            for s in rough:
+                trial, basis = at[self.bench.on_mesh([*names, s.effect.name])]
+                out.append(s if s.part < least else refined(self.bench, trial, s, basis))
             self.screened[names] = sorted(out, key=lambda s: -s.part)
         return self.screened[names]
 

@@ -155,7 +155,7 @@ def with_preload_correction(model: Model, runs: Sequence[Prepared]) -> Model:
 
     Its interval is a prediction interval for a further run; it needs two runs.
     """
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
     fitted = {e.run: e.value for e in model.estimates if e.name == "preload_N" and e.stderr}
     differences = [
@@ -168,7 +168,7 @@ def with_preload_correction(model: Model, runs: Sequence[Prepared]) -> Model:
         return model
     mean = float(np.mean(differences))
     spread = float(np.std(differences, ddof=1)) * (1.0 + 1.0 / count) ** 0.5
-    half = float(t.ppf(0.975, count - 1)) * spread
+    half = float(stdtrit(count - 1, 0.975)) * spread
     correction = Estimate(
         CORRECTION,
         mean,

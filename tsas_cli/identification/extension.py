@@ -13,6 +13,7 @@ from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
 from tsas_cli.identification.unknowns import unknown_of
+from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
@@ -77,6 +78,13 @@ class HypothesisFit:
         )
         return replace(self, unknowns=(*self.unknowns, *further), solution=extended)
 
+    def slopes_of(self, unknowns: Sequence[Unknown]) -> Floats:
+        """Return the Jacobian by some unknowns, shape (n, p), NaN for those of another fit."""
+        columns = {(u.name, u.run): j for j, u in enumerate(self.unknowns)}
+        at = [columns.get((u.name, u.run), len(columns)) for u in unknowns]
+        other = np.full((self.solution.residual.size, 1), np.nan)
+        return np.hstack((self.solution.jacobian, other))[:, at]
+
     @property
     def solver(self) -> str:
         """The name of the solver."""
@@ -119,6 +127,7 @@ class Bench:
         *,
         near: HypothesisFit | None = None,
         on_mesh: bool = False,
+        values_only: bool = False,
     ) -> HypothesisFit:
         """Return a fit of the free parameters of the base fit and those of the effects.
 
@@ -130,9 +139,11 @@ class Bench:
             Initial values of their parameters, in their units; else those of `near`, else each
             parameter's own.
         near
-            A trial with the initial values of the others.
+            A trial with the initial values and slopes of the others.
         on_mesh
             Whether to use the slip chain even where the closed form is valid.
+        values_only
+            Whether the Jacobian of the fit may be rough.
         """
         known = {} if near is None else {(u.name, u.run): float(v) for u, v in _pairs(near)}
         base = [replace(u, initial=known.get((u.name, u.run), u.initial)) for u in self.free]
@@ -153,7 +164,15 @@ class Bench:
         def residuals(k: int, values: Floats) -> Floats:
             return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, values))
 
-        solution = solve(unknowns, runs, residuals, tolerance=tolerance)
+        slopes = None if near is None else near.slopes_of(unknowns)
+        solution = solve(
+            unknowns,
+            runs,
+            residuals,
+            tolerance=tolerance,
+            known=slopes,
+            values_only=values_only,
+        )
         sizes = tuple(residuals(k, solution.values).size for k in range(runs))
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
 
@@ -167,9 +186,11 @@ class Bench:
         scaled = [QUANTITIES[name].scaled(value) for name, value in changes.items()]
         at = np.concatenate((trial.solution.values, scaled))
         errors = self.coarse if trial.on_mesh else self.closed
-        return np.concatenate(
-            [run.residuals(rig_at(self.rigs[k], k, unknowns, at)) for k, run in enumerate(errors)]
-        )
+
+        def residuals(k: int) -> Floats:
+            return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, at))
+
+        return np.concatenate(each(residuals, range(len(errors)), at_once=trial.on_mesh))
 
     def unevenness(self, trial: HypothesisFit) -> Floats:
         """Return the sensitivity of a trial's residuals to an unevenly bent sheath.
@@ -216,7 +237,8 @@ def bench_of(base: FittedModel) -> Bench:
 
 def reweighted_bench(bench: Bench, trial: HypothesisFit) -> Bench:
     """Return a bench with the residuals weighted at a trial's model."""
-    errors = tuple(reweighted(e, bench.rig(trial, k)) for k, e in enumerate(bench.closed))
+    runs = range(len(bench.closed))
+    errors = tuple(each(lambda k: reweighted(bench.closed[k], bench.rig(trial, k)), runs))
     return replace(
         bench,
         closed=errors,

@@ -74,8 +74,12 @@ def jacobian(
     residuals: Residuals,
     *,
     at_once: bool = True,
+    known: Floats | None = None,
 ) -> Floats:
-    """Return the Jacobian of all runs' residuals by finite differences, shape (n, p)."""
+    """Return the Jacobian of all runs' residuals by finite differences, shape (n, p).
+
+    Of `known` slopes, shape (n, p), only the columns with NaN are calculated.
+    """
     base = each(lambda r: residuals(r, values), range(runs), at_once=at_once)
     starts = np.concatenate(([0], np.cumsum([b.size for b in base])))
 
@@ -86,8 +90,11 @@ def jacobian(
         change: Floats = residuals(r, moved) - base[r]
         return change / float(moved[j] - values[j])
 
-    places = [(r, j) for j, u in enumerate(unknowns) for r in range(runs) if u.run in (None, r)]
-    out = np.zeros((int(starts[-1]), len(unknowns)))
+    known = np.full((int(starts[-1]), len(unknowns)), np.nan) if known is None else known
+    new: Mask = np.asarray(np.isnan(known).any(axis=0))
+    owned = [(r, j) for j, u in enumerate(unknowns) for r in range(runs) if u.run in (None, r)]
+    places = [(r, j) for r, j in owned if new[j]]
+    out = np.where(new, 0.0, known)
     for (r, j), column in zip(places, each(slope, places, at_once=at_once), strict=True):
         out[starts[r] : starts[r + 1], j] = column
     return out
@@ -128,24 +135,36 @@ def solve(
     *,
     tolerance: float,
     at_once: bool = True,
+    known: Floats | None = None,
+    values_only: bool = False,
 ) -> Solution:
     """Return the minimum of the squares of all runs' residuals within the bounds.
 
     `tolerance` is the share of the squares below which a reduction ends the search; `at_once`
-    whether simulations are long enough to run on threads.
+    whether simulations are long enough to run on threads. `known` are slopes near the initial
+    values, shape (n, p), with NaN in the columns of other unknowns; with `values_only` the
+    Jacobian of the solution is as rough.
     """
 
     def errors(values: Floats) -> Floats:
         return np.concatenate(each(lambda r: residuals(r, values), range(runs), at_once=at_once))
 
-    def slopes(values: Floats) -> Floats:
-        return jacobian(unknowns, runs, values, residuals, at_once=at_once)
+    def slopes(values: Floats, known: Floats | None = None) -> Floats:
+        return jacobian(unknowns, runs, values, residuals, at_once=at_once, known=known)
 
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])
     initial = np.array([u.initial for u in unknowns])
+    start = np.clip(initial, lower, upper)
     found = least_squares(
-        errors, slopes, initial, (lower, upper), tolerance=tolerance, most=MOST_EVALUATIONS
+        errors,
+        slopes,
+        start,
+        (lower, upper),
+        tolerance=tolerance,
+        most=MOST_EVALUATIONS,
+        slopes=None if known is None else slopes(start, known),
+        values_only=values_only,
     )
     near = NEARLY_BOUND * np.minimum(upper - lower, 1.0)
     at_bound = (found.values - lower < near) | (upper - found.values < near)

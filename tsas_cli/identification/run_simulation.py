@@ -24,7 +24,7 @@ from tsas_cli.support.arrays import Floats, Indices
 
 Predictions = dict[str, Floats]  # of each channel at all samples, shape (n,)
 
-CACHED_RIGS = 2  # whose solutions are cached: that of the last step, and of the one before
+CACHED_RIGS = 32
 
 
 @dataclass(frozen=True, eq=False)

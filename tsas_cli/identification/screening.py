@@ -6,7 +6,8 @@ of the residual on that, how much it could explain. Linear: the full fit that fo
 effects.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -24,13 +25,16 @@ class Screened:
     """One effect screened linearly: the share of the squares it could explain, initial values.
 
     `signatures` have the free parameters projected out, one column for each amplitude, shape
-    (n, p), in units of noise.
+    (n, p), in units of noise. `changes` has, for all values that were tried, those of the residuals
+    by each amplitude, shape (n, p); the best are at `values`.
     """
 
     effect: Effect
     part: float
     initial: dict[str, float]
     signatures: Floats
+    values: tuple[float, ...] = ()
+    changes: Mapping[tuple[float, ...], Floats] = field(default_factory=dict)
 
 
 def projector(trial: HypothesisFit) -> Floats:
@@ -49,33 +53,57 @@ def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) ->
 
     What the model cannot be simulated with explains nothing.
     """
-    residual = trial.solution.residual
-    without = bench.errors_at(trial, {})
-    amplitudes = [p for p in effect.parameters if not p.shape]
-    shapes = [p for p in effect.parameters if p.shape]
-    best = Screened(effect, -1.0, {}, np.zeros((residual.size, 0)))
-    for values in product(*(p.starts or (p.start,) for p in (*shapes, *amplitudes))):
-        at = {_name(effect, p): v for p, v in zip((*shapes, *amplitudes), values, strict=True)}
-        shape = {_name(effect, p): at[_name(effect, p)] for p in shapes}
-        columns, sizes = [], []
-        for p in amplitudes:
-            name = _name(effect, p)
-            columns.append(bench.errors_at(trial, shape | {name: at[name]}) - without)
-            sizes.append(at[name] - p.neutral)
-        signatures = np.array(columns).T
+    starts = product(*(p.starts or (p.start,) for p in _shapes_first(effect)))
+    changes = {values: _changes(bench, trial, effect, values) for values in starts}
+    return screen_again(Screened(effect, 0.0, {}, np.zeros(0), (), changes), trial, basis)
+
+
+def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screened:
+    """Return an effect screened at another trial with the changes that are known."""
+    effect, residual = known.effect, trial.solution.residual
+    parameters = _shapes_first(effect)
+    amplitudes = [p for p in parameters if not p.shape]
+    none = np.zeros((residual.size, 0))
+    best = replace(known, part=-1.0, initial={}, signatures=none, values=())
+    for values, signatures in known.changes.items():
         if not np.isfinite(signatures).all():
             continue
+        sizes = [v - p.neutral for v, p in zip(values, parameters, strict=True) if not p.shape]
         own = signatures - basis @ (basis.T @ signatures)
         amounts = _amounts(own, residual, amplitudes, sizes)
         remaining = residual + own @ amounts
         part = 1.0 - float(remaining @ remaining) / float(residual @ residual)
         if part > best.part:
-            initial = shape | {
+            initial = {_name(effect, p): v for p, v in zip(parameters, values, strict=True)}
+            initial |= {
                 _name(effect, p): p.neutral + a * size
                 for p, a, size in zip(amplitudes, amounts, sizes, strict=True)
             }
-            best = Screened(effect, part, initial, own)
+            best = replace(best, part=part, initial=initial, signatures=own, values=values)
     return best if best.initial else replace(best, part=0.0)
+
+
+def refined(bench: Bench, trial: HypothesisFit, rough: Screened, basis: Floats) -> Screened:
+    """Return an effect with its best shape screened anew at a trial."""
+    new = {rough.values: _changes(bench, trial, rough.effect, rough.values)}
+    best = screen_again(replace(rough, changes=new), trial, basis)
+    return replace(best, changes={**rough.changes, **new})
+
+
+def _changes(
+    bench: Bench, trial: HypothesisFit, effect: Effect, values: tuple[float, ...]
+) -> Floats:
+    """Return the change of the residuals by each amplitude, the others neutral, shape (n, p)."""
+    without = bench.errors_at(trial, {})
+    at = {_name(effect, p): v for p, v in zip(_shapes_first(effect), values, strict=True)}
+    names = [_name(effect, p) for p in effect.parameters if not p.shape]
+    shape = {name: value for name, value in at.items() if name not in names}
+    columns = [bench.errors_at(trial, shape | {name: at[name]}) - without for name in names]
+    return np.array(columns).T
+
+
+def _shapes_first(effect: Effect) -> list[Parameter]:
+    return sorted(effect.parameters, key=lambda p: not p.shape)
 
 
 def _amounts(

@@ -68,7 +68,7 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     block
         The number of the block that each row belongs to, shape (n,), counted from 0.
     """
-    from scipy.stats import t
+    from scipy.special import stdtrit  # a fifth of the time that scipy.stats takes to load
 
     p = jacobian.shape[1]
     bread = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
@@ -88,4 +88,4 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     squares = np.maximum(moves**2, 1e-150)
     freedom = 3.0 * squares.sum(axis=0) ** 2 / np.sum(squares**2, axis=0)
     moving = np.sum(squares > 1e-6 * squares.max(axis=0), axis=0)
-    return covariance, t.ppf(0.975, np.clip(freedom, 1.0, np.maximum(moving - 1, 1)))
+    return covariance, stdtrit(np.clip(freedom, 1.0, np.maximum(moving - 1, 1)), 0.975)

@@ -4,6 +4,10 @@ Each step solves the normal equations of a few unknowns, which for tens of thous
 is a hundred times cheaper than the decompositions of the whole Jacobian in scipy's
 `least_squares`; simulations dominate the cost. An unknown that reaches its bound stays there while
 the gradient points outwards (active set, projected steps).
+
+With slopes that are known nearly, from another fit, the Jacobian is corrected after each step by
+what the step has shown (Broyden 1965), and calculated where steps fail or reduce the squares by
+less than predicted, and at the end.
 """
 
 from collections.abc import Callable
@@ -16,11 +20,16 @@ from tsas_cli.support.arrays import Floats, Mask
 FIRST_DAMPING = 1e-4  # of the diagonal of the normal equations
 MOST_DAMPING = 1e8
 STEP = 1e-7  # change of all unknowns below which a step is the last
+LAST = 0.01  # of the tolerance, below which a step is not worth its residual; with known slopes
+AS_PREDICTED = 0.5  # share of the predicted reduction, beyond which corrected slopes are kept
 
 
 @dataclass(frozen=True)
 class Minimum:
-    """The minimum: unknowns (p,), with the residual (n,) and the Jacobian (n, p) there."""
+    """The minimum: unknowns (p,), with the residual (n,) and the Jacobian (n, p) there.
+
+    The Jacobian is that before the last step where `slopes` were known.
+    """
 
     values: Floats
     residual: Floats
@@ -38,6 +47,8 @@ def least_squares(
     *,
     tolerance: float,
     most: int,
+    slopes: Floats | None = None,
+    values_only: bool = False,
 ) -> Minimum:
     """Return the minimum of half the sum of squares of the residual within bounds.
 
@@ -53,35 +64,56 @@ def least_squares(
         The share of the squares below which the actual or predicted reduction ends the search.
     most
         The number of evaluations of the residual after which the search ends.
+    slopes
+        Nearly the Jacobian at the start, shape (n, p), where it is known.
+    values_only
+        Whether the Jacobian at the minimum may be such a corrected one.
     """
     lower, upper = bounds
     x = np.clip(start, lower, upper)
-    r, J = residual(x), jacobian(x)
+    r, exact = residual(x), slopes is None
+    J = jacobian(x) if slopes is None else slopes
     damping, evaluations = FIRST_DAMPING, 1
     while evaluations < most:
         gradient, gram = J.T @ r, J.T @ J
         at_bound = ((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0))
         step = _step(gradient, gram, at_bound, damping)
         step = np.clip(x + step, lower, upper) - x
-        predicted = -float(gradient @ step + 0.5 * step @ gram @ step)
+        predicted = -2.0 * float(gradient @ step + 0.5 * step @ gram @ step)
         squares = float(r @ r)
-        if predicted <= 0.5 * tolerance * squares:
-            return Minimum(x, r, J, True, "no step reduces the squares further", evaluations)
+        reliable = exact or values_only
+        if predicted <= tolerance * (LAST if reliable and slopes is not None else 1.0) * squares:
+            if reliable:
+                return Minimum(x, r, J, True, "no step reduces the squares further", evaluations)
+            J, exact = jacobian(x), True
+            continue
         trial = residual(x + step)
         evaluations += 1
         reduction = squares - float(trial @ trial)
+        smallest = float(np.abs(step).max()) < STEP
         if reduction > 0.0:
-            x, r, J = x + step, trial, jacobian(x + step)
+            last = reliable and (reduction < tolerance * squares or smallest)
+            x, before, r = x + step, r, trial
+            exact = slopes is None or (reduction < AS_PREDICTED * predicted and not last)
+            J = jacobian(x) if exact else _corrected(J, step, r - before, np.diag(gram))
             damping = max(damping / 10.0, 1e-12)
-            if reduction < tolerance * squares or np.abs(step).max() < STEP:
+            if last:
                 return Minimum(x, r, J, True, "the last step is within the tolerance", evaluations)
-        else:
+        elif exact:
             damping *= 10.0
-            if np.abs(step).max() < STEP or damping > MOST_DAMPING:
+            if smallest or damping > MOST_DAMPING:
                 return Minimum(x, r, J, True, "no step reduces the squares", evaluations)
+        else:
+            J, exact = jacobian(x), True
     return Minimum(
         x, r, J, False, f"squares still decreasing after {most} evaluations", evaluations
     )
+
+
+def _corrected(J: Floats, step: Floats, change: Floats, weights: Floats) -> Floats:
+    """Return the slopes changed least, by weights of the unknowns, to predict a step's change."""
+    along = weights * step
+    return np.asarray(J + np.outer(change - J @ step, along / float(along @ step)))
 
 
 def _step(gradient: Floats, gram: Floats, at_bound: Mask, damping: float) -> Floats:

@@ -116,9 +116,9 @@ def _smoothed(values: Floats, width: int) -> Floats:
 
 def _half_interval(delays: Floats) -> float:
     """Return half the 95 % interval of the mean, each cycle one observation."""
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
-    quantile = float(t.ppf(0.975, delays.size - 1))
+    quantile = float(stdtrit(delays.size - 1, 0.975))
     return quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)
 
 
