@@ -34,7 +34,8 @@ VALUES = {
 
 def recorded(rig, motion=None, **more):
     """Return a run at a tenth of the usual rate."""
-    return prepared(rig, motion, sensors=Sensors(rate_Hz=100.0), **more)
+    moved = motion or sine(rate_Hz=200.0)
+    return prepared(rig, moved, sensors=Sensors(rate_Hz=100.0), **more)
 
 
 def found(result):
