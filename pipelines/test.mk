@@ -1,8 +1,7 @@
 # Everything that must hold before a change goes in: style, types, floors of the house, behaviour.
 # A module's tests stay together, since they share what takes long to make, the longest modules first
 # (tests/conftest.py); three at a time on two cores, since some wait for a browser or a viewer. Byte
-# code is kept even where the environment says otherwise: to make that of the tests takes each of the
-# three half a minute.
+# code is kept even where the environment says otherwise: to make that of the tests takes half a minute.
 test test-large: export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: lint
@@ -12,15 +11,21 @@ lint: setup
 	@$(BIN)/mypy --no-error-summary
 	@$(BIN)/lint-imports > .venv/lint-imports.txt || { cat .venv/lint-imports.txt; exit 1; }
 
-# The kernels' machine code is there, made from these sources by two processes: else each of the three
-# that run the tests would make all of it, at once.
+# The kernels' machine code and the tests' byte code are there, made beside the lint: else each of the
+# three that run the tests would make all of both, at once.
 KERNELS := .venv/kernels-made
-$(KERNELS): $(shell find $(addprefix tsas_cli/,controllers drive effects numerics physics) -name '*.py') | lint
-	@printf 'calibrate\ntrack\n' | xargs -P 2 -n 1 $(BIN)/python -m tests.kernels
+$(KERNELS): $(shell find $(addprefix tsas_cli/,controllers drive effects numerics physics) -name '*.py') | setup
+	@$(BIN)/python -m tests.kernels
+	@touch $@
+
+COLLECTED := .venv/tests-collected
+$(COLLECTED): $(shell find tests -name '*.py' 2> /dev/null) | setup
+	@$(BIN)/pytest --collect-only -qq > .venv/tests.txt || { cat .venv/tests.txt >&2; exit 1; }
 	@touch $@
 
 .PHONY: test
-test: lint $(KERNELS)  ## ruff, mypy, import-linter and pytest
+test: setup  ## ruff, mypy, import-linter and pytest
+	@$(MAKE) -j3 lint $(KERNELS) $(COLLECTED)
 	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 3 --dist loadscope --no-loadscope-reorder
 
 .PHONY: test-large

@@ -23,7 +23,7 @@ IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]
 
 @pytest.fixture(scope="module")
 def recorded():
-    return record(RIG, sensors=Sensors(rate_Hz=100.0))
+    return record(RIG, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0))
 
 
 @pytest.fixture

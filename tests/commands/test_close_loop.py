@@ -15,9 +15,18 @@ def rmse(row, model):
     return row["models"][model]["rmse_N"]["mean"]
 
 
-def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict, tmp_path):
+@pytest.fixture
+def slow(tmp_path):
+    """Settings of a loop that is quickly simulated."""
+    path = tmp_path / "slow.toml"
+    path.write_text("[sensor]\nrate_Hz = 500.0\n[loop]\nnodes = 10\n")
+    return path
+
+
+def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict, tmp_path, slow):
     out = tmp_path / "out"
-    done = strict("close-loop", "--cases", "friction_drift", "--seeds", "1", "--out", out, "--json")
+    call = ("close-loop", "--cases", "friction_drift", "--seeds", "1", "--out", out, "--json")
+    done = strict(*call, "--settings", slow)
     assert (done.returncode, done.stderr) == (0, "")
     summary = json.loads(done.stdout)
     assert json.loads((out / "closing.json").read_text(encoding="utf-8")) == summary
@@ -49,11 +58,9 @@ def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict
     assert effects[0] - effects[1] == {cause["effect"] for cause in case["named"]}
 
 
-def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tmp_path):
-    settings = tmp_path / "slow.toml"
-    settings.write_text("[sensor]\nrate_Hz = 500.0\n[loop]\nnodes = 10\n")
+def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tmp_path, slow):
     call = ("close-loop", "--hide", "friction_coefficient=0.125", "--seeds", "1")
-    done = strict(*call, "--settings", settings, "--out", tmp_path / "out", "--json")
+    done = strict(*call, "--settings", slow, "--out", tmp_path / "out", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     case = json.loads(done.stdout)["cases"][0]
     assert (case["verdict"], case["named"]) == ("sufficient", [])

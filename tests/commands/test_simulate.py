@@ -7,6 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.commands.documented import documented
+from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -16,7 +17,7 @@ TRUE = Rig(friction_coefficient=0.16, cells=60)
 
 @pytest.fixture(scope="module")
 def recorded():
-    return record(TRUE, sensors=Sensors(rate_Hz=200.0))
+    return record(TRUE, sine(rate_Hz=400.0), sensors=Sensors(rate_Hz=200.0))
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ from tsas_cli.diagnosis.rig_file import PlannedRun, RigFile
 from tsas_cli.diagnosis.simulated_runs import simulated_recordings
 from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.effects import EFFECTS
+from tsas_cli.effects.effect import Effect
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.manifest import Manifest
@@ -55,9 +56,11 @@ def prepared(file: RigFile) -> tuple[Manifest, list[Prepared]]:
     return manifest, [prepare(r, FIRST) for r in recordings]
 
 
-def seen(*runs: PlannedRun, **noise: float) -> dict[str, Visibility]:
-    """Return how each cause is seen in some runs, by its name."""
+def seen(
+    *runs: PlannedRun, among: tuple[Effect, ...] = EFFECTS, **noise: float
+) -> dict[str, Visibility]:
+    """Return how each of some causes is seen in some runs, by its name."""
     manifest, there = prepared(rig_file(*runs, **noise))
     model = data_sheet(manifest)
     part = joined_runs(there, [], model, model).part()
-    return {s.cause.name: s for s in part.seen(EFFECTS, EFFECTS)}
+    return {s.cause.name: s for s in part.seen(among, among)}

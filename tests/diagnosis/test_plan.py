@@ -11,7 +11,14 @@ from tsas_cli.diagnosis import further_runs
 from tsas_cli.diagnosis import plan as planning
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.diagnosis.plan import plan_rig, propose
-from tsas_cli.effects import EFFECTS
+from tsas_cli.effects import (
+    CHANNEL_DELAY,
+    DRIVE_FRICTION,
+    EFFECTS,
+    LOAD_FRICTION,
+    LOAD_INERTIA,
+    VISCOUS_FRICTION,
+)
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.joint_fit import solve_fit
@@ -24,12 +31,6 @@ PERIODS = 4  # 8 strokes: 7 are the least that is planned from
 RATE_HZ = 40.0  # of a plan, which looks at further runs too
 FEW = ("a fast sine", "fast ramps", "a long run")  # all: tests/commands/test_plan.py, large
 VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
-
-
-@pytest.fixture(scope="module")
-def one_speed():
-    """Ramps at one speed."""
-    return seen(run(10.0, motion="ramps"))
 
 
 @pytest.fixture(scope="module")
@@ -59,17 +60,19 @@ def plan(few):
 
 
 def test_a_mass_does_not_show_where_nothing_speeds_up():
-    assert seen(run(1.0, periods=3))[INERTIA].found == math.inf
+    assert seen(run(1.0, periods=3), among=(LOAD_INERTIA,))[INERTIA].found == math.inf
 
 
 def test_a_fast_run_shows_a_smaller_mass_and_less_viscosity(slow):
-    both = seen(run(5.0), run(40.0, "b"))
+    both = seen(run(5.0), run(40.0, "b"), among=(LOAD_INERTIA, VISCOUS_FRICTION))
     assert both[INERTIA].found < 0.1 * slow[INERTIA].found
     assert both[VISCOUS].found < 0.5 * slow[VISCOUS].found
 
 
-def test_two_speeds_tell_viscosity_from_friction_that_knows_no_speed(one_speed):
-    two = seen(run(10.0, motion="ramps"), run(20.0, "b", motion="ramps"))
+def test_two_speeds_tell_viscosity_from_friction_that_knows_no_speed():
+    among = (DRIVE_FRICTION, LOAD_FRICTION, VISCOUS_FRICTION)
+    first, second = run(10.0, motion="ramps"), run(20.0, "b", motion="ramps")
+    one_speed, two = seen(first, among=among), seen(first, second, among=among)
     for rival in ("drive_friction", "load_friction"):
         assert one_speed[VISCOUS].distinct[rival] > 2.0 * one_speed[VISCOUS].found
         assert two[VISCOUS].distinct[rival] < 1.5 * two[VISCOUS].found
@@ -89,7 +92,7 @@ def test_a_free_tendon_at_the_drive_hides_in_a_soft_drive_and_the_other_way_roun
 
 def test_noise_of_a_channel_hides_what_that_channel_shows(slow):
     """Three times the noise of x_out: its delay must be three times as long, no other's."""
-    noisy = seen(run(5.0), x_out_mm=0.03)
+    noisy = seen(run(5.0), among=(CHANNEL_DELAY,), x_out_mm=0.03)
     ratio = {
         name: noisy[f"channel_delay.{name}_delay_s"].found
         / slow[f"channel_delay.{name}_delay_s"].found

@@ -33,8 +33,9 @@ VALUES = {
 
 
 def recorded(rig, motion=None, **more):
-    """Return a run at a quarter of the usual rate."""
-    return prepared(rig, motion, sensors=Sensors(rate_Hz=250.0), **more)
+    """Return a run at a tenth of the usual rate."""
+    moved = motion or sine(rate_Hz=200.0)
+    return prepared(rig, moved, sensors=Sensors(rate_Hz=100.0), **more)
 
 
 def found(result):

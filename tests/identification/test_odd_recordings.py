@@ -33,7 +33,7 @@ CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
 def recorded(motion=None, *, rig=TRUE, sensors=SENSORS, seed=1):
-    return measure(clean(rig, motion), sensors, seed=seed)
+    return measure(clean(rig, motion or sine(rate_Hz=400.0)), sensors, seed=seed)
 
 
 def ran(columns, *, rig=TRUE, run_id="a", **said):

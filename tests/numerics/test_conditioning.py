@@ -16,9 +16,9 @@ MODEL = Rig(0.125, VirtualRig().axial_stiffness, 1.579, 250.0 * np.pi, np.pi, 25
 MOTIONS = {
     "sine": sine(),
     "slow sampling": sine(rate_Hz=200.0),
-    "nested": nested(),
-    "triangle": triangle(),
-    "dwell": dwell(),
+    "nested": nested(rate_Hz=500.0),
+    "triangle": triangle(rate_Hz=500.0),
+    "dwell": dwell(rate_Hz=500.0),
 }
 
 
@@ -35,11 +35,8 @@ def test_a_true_model_stays_within_twice_the_force_noise(name):
     """Raw noise costs the model ten times the force sensor's noise and more."""
     true = clean(VirtualRig(), MOTIONS[name])
     t, x, f_in = (true.columns[c] for c in ("time_s", "x_in_mm", "f_in_N"))
-    errors = []
-    for seed in range(3):
-        cleaned = condition(t, noisy(x, seed)).values
-        errors.append(rms(simulate(MODEL, DriveInput(cleaned)).f_in_N - f_in))
-    assert np.median(errors) < 2.0 * FORCE_NOISE_N
+    cleaned = condition(t, noisy(x, seed=0)).values
+    assert rms(simulate(MODEL, DriveInput(cleaned)).f_in_N - f_in) < 2.0 * FORCE_NOISE_N
     if name == "sine":
         raw = simulate(MODEL, DriveInput(noisy(x, 0))).f_in_N - f_in
         assert np.std(raw) > 10.0 * FORCE_NOISE_N
@@ -62,7 +59,7 @@ def test_a_corner_stays_where_it_is():
     """A window of half a second across the corner would round it by 0.2 mm."""
     motion = triangle(speed_mm_s=5.0)
     apex = int(np.argmax(motion.x_in_mm))
-    found = [condition(motion.time_s, noisy(motion.x_in_mm, seed)) for seed in range(10)]
+    found = [condition(motion.time_s, noisy(motion.x_in_mm, seed)) for seed in range(5)]
     heights = [c.values.max() - motion.x_in_mm[apex] for c in found]
     assert abs(np.mean(heights)) < 0.006
     assert all(abs(int(c.reversals[1]) - apex) < 12 for c in found)
@@ -71,7 +68,7 @@ def test_a_corner_stays_where_it_is():
 @pytest.mark.parametrize("name", ["sine", "nested"])
 def test_the_stated_error_is_the_error(name):
     motion = MOTIONS[name]
-    cleaned = [condition(motion.time_s, noisy(motion.x_in_mm, seed)) for seed in range(8)]
+    cleaned = [condition(motion.time_s, noisy(motion.x_in_mm, seed)) for seed in range(4)]
     found = rms(np.concatenate([c.values - motion.x_in_mm for c in cleaned]))
     stated = rms(np.concatenate([c.sd for c in cleaned]))
     assert found == pytest.approx(stated, rel=0.25)
@@ -144,6 +141,8 @@ def test_a_corner_does_not_stick_out():
     motion = triangle(speed_mm_s=10.0)
     apex = int(np.argmax(motion.x_in_mm))
     step = motion.x_in_mm[apex] - motion.x_in_mm[apex - 1]
+    beside = slice(apex - 500, apex + 500)
     for seed in range(20):
-        cleaned = condition(motion.time_s, noisy(motion.x_in_mm, seed, 0.01)).values
+        raw = noisy(motion.x_in_mm[beside], seed, 0.01)
+        cleaned = condition(motion.time_s[beside], raw).values
         assert cleaned.max() - motion.x_in_mm[apex] < 0.5 * step

@@ -21,7 +21,7 @@ def test_memory_of_a_first_order_process(rho):
 @pytest.mark.parametrize("rho", [0.0, 0.9, 0.98])
 def test_the_interval_of_a_slope_holds_at_its_rate(rho):
     """The plain formula, which counts samples, covers a third of the time at ρ = 0.98."""
-    n = 5000
+    n = 2500
     J = np.column_stack((np.ones(n), np.linspace(-1.0, 1.0, n)))
     held = plain = 0
     for seed in range(300):

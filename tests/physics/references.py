@@ -167,7 +167,7 @@ def pulled_through(rig, tensions, points=40001):
     for tension in tensions:
         profile.pull_drive_to(tension)
         passed.append((profile.x_in, profile.tension[-1]))
-    return tuple(np.array(passed).T)
+    return tuple(np.array(column) for column in zip(*passed, strict=True))
 
 
 def relaxed_chain(

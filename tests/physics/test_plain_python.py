@@ -38,13 +38,13 @@ for drive, load, boundary in (
     few[TIME] = np.arange(40) / 100
     start[1] = rig.preload_N
     lively = rig._replace(effects=Effects(stribeck_friction=StribeckFriction(0.1, 8.0)))
-    # Equal steps: their control would magnify rounding.
-    output, progress = lugre_chain(few, start, lively, boundary, 5, StepControl(1e3, equal_steps))
+    steps = StepControl(1e3, equal_steps)  # their control would magnify rounding
+    output, progress = lugre_chain(few, start, lively, boundary, 5, steps, None)
     answers.append([*output, np.hstack(progress)])
 few[DRIVE], start = np.linspace(0, -20, 40), np.zeros((2, 7))  # it ends slack
 start[1] = rig.preload_N
-call = few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, StepControl(1e3, equal_steps)
-output, progress = lugre_chain(*call)
+call = few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, steps
+output, progress = lugre_chain(*call, None)
 assert output.phase[-1] == 2
 along = [empty_frames(np.arange(0, 300, 7), 10) for _ in range(2)]
 branches(x, rig, along[0])

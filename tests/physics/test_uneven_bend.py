@@ -11,17 +11,17 @@ from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
 from tsas_studies.challenge.rig.tendon import simulate as run_rig
 
-MOTION = sine(omega_rad_s=1.0)
+MOTION = sine(omega_rad_s=1.0, rate_Hz=200.0)
 SHARE = 0.3
 
 
 @cache
 def tensions(profile=((0.0, 1.0),), **uneven):
     """Return the tension at the drive of the rig, and of the model."""
-    virtual = VirtualRig(cells=120, bend_profile=profile)
+    virtual = VirtualRig(cells=60, bend_profile=profile)
     columns = run_rig(virtual, MOTION).columns
     model = GROUP_A._replace(tendon_stiffness_N=virtual.axial_stiffness, **uneven)
-    response = simulate(model, DriveInput(columns["x_in_mm"]), on_mesh=True, nodes=120)
+    response = simulate(model, DriveInput(columns["x_in_mm"]), on_mesh=True, nodes=60)
     return np.array([columns["f_in_N"], response.f_in_N])
 
 

@@ -40,7 +40,7 @@ def pipeline(root: Path, ids=("a", "b"), **more) -> list[Path]:
 
 
 def _pipeline(root: Path) -> str:
-    return page(read_inputs(pipeline(root, samples=1000)))
+    return page(read_inputs(pipeline(root, samples=400)))
 
 
 def _diagnosis(root: Path) -> str:
@@ -49,7 +49,7 @@ def _diagnosis(root: Path) -> str:
 
 
 def _prediction(root: Path) -> str:
-    dataset = make_dataset(root / "dataset", samples=1000)
+    dataset = make_dataset(root / "dataset", samples=400)
     return page(read_inputs([make_prediction(dataset, root / "predict")]))
 
 

@@ -1,18 +1,17 @@
 """Every kind of page in a real browser: whole, quiet, accessible, on a phone and on a desk."""
 
 from importlib import resources
+from itertools import product
 
 import pytest
 
 from tests.reporting.pages import PAGES, chromium
 
 PHONE, DESK = 390, 1280
-LARGE = pytest.mark.large
+EACH_TIME = {*((kind, PHONE, "dark") for kind in PAGES), ("pipeline", DESK, "light")}
 LOOKS = [
-    (PHONE, "dark"),
-    (DESK, "light"),
-    pytest.param(PHONE, "light", marks=LARGE),
-    pytest.param(DESK, "dark", marks=LARGE),
+    pytest.param(*look, marks=() if look in EACH_TIME else pytest.mark.large)
+    for look in product(PAGES, (PHONE, DESK), ("dark", "light"))
 ]
 # What is inside of a picture counts as one image with its text.
 JUDGE = "axe.run({exclude: [['svg > *']]}, {resultTypes: ['violations']})"
@@ -106,8 +105,7 @@ def test_the_judge_finds_faults_where_there_are_some(tab, axe, tmp_path):
     assert {"color-contrast", "svg-img-alt", "html-has-lang"} <= faults
 
 
-@pytest.mark.parametrize(("width", "scheme"), LOOKS)
-@pytest.mark.parametrize("kind", PAGES)
+@pytest.mark.parametrize(("kind", "width", "scheme"), LOOKS)
 def test_it_is_drawn_whole_and_no_fault_is_found(made, tab, axe, kind, width, scheme):
     one = tab(made(kind), width, scheme)
     assert max(one.evaluate(WIDTHS)) <= width

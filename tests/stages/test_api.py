@@ -20,6 +20,7 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.stages.diagnose import DiagnosisResult
 from tsas_cli.stages.identify_harmonic_drive import DriveResult
 from tsas_cli.stages.plan import PlanResult
+from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -29,7 +30,7 @@ RIG = Rig(friction_coefficient=0.16, proximal_length_mm=150.0, distal_length_mm=
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    recorded = record(RIG, sensors=Sensors(rate_Hz=200.0))
+    recorded = record(RIG, sine(rate_Hz=400.0), sensors=Sensors(rate_Hz=200.0))
     where = tmp_path_factory.mktemp("api") / "dataset"
     return write_dataset(where, [Run("a", recorded, conditions(RIG))])
 

@@ -12,11 +12,13 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, read_fitted_to, read_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.stages import diagnose as diagnose_stage
+from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(proximal_length_mm=150.0, cells=60)
+RECORDED = record(TRUE, sine(rate_Hz=400.0), sensors=Sensors(rate_Hz=200.0))
 LENGTH = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
 
 
@@ -24,9 +26,8 @@ LENGTH = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
 def diagnosed(tmp_path_factory):
     """A run whose recordings are known to need a free length, which the nominal model lacks."""
     folder = tmp_path_factory.mktemp("diagnosed")
-    recorded = record(TRUE, sensors=Sensors(rate_Hz=200.0))
     dataset = read_dataset(
-        write_dataset(folder / "dataset", [Run("a", recorded, conditions(TRUE))])
+        write_dataset(folder / "dataset", [Run("a", RECORDED, conditions(TRUE))])
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
@@ -88,8 +89,7 @@ def test_the_phases_follow_each_other_over_the_whole_run(diagnosed):
 
 def test_what_contradicts_the_data_sheet_is_said_beside_the_causes(tmp_path, monkeypatch):
     """Both forces at half: a compliant sheath is named, and had no rival."""
-    recorded = record(TRUE, sensors=Sensors(rate_Hz=100.0))
-    folder = write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(TRUE))])
+    folder = write_dataset(tmp_path / "dataset", [Run("a", RECORDED, conditions(TRUE))])
     half = [
         Estimate("load_stiffness_N_per_mm", 0.79, "N/mm", "fitted", None, 0.01, 0.77, 0.81),
         Estimate("preload_N", 12.5, "N", "fitted", "a", 0.1, 12.3, 12.7),
@@ -109,8 +109,7 @@ def test_what_contradicts_the_data_sheet_is_said_beside_the_causes(tmp_path, mon
 
 @pytest.mark.parametrize("proven", [True, False])
 def test_what_gains_and_is_not_proven_has_a_model_of_its_own(tmp_path, monkeypatch, proven):
-    recorded = record(TRUE, sensors=Sensors(rate_Hz=100.0))
-    folder = write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(TRUE))])
+    folder = write_dataset(tmp_path / "dataset", [Run("a", RECORDED, conditions(TRUE))])
     gains = FoundCause("free_tendon", (), (LENGTH,), 40.0, (30.0, 50.0), ("may be zero",))
 
     def found(_, stated, __, ___):

@@ -37,7 +37,7 @@ SURE = 4.0  # standard errors, in which no seed of these may miss
 
 
 def identified(folder, *made, **options):
-    dataset = drive_dataset(folder / "dataset", *made, **{"duration_s": 6.0} | options)
+    dataset = drive_dataset(folder / "dataset", *made, **{"duration_s": 4.0} | options)
     counted = Counted()
     summary = identify_harmonic_drive(dataset, out=folder / "out", step=counted).summary
     assert counted.all_of(least=17)  # the recordings, and the structures of G(s)

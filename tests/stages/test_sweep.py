@@ -15,6 +15,7 @@ from tsas_cli.support.files import sha256_of
 from tsas_cli.sweeping.folder import sweep_folder
 from tsas_cli.sweeping.outcome import run_task
 from tsas_cli.sweeping.versions import ONE_THREAD
+from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -42,7 +43,7 @@ def base(tmp_path_factory):
     """Three datasets of one run each; of one, the recording is not what its manifest says."""
     folder = tmp_path_factory.mktemp("sweep")
     (folder / "rigs").mkdir()
-    recorded = record(RIG, sensors=Sensors(rate_Hz=100.0))
+    recorded = record(RIG, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0))
     for name in ("a", "b"):
         write_dataset(folder / "rigs" / name, [Run("x", recorded, conditions(RIG))])
     shutil.copytree(folder / "rigs/a", folder / "rigs/broken")

@@ -99,7 +99,7 @@ def plant_at_rest(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> Plan
     state = initial_state(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
     if drive_mm != 0.0:
-        output, state = follow(ends.course, state, rig, ends.boundary, n)
+        output, state = follow(ends.course, state, rig, ends.boundary, n, None)
         stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
         f_in = float(output.f_in[-1])
         f_in += proximal_spring_force(float(state.chain[POSITION]), stiffness)

@@ -134,11 +134,11 @@ def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output,
     """Return the output and the final state."""
     if isinstance(state, BranchState):
         state = with_room(state, ends.drive)
-        return with_spring_load(rig, ends, follow_branches(ends.drive, rig, state)), state
+        return with_spring_load(rig, ends, follow_branches(ends.drive, rig, state, None)), state
     if isinstance(state, StaticState):
         tensions, state = follow_static(ends.drive, rig, state)
         return with_spring_load(rig, ends, tensions), state
-    output, state = follow(ends.course, state, rig, ends.boundary, mesh)
+    output, state = follow(ends.course, state, rig, ends.boundary, mesh, None)
     return at_drive_sensor(rig, ends, output), state
 
 

@@ -87,6 +87,7 @@ def followed(case, tolerance):
         LOADED_BY_SPRING,
         case.lumps,
         StepControl(tolerance, OWN_STEPS),
+        None,
     )
     finished = progress.reached_s >= case.time_s[-1] * (1.0 - 1e-12)
     return Followed(np.array(output[:4]), progress, finished)

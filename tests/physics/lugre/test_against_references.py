@@ -36,7 +36,7 @@ def apart(name, tolerance):
     start = np.zeros((2, lumps + 2))
     start[1] = rig.preload_N
     course, control = course_of(x_in, rig, time_s=times), StepControl(tolerance, OWN_STEPS)
-    output, _ = lugre_chain(course, start, rig, LOADED_BY_SPRING, lumps, control)
+    output, _ = lugre_chain(course, start, rig, LOADED_BY_SPRING, lumps, control, None)
     assert not np.any(output.phase == 3)
     off = {}
     for channel, row in (("x_out_mm", 1), ("f_in_N", 2), ("f_out_N", 3)):

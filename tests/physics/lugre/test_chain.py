@@ -34,7 +34,7 @@ def follow(x, times=TIME_S, *, rig=TABLE_1, n=50, tolerance=5e-5, step_ends_s=OW
     start[0], start[1] = x[0], rig.preload_N
     course = course_of(x, rig, time_s=times)
     control = StepControl(tolerance, step_ends_s)
-    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, n, control)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, n, control, None)
     return np.array(output[:4]), output.phase, progress
 
 
@@ -177,7 +177,8 @@ def test_a_tendon_at_rest_stays_at_rest(boundary):
     start = np.zeros((2, 52))
     start[1] = 25.0
     course = course_of(x, TABLE_1, time_s=TIME_S[:200])
-    output, _ = lugre_chain(course, start, TABLE_1, boundary, 50, StepControl(5e-5, OWN_STEPS))
+    control = StepControl(5e-5, OWN_STEPS)
+    output, _ = lugre_chain(course, start, TABLE_1, boundary, 50, control, None)
     columns = np.array(output[:4])
     assert columns[:2] == pytest.approx(np.zeros((2, 200)), abs=1e-9)
     assert columns[2:] == pytest.approx(np.full((2, 200), 25.0), abs=1e-6)
@@ -196,7 +197,7 @@ def test_a_bump_of_what_is_given_is_not_stepped_over(boundary, row):
 
     def f_in(step_ends_s):
         control = StepControl(2e-5, step_ends_s)
-        return lugre_chain(course, start, TABLE_1, boundary, 50, control)[0].f_in
+        return lugre_chain(course, start, TABLE_1, boundary, 50, control, None)[0].f_in
 
     fine = f_in(np.arange(2e-4, 3.0, 2e-4))
     assert np.max(np.abs(fine - f_in(OWN_STEPS))[1000:2000]) < 2e-4 * np.max(fine)

@@ -320,7 +320,8 @@ def run(drive, times, *, steps=OWN_STEPS, rig=GROUP_A, tolerance=1e-3):
     start = np.zeros((2, N + 2))
     start[1] = F0
     course = course_of(drive, rig, time_s=times)
-    return lugre_chain(course, start, rig, LOADED_BY_SPRING, N, StepControl(tolerance, steps))
+    control = StepControl(tolerance, steps)
+    return lugre_chain(course, start, rig, LOADED_BY_SPRING, N, control, None)
 
 
 def test_a_tendon_that_nothing_moves_asks_nothing_of_newtons_method():

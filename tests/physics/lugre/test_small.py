@@ -398,7 +398,7 @@ def small_run(problem, steps=OWN_STEPS, frames=None):
     start[1] = SMALL.preload_N
     course = course_of(problem.drive.position(times), SMALL, time_s=times)
     call = (course, start, SMALL, LOADED_BY_SPRING, N, StepControl(2e-5, steps))
-    return times, lugre_chain(*call) if frames is None else lugre_chain(*call, frames)
+    return times, lugre_chain(*call, frames)
 
 
 @pytest.mark.parametrize("steps", [OWN_STEPS, np.arange(5e-4, 0.25, 5e-4)], ids=["own", "given"])

@@ -27,7 +27,7 @@ def path_to(wanted_N, rig=GROUP_A, *, n=50, speed=0.0):
     """Return the inverse model's path; none of its samples may be missed."""
     time_s = STEP_S * np.arange(wanted_N.size)
     at_rest = np.zeros(time_s.size)
-    friction = losses_over(time_s, at_rest, np.broadcast_to(speed, time_s.shape), 0.0, rig)
+    friction = losses_over(time_s, at_rest, speed + at_rest, 0.0, rig)
     path, tension, missed = inverse_chain(wanted_N, friction, STEP_S, rig, n)
     assert missed == 0
     return path, tension

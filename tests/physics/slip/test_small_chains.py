@@ -83,7 +83,8 @@ EFFECTS = {
 
 def states(course, rig, boundary):
     """Return places and tensions of the nodes after every sample."""
-    found = [rest_after(course[:, : i + 1], rig, boundary, N) for i in range(course.shape[1])]
+    courses = [course[:, : i + 1].copy() for i in range(course.shape[1])]
+    found = [rest_after(until, rig, boundary, N) for until in courses]
     return [(x, T[:-1]) for x, T in found]
 
 

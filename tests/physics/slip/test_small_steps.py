@@ -346,7 +346,7 @@ def test_a_run_may_be_followed_in_two_parts():
         whole = slip_chain(course, rig, boundary, 3)
         state, parts = initial_state(course, rig, boundary, 3), []
         for part in (course[:, :5].copy(), course[:, 5:].copy()):
-            output, state = go_on(part, state, rig, boundary, 3)
+            output, state = go_on(part, state, rig, boundary, 3, None)
             parts.append(output)
         for k, column in enumerate(whole):
             np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)

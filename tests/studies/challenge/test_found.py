@@ -15,16 +15,18 @@ from tsas_studies.challenge.make import make
 
 SEED = 3  # for building, never for scoring
 CASES = part(cases(SEED))
+# tests/metamorphic/test_relations.py finds free tendon, and nothing where nothing is hidden.
 EACH_TIME = (
-    *("backlash, size 1", "free_tendon, size 1", "viscous_friction, size 1"),
-    *("load_friction, size 1", "force_sensor_gain, size 1", "nothing 1", "hum"),
+    *("backlash, size 1", "viscous_friction, size 1"),
+    *("load_friction, size 1", "force_sensor_gain, size 1", "hum"),
 )
 
 
 def diagnosed(case, folder):
-    make(folder, [case], rate_Hz=50.0 if case.name in EACH_TIME else 100.0)
+    small = case.name in EACH_TIME
+    make(folder, [case], rate_Hz=50.0 if small else 100.0)
     (dataset,) = (folder / "cases").glob("*/dataset")
-    diagnose(dataset, out=folder / "answer")
+    diagnose(dataset, runs=["a", "b"] if small else None, out=folder / "answer")
     return json.loads((folder / "answer" / "diagnosis.json").read_text())
 
 

@@ -11,7 +11,7 @@ from tsas_studies.challenge.entry import read_entry
 from tsas_studies.challenge.run import case_folders, run_cases
 from tsas_studies.challenge.stages import run_set
 
-NAMES = ("answers", "dies", "fails", "refuses", "silent", "well")
+NAMES = ("dies", "fails", "refuses", "silent", "well")
 
 
 def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
@@ -23,7 +23,7 @@ def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
     )
     assert len(steps) == len(NAMES)
     assert log == json.loads((tmp_path / "entry" / "entry.json").read_text(encoding="utf-8"))
-    assert log["answered"] == 2
+    assert log["answered"] == 1
     assert log["no_answer"].keys() == {"dies", "fails", "refuses", "silent"}
     assert log["no_answer"]["dies"] == "the process died"
     assert log["no_answer"]["fails"] == "ZeroDivisionError: division by zero"
@@ -31,7 +31,7 @@ def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
     assert "diagnosis.json: cannot be read" in log["no_answer"]["silent"]
     entry = read_entry(tmp_path / "entry", NAMES)
     assert entry.no_answer == log["no_answer"]
-    assert set(entry.diagnoses) == {"answers", "well"}
+    assert set(entry.diagnoses) == {"well"}
     well = json.loads((tmp_path / "entry" / "well" / "diagnosis.json").read_text(encoding="utf-8"))
     assert 0.0 <= well.pop("seconds") < 60.0
     assert well == diagnosis("backlash")
@@ -62,7 +62,7 @@ def test_a_case_has_one_thread_and_modules_of_its_own_and_nothing_is_overwritten
     """A folder of recordings may hold a re.py or a signal.py of somebody's own."""
     for name in ("OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"):
         monkeypatch.delenv(name, raising=False)
-    sealed = write_set(tmp_path / "set", {"threads": case(), "well": case()})
+    sealed = write_set(tmp_path / "set", {"threads": case()})
     for name in ("re", "signal", "json"):
         (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
     monkeypatch.chdir(tmp_path)

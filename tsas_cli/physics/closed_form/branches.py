@@ -147,9 +147,7 @@ def with_room(state: BranchState, x_in: Floats) -> BranchState:
 
 
 @kernel
-def follow_branches(
-    x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None = None
-) -> Tensions:
+def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None) -> Tensions:
     """Return the tensions for a motion from a state, which is updated in place; see `branches`."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap

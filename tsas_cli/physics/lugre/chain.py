@@ -82,7 +82,7 @@ def lugre_chain(
     boundary: Boundary,
     n: int,
     control: StepControl,
-    frames: Frames | None = None,
+    frames: Frames | None,  # a default would be compiled apart from None
 ) -> tuple[Output, Progress]:
     """Return the output for the motion of both ends from a state of rest.
 

@@ -90,14 +90,11 @@ def slip_chain(
     return follow(course, initial_state(course, rig, boundary, n), rig, boundary, n, frames)[0]
 
 
-@kernel
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
     """Return positions of the nodes and tensions behind them after a course, shape (2, n + 2)."""
-    chain = follow(course, initial_state(course, rig, boundary, n), rig, boundary, n)[1].chain
-    out = np.empty((2, n + 2))
-    for j in range(n + 2):
-        out[0, j], out[1, j] = chain[POSITION + j], chain[TENSION + j]
-    return out
+    start = initial_state(course, rig, boundary, n)
+    chain = follow(course, start, rig, boundary, n, None)[1].chain
+    return np.stack([chain[row : row + n + 2] for row in (POSITION, TENSION)])
 
 
 class ChainEnds(NamedTuple):
@@ -135,7 +132,7 @@ def follow(
     rig: Rig,
     boundary: Boundary,
     n: int,
-    frames: Frames | None = None,
+    frames: Frames | None,  # a default would be compiled apart from None
 ) -> tuple[Output, ChainState]:
     """Return the output of a chain for a course from a state, and the final state."""
     m = course.shape[1]
