@@ -9,7 +9,7 @@ from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 
-NOMINAL = Rig()
+NOMINAL = Rig(cells=60)
 ROUGH = replace(NOMINAL, friction_coefficient=0.15)
 PACES = {"slow": 1.0, "fast": 2.0}  # rad/s
 
