@@ -24,7 +24,8 @@ from tsas_cli.support.arrays import Floats, Indices
 
 Predictions = dict[str, Floats]  # of each channel at all samples, shape (n,)
 
-CACHED_RIGS = 32
+CACHED_RIGS = 32  # whose solutions are cached: all that a Jacobian returns to
+CACHED_SAMPLES = 2**19  # of all of them together, at most; a solution takes some 50 bytes for each
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +65,8 @@ def predictor(simulation: RunSimulation) -> Callable[[Rig], Predictions]:
     each of thousands of calibrations in one process would then retain megabytes.
     """
     drive, steps = simulation.drive, simulation.step_ends_s
-    solved = lru_cache(maxsize=CACHED_RIGS)(lambda rig: _solved(simulation, rig, drive, steps))
+    rigs = max(2, min(CACHED_RIGS, CACHED_SAMPLES // drive.values.size))
+    solved = lru_cache(maxsize=rigs)(lambda rig: _solved(simulation, rig, drive, steps))
 
     def predictions(rig: Rig) -> Predictions:
         return _at_samples(simulation, read(rig, *solved(mechanics_of(rig, drive))))

@@ -95,7 +95,10 @@ def least_squares(
             last = reliable and (reduction < tolerance * squares or smallest)
             x, before, r = x + step, r, trial
             exact = slopes is None or (reduction < AS_PREDICTED * predicted and not last)
-            J = jacobian(x) if exact else _corrected(J, step, r - before, np.diag(gram))
+            if exact:
+                J = jacobian(x)
+            elif not last:
+                J = _corrected(J, step, r - before, np.diag(gram))
             damping = max(damping / 10.0, 1e-12)
             if last:
                 return Minimum(x, r, J, True, "the last step is within the tolerance", evaluations)
