@@ -5,7 +5,7 @@ import pytest
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.proof import failures, split_in_words
+from tsas_cli.diagnosis.proof import failures, may_be_zero, split_in_words
 from tsas_cli.identification.estimate import Estimate
 
 CLEAR, CHANCE = Reduction(0.5, 9.0), Reduction(0.5, 2.0)
@@ -125,3 +125,9 @@ def test_a_split_is_said_with_its_values():
     assert split_in_words(over) == "over the direction: friction_N 0.8 (pulling) and 2.1 (x) N"
     runs = Split("force_sensor_gain.f_out_gain", "run", CLEAR, (("run a", 1.0), ("run b", 1.04)))
     assert split_in_words(runs) == "from run to run: f_out_gain 1 (run a) and 1.04 (run b)"
+
+
+def test_only_an_effect_with_a_size_may_be_zero():
+    assert may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)])
+    assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)])
+    assert not may_be_zero("drive_friction", [estimate("preload_N", 0.0, -1.0, 1.0)])

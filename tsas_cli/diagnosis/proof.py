@@ -38,7 +38,8 @@ class FoundCause:
 
     `failed` is what it does not prove, in sentences without their subject; empty for a named one.
     `law_differs` says over which signal the law of a named one differs from the catalogue's.
-    `tolerated` is whether it is no more than what every rig has.
+    `negligible` is whether it is no more than what every rig has, or neither gains nor differs from
+    none: then it stands in for nothing.
     """
 
     effect: str
@@ -48,7 +49,7 @@ class FoundCause:
     gain_interval_percent: tuple[float, float]
     failed: tuple[str, ...] = ()
     law_differs: str = ""
-    tolerated: bool = False
+    negligible: bool = False
 
 
 def failures(
@@ -95,8 +96,7 @@ def failures(
         for name, e in sizes.items()
         if e.at_bound and not _is_near_neutral(e.value, parameters[name])
     ]
-    neutral = {f"{effect}.{name}": parameters[name].neutral for name in sizes}
-    if sizes and _may_be_none(estimates, neutral, correlation):
+    if may_be_zero(effect, estimates, correlation):
         values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
         out.append(f"may be zero: {', '.join(values)}")
     out += [
@@ -125,6 +125,48 @@ def failures(
     return tuple(out)
 
 
+def may_be_zero(
+    effect: str, estimates: Sequence[Estimate], correlation: Floats | None = None
+) -> bool:
+    """Return whether the 95 % region of an effect's sizes holds the neutral values (Wald test).
+
+    Two offsets that only their sum is known of may each be zero, and not both. An effect without
+    a size cannot be zero.
+
+    Parameters
+    ----------
+    effect
+        The id of the effect.
+    estimates
+        Its parameters.
+    correlation
+        That of the parameters, shape (p, p); None where it is not known.
+    """
+    from scipy.special import chdtri
+
+    sizes = {f"{effect}.{p.name}": p.neutral for p in BY_NAME[effect].parameters if not p.shape}
+    if not any(e.name in sizes for e in estimates):
+        return False
+    deviations, rows = [], []
+    for row, e in enumerate(estimates):
+        if e.name not in sizes or e.interval_low is None or e.interval_high is None:
+            continue
+        away = e.value - sizes[e.name]
+        if away == 0.0:
+            continue
+        low, high = e.value - e.interval_low, e.interval_high - e.value
+        half = low if away > 0.0 else high
+        if half == abs(away):  # the interval is cut at the neutral value
+            half = max(low, high)
+        deviations.append(away / half if half > 0.0 else 0.0)
+        rows.append(row)
+    if not rows:
+        return True
+    related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
+    z = TWO_SIDED * np.array(deviations)
+    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= float(chdtri(len(rows), 0.05))
+
+
 def split_in_words(split: Split) -> str:
     """Return the values of a parameter in the parts of a split, in words."""
     values = " and ".join(f"{value:.3g} ({part})" for part, value in split.values)
@@ -142,32 +184,3 @@ def _is_near_neutral(value: float, parameter: Parameter) -> bool:
     """Return whether the bound that is nearer to a value is the neutral value."""
     nearer = min((parameter.lower, parameter.upper), key=lambda bound: abs(bound - value))
     return nearer == parameter.neutral
-
-
-def _may_be_none(
-    estimates: Sequence[Estimate], neutral: Mapping[str, float], correlation: Floats | None
-) -> bool:
-    """Return whether the 95 % region of the estimates holds all neutral values (Wald test).
-
-    Two offsets that only their sum is known of may each be zero, and not both.
-    """
-    from scipy.special import chdtri
-
-    deviations, rows = [], []
-    for row, e in enumerate(estimates):
-        if e.name not in neutral or e.interval_low is None or e.interval_high is None:
-            continue
-        away = e.value - neutral[e.name]
-        if away == 0.0:
-            continue
-        low, high = e.value - e.interval_low, e.interval_high - e.value
-        half = low if away > 0.0 else high
-        if half == abs(away):  # the interval is cut at the neutral value
-            half = max(low, high)
-        deviations.append(away / half if half > 0.0 else 0.0)
-        rows.append(row)
-    if not rows:
-        return True
-    related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
-    z = TWO_SIDED * np.array(deviations)
-    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= float(chdtri(len(rows), 0.05))

@@ -10,7 +10,7 @@ from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
-from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, split_in_words
+from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, may_be_zero, split_in_words
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, judged_sets, reweighted_hypotheses
@@ -58,7 +58,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
     The one that fails and gains least is left out, and the others are fitted again, until none
-    fails. What every rig has is no stand-in.
+    fails. What is negligible is no stand-in.
     """
     stand_ins: list[FoundCause] = []
     first: tuple[Estimate, ...] | None = None
@@ -70,7 +70,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
         if not failing:
             return replace(proven, with_stand_ins=first)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
-        if not weakest.tolerated:
+        if not weakest.negligible:
             stand_ins.append(weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
         search = replace(search, named=frozenset(rest), rivals=rest)
@@ -123,23 +123,25 @@ def _cause(
     ids = tuple(run.run.run.id for run in judged.bench.closed)
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, tolerated)
     again = gain(fewer.squares, all_of_them.squares)
+    related = correlation[np.ix_(at, at)]
     noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
     stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
         *(name, own, again, fewer.rmse, all_of_them.rmse, noise),
         tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
         stroke_mm=stroke_mm,
-        correlation=correlation[np.ix_(at, at)],
+        correlation=related,
     )
     law = "" if split is None else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
     if split is not None and structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
-    everywhere = split is not None and split.scatter
+    negligible = split is not None and split.scatter
+    negligible |= not again.convincing and may_be_zero(name, own, related)
     if within_tolerances(judged.trial(named), name, tolerated):
-        failed, everywhere = (*failed, "is no more than a tolerance of load cells and bend"), True
-    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, everywhere)
+        failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
+    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, negligible)
 
 
 def estimates_with_tolerances(
