@@ -154,6 +154,15 @@ def test_the_step_of_one_unknown_by_hand():
     assert squares[3:] == pytest.approx(expected)
 
 
+def test_where_one_of_two_that_do_the_same_reaches_its_bound_the_other_does_the_rest():
+    """Both have to fall by 3 together, the first by 0.1 at most."""
+    J = np.ones((6, 2)) + 1e-6 * np.random.default_rng(1).standard_normal((6, 2))
+    tight = [Unknown("a", None, 0.0, -0.1, 0.1, 1e6), Unknown("b", None, 0.0, -9.0, 9.0, 1e6)]
+    found = held_out_values(single(J, np.full(6, 3.0), tight), folds_of(THREE), 0)
+    assert abs(found[0]) == pytest.approx(0.1)
+    assert found.sum() == pytest.approx(-3.0, rel=1e-4)
+
+
 def test_values_stay_within_their_bounds_and_at_them():
     J = np.column_stack((np.ones(6), np.arange(6.0)))
     residual = np.full(6, 5.0)

@@ -108,15 +108,15 @@ def test_what_a_free_parameter_does_is_not_left_out_for_a_second_time():
 @pytest.mark.parametrize(("amount", "within"), [(1.0, True), (1.9, True), (2.2, False)])
 def test_an_effect_that_does_what_a_plausible_load_cell_does_is_within_tolerances(amount, within):
     trial = fit(amount * CELL, (CROSSTALK, CELL))
-    assert within_tolerances(trial, "force_crosstalk", CELL[:, None]) == within
+    assert within_tolerances(trial, "force_crosstalk", CELL[:, None], 0.0) == within
 
 
 def test_an_effect_of_another_shape_is_not_within_tolerances():
     """More than half of its squares are none of a load cell's."""
     trial = fit(CELL + 12.0 * OTHER, (CROSSTALK, CELL + 12.0 * OTHER))
-    assert not within_tolerances(trial, "force_crosstalk", CELL[:, None])
+    assert not within_tolerances(trial, "force_crosstalk", CELL[:, None], 0.0)
     trial = fit(CELL + 8.0 * OTHER, (CROSSTALK, CELL + 8.0 * OTHER))
-    assert within_tolerances(trial, "force_crosstalk", CELL[:, None])
+    assert within_tolerances(trial, "force_crosstalk", CELL[:, None], 0.0)
 
 
 def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_what_is_fitted():
@@ -159,3 +159,11 @@ def test_an_effect_that_is_named_has_no_tolerance_of_its_own():
     assert others.tolist() == [[1, 0, 0, 4, 5, 6, 7], [8, 0, 0, 11, 12, 13, 14]]
     assert given[0, 1] == 2.0
     assert of_others(SimpleNamespace(effects=()), given).tolist() == given.tolist()
+
+
+def test_what_takes_away_more_than_it_changes_beside_the_others_is_not_within_tolerances():
+    """A sheath's compliance and the tendon's do the same until one of them is at its bound."""
+    trial = fit(CELL, (CROSSTALK, CELL))
+    squares = float(CELL @ CELL)
+    assert within_tolerances(trial, "force_crosstalk", CELL[:, None], squares)
+    assert not within_tolerances(trial, "force_crosstalk", CELL[:, None], 10.0 * squares)

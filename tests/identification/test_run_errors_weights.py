@@ -159,22 +159,22 @@ def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(mo
     np.testing.assert_allclose(found.predict(2.0)["f_in_N"], 2.0 * X)
 
 
-def test_the_predictions_of_the_last_two_rigs_are_cached(model):
+@pytest.mark.parametrize(("samples", "rigs"), [(2**19, 32), (2 * X.size, 2), (0, 2)])
+def test_the_predictions_of_the_last_rigs_are_cached(model, monkeypatch, samples, rigs):
+    """Of 32, or of as many as hold so many samples; of two at least."""
+    monkeypatch.setattr(rs, "CACHED_SAMPLES", samples)
     found = errors_of(run_of())
     model.asked.clear()
-
-    def asked(rig):
+    asked = [10.0 + k for k in range(rigs)]
+    for rig in [*asked, *asked]:
         found.errors(rig)
-        rigs = [k for k, *_ in model.asked]
-        model.asked.clear()
-        return rigs
-
-    assert asked(3.0) == []  # its weights are those at this rig
-    assert asked(4.0) == [4.0]
-    assert asked(3.0) == []
-    assert asked(5.0) == [5.0]
-    assert asked(3.0) == []
-    assert asked(4.0) == [4.0]
+    assert [rig for rig, *_ in model.asked] == asked
+    found.errors(1.0)
+    model.asked.clear()
+    found.errors(asked[-1])
+    assert not model.asked
+    found.errors(asked[0])
+    assert [rig for rig, *_ in model.asked] == asked[:1]
 
 
 def test_a_run_is_answered_as_it_is_asked_for(model):

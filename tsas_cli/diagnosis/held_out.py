@@ -20,6 +20,7 @@ from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEWEST_RUNS = 3  # of which one can be held out
 STRETCHES = 4  # of each run, where runs are too few
+TINY = np.finfo(float).tiny
 
 
 class Hypothesis(Protocol):
@@ -109,7 +110,7 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
         rest = _within(trial, gauss_newton_step(trial, ~held_out)) - trial.solution.values
         rise = _squares(trial, ~held_out, whole) - _squares(trial, ~held_out, rest)
         variance, determinant = _prediction_variance(trial, folds, fold)
-        share = variance / max(float(variance.sum()), np.finfo(float).tiny)
+        share = variance / max(float(variance.sum()), TINY)
         out[held_out] += (max(rise, 0.0) + determinant) * share
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
 
@@ -117,13 +118,24 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
 def gauss_newton_step(trial: Hypothesis, kept: Mask) -> Floats:
     """Return the Gauss-Newton step to the least squares of some residuals, shape (p,), scaled.
 
-    What is at a bound stays there.
+    What is at a bound stays there, and what reaches one stops there: the others step as if it were
+    fixed, since an unknown that is cut alone would leave a valley that it shares with them.
     """
     J, r = trial.solution.jacobian[kept], trial.solution.residual[kept]
     free = ~trial.solution.at_bound
-    gram = J.T @ J + np.diag(_weak(trial))
+    gram, gradient = J.T @ J + np.diag(_weak(trial)), J.T @ r
     step = np.zeros(free.size)
-    step[free] = np.linalg.solve(gram[np.ix_(free, free)], -(J.T @ r)[free])
+    while free.any():
+        toward = -(gradient + gram @ np.where(free, 0.0, step))
+        step[free] = np.linalg.solve(gram[np.ix_(free, free)], toward[free])
+        inside = _within(trial, step) - trial.solution.values
+        beyond = free & ~np.isclose(step, inside, rtol=1e-9, atol=1e-12)
+        if not beyond.any():
+            break
+        first = int(
+            np.argmin(np.where(beyond, np.abs(inside) / np.maximum(np.abs(step), TINY), 1.0))
+        )
+        step[first], free[first] = inside[first], False
     return step
 
 

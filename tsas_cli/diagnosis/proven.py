@@ -139,7 +139,8 @@ def _cause(
     interval = gains[1], gains[2]
     negligible = split is not None and split.scatter
     negligible |= not again.convincing and may_be_zero(name, own, related)
-    if within_tolerances(judged.trial(named), name, tolerated):
+    reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
+    if within_tolerances(judged.trial(named), name, tolerated, reduction):
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
     return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, negligible)
 

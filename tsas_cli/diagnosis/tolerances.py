@@ -92,8 +92,12 @@ def without_tolerances(
     return np.asarray(residual - own @ amounts)
 
 
-def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats) -> bool:
-    """Return whether most of what an effect changes is what plausible tolerances change too."""
+def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduction: float) -> bool:
+    """Return whether most of what an effect changes is what plausible tolerances change too.
+
+    `reduction` is that of the squares by the effect: where the other parameters nearly do what it
+    does, its change is small beside them, and is not what it takes away.
+    """
     own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
     J, values = trial.solution.jacobian, trial.solution.values
     neutral = [QUANTITIES[u.name].scaled(QUANTITIES[u.name].default) for u in trial.unknowns]
@@ -104,7 +108,8 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats) -> boo
     amounts = np.linalg.solve(columns.T @ columns + np.eye(columns.shape[1]), columns.T @ change)
     left = change - columns @ amounts
     plausible = bool(np.all(np.abs(amounts) <= PLAUSIBLE))
-    return plausible and float(left @ left) < 0.5 * float(change @ change)
+    squares = float(change @ change)
+    return plausible and squares - float(left @ left) > 0.5 * max(squares, reduction)
 
 
 def _beside(basis: Floats, columns: Floats) -> Floats:

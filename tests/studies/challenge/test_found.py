@@ -19,6 +19,7 @@ CASES = part(cases(SEED))
 EACH_TIME = (
     *("backlash, size 1", "viscous_friction, size 1"),
     *("load_friction, size 1", "force_sensor_gain, size 1", "hum"),
+    "sheath_compression, size 1",  # what a softer tendon does too
 )
 
 
