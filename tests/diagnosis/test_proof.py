@@ -131,3 +131,14 @@ def test_only_an_effect_with_a_size_may_be_zero():
     assert may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)])
     assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)])
     assert not may_be_zero("drive_friction", [estimate("preload_N", 0.0, -1.0, 1.0)])
+
+
+def test_a_size_that_is_known_at_each_shape_is_not_zero():
+    """Only the product of share and rate is known: neither alone, and not zero."""
+    known = [
+        estimate("load_relaxation.share", 0.9, 0.0, 3.3),
+        estimate("load_relaxation.time_s", 20.0, 1.0, 80.0),
+    ]
+    assert may_be_zero("load_relaxation", known)
+    assert may_be_zero("load_relaxation", known, np.array([[1.0, 0.5], [0.5, 1.0]]))
+    assert not may_be_zero("load_relaxation", known, np.array([[1.0, 0.99], [0.99, 1.0]]))

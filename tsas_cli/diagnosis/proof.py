@@ -130,8 +130,9 @@ def may_be_zero(
 ) -> bool:
     """Return whether the 95 % region of an effect's sizes holds the neutral values (Wald test).
 
-    Two offsets that only their sum is known of may each be zero, and not both. An effect without
-    a size cannot be zero.
+    Two offsets that only their sum is known of may each be zero, and not both. The shape of an
+    effect, such as its time constant, is held: without a size it has no meaning (Davies 1977). An
+    effect without a size cannot be zero.
 
     Parameters
     ----------
@@ -162,9 +163,10 @@ def may_be_zero(
         rows.append(row)
     if not rows:
         return True
-    related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
+    related = np.eye(len(estimates)) if correlation is None else correlation
+    precision = np.linalg.pinv(related, hermitian=True)[np.ix_(rows, rows)]
     z = TWO_SIDED * np.array(deviations)
-    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= float(chdtri(len(rows), 0.05))
+    return float(z @ precision @ z) <= float(chdtri(len(rows), 0.05))
 
 
 def split_in_words(split: Split) -> str:
