@@ -103,11 +103,11 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     of the held-out run's residuals, of each by the variance of its prediction.
     """
     everything = np.ones(folds.fold.size, bool)
-    whole = _within(trial, gauss_newton_step(trial, everything)) - trial.solution.values
+    whole = gauss_newton_step(trial, everything)
     out = _moved(trial, everything, whole) ** 2
     for fold in np.unique(folds.fold):
         held_out = folds.fold == fold
-        rest = _within(trial, gauss_newton_step(trial, ~held_out)) - trial.solution.values
+        rest = gauss_newton_step(trial, ~held_out)
         rise = _squares(trial, ~held_out, whole) - _squares(trial, ~held_out, rest)
         variance, determinant = _prediction_variance(trial, folds, fold)
         share = variance / max(float(variance.sum()), TINY)
@@ -132,9 +132,8 @@ def gauss_newton_step(trial: Hypothesis, kept: Mask) -> Floats:
         beyond = free & ~np.isclose(step, inside, rtol=1e-9, atol=1e-12)
         if not beyond.any():
             break
-        first = int(
-            np.argmin(np.where(beyond, np.abs(inside) / np.maximum(np.abs(step), TINY), 1.0))
-        )
+        way = np.where(beyond, np.abs(inside) / np.maximum(np.abs(step), TINY), np.inf)
+        first = int(np.argmin(way))
         step[first], free[first] = inside[first], False
     return step
 

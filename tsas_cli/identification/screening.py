@@ -54,7 +54,8 @@ def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) ->
     What the model cannot be simulated with explains nothing.
     """
     starts = product(*(p.starts or (p.start,) for p in _shapes_first(effect)))
-    changes = {values: _changes(bench, trial, effect, values) for values in starts}
+    without = bench.errors_at(trial, {})
+    changes = {values: _changes(bench, trial, effect, values, without) for values in starts}
     return screen_again(Screened(effect, 0.0, {}, np.zeros(0), (), changes), trial, basis)
 
 
@@ -85,16 +86,23 @@ def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screen
 
 def refined(bench: Bench, trial: HypothesisFit, rough: Screened, basis: Floats) -> Screened:
     """Return an effect with its best shape screened anew at a trial."""
-    new = {rough.values: _changes(bench, trial, rough.effect, rough.values)}
+    without = bench.errors_at(trial, {})
+    new = {rough.values: _changes(bench, trial, rough.effect, rough.values, without)}
     best = screen_again(replace(rough, changes=new), trial, basis)
     return replace(best, changes={**rough.changes, **new})
 
 
 def _changes(
-    bench: Bench, trial: HypothesisFit, effect: Effect, values: tuple[float, ...]
+    bench: Bench,
+    trial: HypothesisFit,
+    effect: Effect,
+    values: tuple[float, ...],
+    without: Floats,
 ) -> Floats:
-    """Return the change of the residuals by each amplitude, the others neutral, shape (n, p)."""
-    without = bench.errors_at(trial, {})
+    """Return the change of the residuals by each amplitude, the others neutral, shape (n, p).
+
+    `without` are the residuals without the effect.
+    """
     at = {_name(effect, p): v for p, v in zip(_shapes_first(effect), values, strict=True)}
     names = [_name(effect, p) for p in effect.parameters if not p.shape]
     shape = {name: value for name, value in at.items() if name not in names}
