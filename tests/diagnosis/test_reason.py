@@ -52,6 +52,19 @@ def test_causes_are_named_with_their_reduction():
     )
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        (1.04, 1.0, "from 1.04 to 1.00"),
+        (1.004, 1.0, "from 1.004 to 1.000"),
+        (2.0, 1.0, "2.0 to 1.0"),
+    ],
+)
+def test_a_small_reduction_is_not_from_one_number_to_the_same(before, after, words):
+    said = reason_of("named", [cause(PLAY)], [], left(before**2), left(after**2))
+    assert f"{words} × the noise level" in said
+
+
 def test_rivals_are_said_once_each_in_order():
     causes = [cause(PLAY, (MASS, FREE)), cause("presliding", (MASS,))]
     both = ", ".join(sorted((TITLE[MASS], TITLE[FREE])))

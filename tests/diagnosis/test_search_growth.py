@@ -11,6 +11,7 @@ from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.search import Hypotheses, Search
 from tsas_cli.effects import EFFECTS
+from tsas_cli.identification import screening
 from tsas_cli.identification.screening import Screened
 
 BLOCKS, SIZE = 20, 200
@@ -186,8 +187,8 @@ def test_all_further_effects_are_screened_once(made, monkeypatch):
         looked.append((effect.name, trial.on_mesh, basis))
         return screened(effect.name, part=0.1 * len(looked))
 
-    monkeypatch.setattr(s, "projector", lambda trial: ("basis", trial.on_mesh))
-    monkeypatch.setattr(s, "screen", screen)
+    monkeypatch.setattr(screening, "projector", lambda trial: ("basis", trial.on_mesh))
+    monkeypatch.setattr(screening, "screen", screen)
     found = search.screen(names(A))
     assert [x.effect.name for x in found] == [e.name for e in KNOWN if e.name != A][::-1]
     assert {(n, mesh, basis) for n, mesh, basis in looked} == {

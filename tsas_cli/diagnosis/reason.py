@@ -23,7 +23,7 @@ def reason_of(
     """
     sentences = []
     if causes:
-        both = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
+        both = _told_apart(math.sqrt(start.mean_square), math.sqrt(after.mean_square))
         names = listed([_title(cause.effect) for cause in causes])
         sentences += [
             f"The nominal model lacks: {names}.",
@@ -79,6 +79,18 @@ def _dependence(after: Remainder) -> list[str]:
 
 def _title(effect: str) -> str:
     return BY_NAME[effect].title.lower()
+
+
+def _told_apart(before: float, after: float) -> tuple[str, str]:
+    """Return two values to two digits, or to as many as show that they differ, four at most."""
+    both = _two_digits(before), _two_digits(after)
+    if both[0] != both[1] or before >= 9.95:
+        return both
+    for digits in (3, 4):
+        both = f"{before:#.{digits}g}", f"{after:#.{digits}g}"
+        if both[0] != both[1]:
+            break
+    return both
 
 
 def _two_digits(value: float) -> str:

@@ -28,7 +28,7 @@ from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.screening import Screened, projector, refined, screen, screen_again
+from tsas_cli.identification.screening import Screened, least_part, screen_all
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -38,10 +38,7 @@ MOST_EFFECTS = 4
 SHARE = 0.2  # least reduction of the excess over the noise by a cause
 LEAST = 0.003  # least reduction of the nominal model's excess by a further cause
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
-LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain to be fitted
-SHARE_OF_BEST = 0.2  # the same, of the share of the best signature
-ROUGH = 0.5  # the same, of a share by a signature of another set of effects
-LINEAR = 0.4  # the same, of the reduction that the effect has to make; at most 2.5 times as much
+LINEAR = 0.4  # share of its reduction that a signature explains; a fit takes up to 2.5 times it
 ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
 REWEIGHTINGS = 3  # iterations of new weights and a new fit of the named effects
 PAIRS = 4  # of effects that are fitted, of those that explain most together
@@ -217,13 +214,10 @@ class Search:
     def add(self, names: Names, least: float = 0.0) -> list[tuple[str, Reduction]]:
         """Return each further effect that passes screening, fitted, with its gain, best first.
 
-        Of 1,752 effects whose signature had less than `SHARE_OF_BEST`, a fit took away as much as
-        half of what the best one did in one: what it explains is found once the best one is named.
         `least` is the reduction of the mean square that the effects have to make.
         """
         screened = self.screen(names)
-        best = max((s.part for s in screened), default=0.0)
-        part = max(LEAST_SIGNATURE, SHARE_OF_BEST * best, self._least_part(names, least))
+        part = max(least_part(screened), self._least_part(names, least))
         candidates = [s for s in screened if s.part >= part]
         self.step.ahead(sum(self._is_new(names | {s.effect.name}) for s in candidates))
         found = []
@@ -234,35 +228,16 @@ class Search:
         return sorted(found, key=lambda f: -f[1].part)
 
     def screen(self, names: Names) -> list[Screened]:
-        """Return all further effects screened linearly, the one that explains most first.
-
-        An effect changes the residuals of two sets alike: what explains little with the changes
-        known from the nearest set is not simulated anew.
-        """
+        """Return all further effects screened linearly, the one that explains most first."""
         if names not in self.screened:
             near = min(self.screened, key=lambda other: len(other ^ names), default=None)
-            known = {} if near is None else {s.effect.name: s for s in self.screened[near]}
-            further = [effect for effect in self.effects if effect.name not in names]
-            trials = {
-                mesh: self.trial(names, on_mesh=mesh)
-                for mesh in {self.bench.on_mesh([*names, effect.name]) for effect in further}
+            known = () if near is None else self.screened[near]
+            further = {
+                effect: self.trial(names, on_mesh=self.bench.on_mesh([*names, effect.name]))
+                for effect in self.effects
+                if effect.name not in names
             }
-            at = {mesh: (trial, projector(trial)) for mesh, trial in trials.items()}
-            self.step.ahead(len(further))
-            rough, out = [], []
-            for effect in further:
-                trial, basis = at[self.bench.on_mesh([*names, effect.name])]
-                if effect.name in known:
-                    rough.append(screen_again(known[effect.name], trial, basis))
-                else:
-                    out.append(screen(self.bench, trial, effect, basis))
-                self.step()
-            best = max((s.part for s in [*rough, *out]), default=0.0)
-            least = ROUGH * max(LEAST_SIGNATURE, SHARE_OF_BEST * best)
-            for s in rough:
-                trial, basis = at[self.bench.on_mesh([*names, s.effect.name])]
-                out.append(s if s.part < least else refined(self.bench, trial, s, basis))
-            self.screened[names] = sorted(out, key=lambda s: -s.part)
+            self.screened[names] = screen_all(self.bench, further, known, self.step)
         return self.screened[names]
 
     def _better(self, names: Names) -> list[Names]:
