@@ -23,7 +23,7 @@ def reason_of(
     """
     sentences = []
     if causes:
-        both = _told_apart(math.sqrt(start.mean_square), math.sqrt(after.mean_square))
+        both = _distinct(math.sqrt(start.mean_square), math.sqrt(after.mean_square))
         names = listed([_title(cause.effect) for cause in causes])
         sentences += [
             f"The nominal model lacks: {names}.",
@@ -81,7 +81,7 @@ def _title(effect: str) -> str:
     return BY_NAME[effect].title.lower()
 
 
-def _told_apart(before: float, after: float) -> tuple[str, str]:
+def _distinct(before: float, after: float) -> tuple[str, str]:
     """Return two values to two digits, or to as many as show that they differ, four at most."""
     both = _two_digits(before), _two_digits(after)
     if both[0] != both[1] or before >= 9.95:
