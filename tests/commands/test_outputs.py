@@ -44,7 +44,19 @@ CALLS = {
     "challenge score": ["home/set", "home/entry"],
 }
 # Parameters that name no file, of any command that writes.
-NO_FILES = {"out", "force", "quiet", "as_json", "rrd", "live", "runs", "guess", "dynamics", "speed"}
+NO_FILES = {
+    "out",
+    "force",
+    "quiet",
+    "as_json",
+    "rrd",
+    "live",
+    "despite",
+    "runs",
+    "guess",
+    "dynamics",
+    "speed",
+}
 NO_FILES |= {"fit_own", "nodes", "controller", "compare", "disturb", "as_printed", "seeds", "seed"}
 NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
 NO_FILES |= {"tool", "what", "conditions"}

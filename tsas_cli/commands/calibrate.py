@@ -9,6 +9,7 @@ import tsas_cli as tsas
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
+    Despite,
     Force,
     Json,
     OutFolder,
@@ -33,6 +34,7 @@ def calibrate(
         typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
     ] = "slip",
     runs: ChosenRuns = None,
+    despite: Despite = None,
     rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
@@ -46,6 +48,7 @@ def calibrate(
             model=model,
             dynamics=dynamics,
             runs=names(runs),
+            despite=despite or (),
             force=force,
             step=step,
         )

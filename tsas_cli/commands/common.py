@@ -34,6 +34,10 @@ ChosenRuns = Annotated[
         autocompletion=run_ids,
     ),
 ]
+Despite = Annotated[
+    list[str] | None,
+    typer.Option("--despite", metavar="CODE", help="Accept errors of this check; may be repeated."),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace an existing output.")]
 Rrd = Annotated[bool, typer.Option("--rrd", help="Also write DIR/stream.rrd for tsas view.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]

@@ -4,6 +4,7 @@ import tsas_cli as tsas
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
+    Despite,
     Force,
     Json,
     ModelOption,
@@ -22,6 +23,7 @@ def diagnose(
     out: OutFolder,
     model: ModelOption = None,
     runs: ChosenRuns = None,
+    despite: Despite = None,
     rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
@@ -30,6 +32,12 @@ def diagnose(
     """Locate the residuals of the simulation, name their cause, and fit the extended model."""
     with progress("diagnose", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.diagnose(
-            dataset, out=out, model=model, runs=names(runs), force=force, step=step
+            dataset,
+            out=out,
+            model=model,
+            runs=names(runs),
+            despite=despite or (),
+            force=force,
+            step=step,
         )
     present(result, quiet=quiet, as_json=as_json)

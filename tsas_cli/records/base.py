@@ -20,6 +20,7 @@ from pydantic import (
     model_validator,
 )
 
+from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.support import __version__
 from tsas_cli.support.files import write_json
 
@@ -113,12 +114,24 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says of a dataset; `chosen` and `conditions` as of `DatasetSource`."""
+    """What a stage says of a dataset; `chosen` and `conditions` as of `DatasetSource`.
 
-    SPARSE = DatasetSource.SPARSE
+    `despite` are the errors in the recordings that were accepted.
+    """
+
+    SPARSE = DatasetSource.SPARSE | {"despite"}
     dataset: DatasetSource
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
+    despite: tuple[Finding, ...] = ()
+
+    def accepted(self) -> list[str]:
+        """Return a sentence for each error in the recordings that was accepted."""
+        return [
+            f"Despite an error in {f'run {error.run}' if error.run else 'the manifest'}: "
+            f"{error.sentence} (`{error.code}`)."
+            for error in self.despite
+        ]
 
     def source(self) -> DatasetSource:
         """Return the recordings as a model file names them."""

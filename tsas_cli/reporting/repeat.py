@@ -102,10 +102,11 @@ def _of_dataset(
         options = ["--dynamics", calibration.dynamics, "--out", folder[CalibrationFile]]
         if calibration.model.sha256 is not None:
             options += ["--model", calibration.model.file]
-        yield ["tsas", "calibrate", dataset, *options]
+        yield ["tsas", "calibrate", dataset, *options, *_despite(calibration)]
     if diagnosis := inputs.get(DiagnosisFile):
         options = ["--out", folder[DiagnosisFile]]
-        yield ["tsas", "diagnose", dataset, *_model(diagnosis.model, inputs), *options]
+        model = _model(diagnosis.model, inputs)
+        yield ["tsas", "diagnose", dataset, *model, *options, *_despite(diagnosis)]
     if simulation := inputs.get(SimulationFile):
         options = ["--dynamics", simulation.dynamics, "--out", folder[SimulationFile]]
         if simulation.nodes is not None:
@@ -122,6 +123,12 @@ def _of_dataset(
     if drive := inputs.get(DriveFile):
         options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
         yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[DriveFile]]
+
+
+def _despite(stage: OfDataset) -> Iterator[str]:
+    """Yield the options that accept the same errors in the recordings."""
+    for code in dict.fromkeys(error.code for error in stage.despite):
+        yield from ("--despite", code)
 
 
 def _model(model: ModelFile, inputs: Inputs) -> list[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from tsas_cli.records.base import OfDataset
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.inputs import Inputs
@@ -16,6 +17,8 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     many = count_of(len(manifest.run), "recording")
     yield f"{manifest.name} holds {many}, {manifest.kind}."
     yield _findings(inputs.check)
+    of_data = [stage for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
+    yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)
     first, *others = (calibration and calibration.cannot_tell) or ("",)
     if first:

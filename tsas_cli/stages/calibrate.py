@@ -25,17 +25,13 @@ from tsas_cli.physics.closed_form.capstan import (
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.quality.checks import sign
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
-from tsas_cli.recordings.quality.finding import CannotTell, Remark
-from tsas_cli.recordings.quality.stretches import look_by_stretches
-from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import CopiedRows
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.stages.checked import accepted_errors
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
-from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -68,7 +64,7 @@ class CalibrationResult(Result):
 
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
-        return notes(self.record.cannot_tell)
+        return notes([*self.record.accepted(), *self.record.cannot_tell])
 
 
 def calibrate(
@@ -78,6 +74,7 @@ def calibrate(
     model: Model | Named | None = None,
     dynamics: Literal["slip", "lugre"] = "slip",
     runs: Iterable[str] | None = None,
+    despite: str | Iterable[str] = (),
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> CalibrationResult:
@@ -95,6 +92,8 @@ def calibrate(
         `slip`: the distributed model; `lugre`: the dynamic one, with bristles and speed.
     runs
         The ids of the runs that are taken; all without it.
+    despite
+        Codes of checks whose errors are accepted (`tsas.check`); any other error stops it.
     force
         Replace the folder if it is there.
     step
@@ -110,13 +109,14 @@ def calibrate(
     Raises
     ------
     InputError
-        A recording or the model is wrong, a channel has the wrong sign, or `out` exists and
+        A recording or the model is wrong, the checks find an error, or `out` exists and
         `force` is not set.
     """
     taken = one_of(DYNAMICS, dynamics, "dynamics")
     data, given, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
+        accepted = accepted_errors(data, despite, step)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
         prepared = []
@@ -126,6 +126,7 @@ def calibrate(
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
         record = records.CalibrationFile(
             **counted.dataset.header(path),
+            despite=accepted,
             model=source_of(given, path),
             dynamics=taken,
             segments={
@@ -154,20 +155,10 @@ def calibrate(
 
 def _prepared(dataset: Dataset, run: Run, copied: CopiedRows) -> Prepared:
     """Return a run that is ready for the fit; of a long one the samples that the fit takes."""
-    long, rig = open_long(dataset, run, copied), dataset.manifest.rig
+    long = open_long(dataset, run, copied)
     if long is not None:
-        _refuse_wrong_sign(look_by_stretches((sign.CHECK,), long.columns, rig)["sign"], run)
         return long.prepared()
-    recording = dataset[run.id]
-    _refuse_wrong_sign(sign.find(RunSignals(recording, rig)), run)
-    return prepare(recording, dataset.manifest.session_start, copied)
-
-
-def _refuse_wrong_sign(said: Iterable[Remark | CannotTell], run: Run) -> None:
-    """Stop at what no parameter mends: a fit would end somewhere, and mean nothing."""
-    for one in said:
-        if isinstance(one, Remark):
-            raise InputError(one.sentence, where=run.file, remedy=one.remedy)
+    return prepare(dataset[run.id], dataset.manifest.session_start, copied)
 
 
 def _stiffness_rows(result: Calibration, manifest: Manifest) -> Iterator[records.Stiffness]:

@@ -22,6 +22,7 @@ from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.stages.checked import accepted_errors
 from tsas_cli.stages.given import Named, dataset_of, path_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -80,7 +81,7 @@ class DiagnosisResult(Result):
             self.reason,
             *(noise.text(name) for name, noise in slow.items()),
             f"Next: {self.next_experiment}",
-            *notes(self.record.cannot_tell),
+            *notes([*self.record.accepted(), *self.record.cannot_tell]),
         ]
 
 
@@ -90,6 +91,7 @@ def diagnose(
     out: Named | None = None,
     model: Model | Named | None = None,
     runs: Iterable[str] | None = None,
+    despite: str | Iterable[str] = (),
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> DiagnosisResult:
@@ -105,6 +107,8 @@ def diagnose(
         A model to begin with, or its file; the data sheet's without it.
     runs
         The ids of the runs that are taken; all without it.
+    despite
+        Codes of checks whose errors are accepted (`tsas.check`); any other error stops it.
     force
         Replace the folder if it is there.
     step
@@ -120,11 +124,13 @@ def diagnose(
     Raises
     ------
     InputError
-        A recording or the model is wrong, or `out` exists and `force` is not set.
+        A recording or the model is wrong, the checks find an error, or `out` exists and
+        `force` is not set.
     """
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
+        accepted = accepted_errors(data, despite, step)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = []
@@ -135,6 +141,7 @@ def diagnose(
         result = diagnose_runs(data.manifest, stated, prepared, step)
         record = records.DiagnosisFile(
             **counted.dataset.header(path),
+            despite=accepted,
             model=source_of(known, path),
             verdict=result.verdict,
             reason=result.reason,

@@ -14,7 +14,8 @@ TSAS = tsas
 PROGRAM =
 
 # Further options of the steps: DIAGNOSE = --runs bend90,bend180 leaves the other runs out; CALIBRATE
-# and SIMULATE accept --dynamics lugre.
+# and SIMULATE accept --dynamics lugre; CALIBRATE and DIAGNOSE accept --despite CODE for an error that
+# `tsas check` finds.
 STAGE = --rrd --force
 CALIBRATE =
 SIMULATE =

@@ -1,5 +1,6 @@
 """Checks of recordings for faults, before a model is fitted."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tsas_cli.recordings.dataset import Dataset
@@ -62,6 +63,11 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
 )
 DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (copies.CHECK,)
 CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
+CODES = (
+    *(check.code for check in MANIFEST_CHECKS),
+    *(check.code for check in RUN_CHECKS),
+    *(check.code for check in DATASET_CHECKS),
+)
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,24 @@ class Report:
 
 
 def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
-    """Return the findings on the manifest, each run and the whole dataset; `step` counts runs.
+    """Return the findings of `check_runs`, and those on the whole dataset.
+
+    Raises
+    ------
+    InputError
+        No run can be read.
+    """
+    of_runs = check_runs(dataset, step)
+    of_all = [
+        _attributed(result, check.code, result.run)
+        for check in DATASET_CHECKS
+        for result in check.find(dataset)
+    ]
+    return _report((*of_runs.findings, *of_runs.not_checked, *of_all))
+
+
+def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
+    """Return the findings on the manifest and on each run by itself; `step` counts runs.
 
     An unreadable run is a finding (`unreadable`), as long as another run can be read.
 
@@ -98,11 +121,10 @@ def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
-    results += [
-        _attributed(result, check.code, result.run)
-        for check in DATASET_CHECKS
-        for result in check.find(dataset)
-    ]
+    return _report(results)
+
+
+def _report(results: Sequence[Finding | NotChecked]) -> Report:
     return Report(
         tuple(r for r in results if isinstance(r, Finding)),
         tuple(r for r in results if isinstance(r, NotChecked)),

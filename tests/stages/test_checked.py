@@ -1,0 +1,53 @@
+"""Errors in the recordings stop `calibrate` and `diagnose`, unless they are accepted."""
+
+import numpy as np
+import pytest
+
+import tsas_cli as tsas
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
+
+RIG = Rig(cells=60)
+
+
+@pytest.fixture(scope="module")
+def pounds(tmp_path_factory):
+    """Return a dataset whose f_in is in pounds and says newton."""
+    recorded = dict(record(RIG, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0)))
+    recorded["f_in_N"] = np.asarray(recorded["f_in_N"]) / 4.4482216
+    folder = tmp_path_factory.mktemp("pounds") / "dataset"
+    return write_dataset(folder, [Run("a", recorded, conditions(RIG))])
+
+
+@pytest.mark.parametrize("stage", ["calibrate", "diagnose"])
+def test_an_error_stops_the_stage_and_says_how_to_go_on(pounds, tmp_path, stage):
+    with pytest.raises(tsas.InputError, match=r"f_in_N looks like pound-force.*--despite unit$"):
+        getattr(tsas, stage)(pounds, out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("stage", ["calibrate", "diagnose"])
+def test_an_accepted_error_stands_in_the_result_and_on_top_of_the_page(pounds, tmp_path, stage):
+    result = getattr(tsas, stage)(pounds, out=tmp_path / "out", despite="unit")
+    (error,) = result.record.despite
+    assert (error.code, error.run) == ("unit", "a")
+    said = "Despite an error in run a: f_out_N is 4.4"
+    assert any(said in sentence for sentence in result.sentences())
+    made = page(read_inputs([pounds, tmp_path / "out"]))
+    assert said in made[: made.index("<nav")]
+    assert f"{stage} {pounds}" in made
+    assert "--despite unit" in made[made.index('id="repeat"') :]
+
+
+def test_accepting_one_error_accepts_no_other(pounds):
+    with pytest.raises(tsas.InputError, match=r"--despite unit$"):
+        tsas.calibrate(pounds, despite=["sign", "clipped"])
+
+
+def test_a_code_that_no_check_has_is_refused(pounds):
+    with pytest.raises(tsas.InputError, match=r"did you mean unit\?"):
+        tsas.calibrate(pounds, despite="unti")
