@@ -272,6 +272,15 @@ def test_a_way_that_would_turn_stops_at_its_turning(chain):
     assert row(chain, SHARE)[2] == pytest.approx(-0.5)
 
 
+def test_rounding_turns_no_way_of_a_node_that_rests(chain):
+    """Else its step would never settle: the sign of a way of 1e-18 mm changes for ever."""
+    bristly = laws(presliding__length_mm=0.05)
+    row(chain, POSITION)[NODES] = row(chain, POSITION_BEFORE)[NODES] + 1e-15
+    row(chain, TRAVEL)[NODES] = -1e-15
+    assert not update_travel(chain, bristly)
+    assert not row(chain, TRAVEL)[NODES].any()
+
+
 def test_what_is_kept_and_expected(chain):
     """Laws that are not straight are looked for from where the last step would lead again."""
     row(chain, POSITION)[:] = 3.0, 2.0, 1.5, 1.0, 0.5

@@ -199,12 +199,15 @@ def add_presliding_slope(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def update_travel(chain: Floats, laws: SlipLaws) -> bool:
-    """Set the nodes' travel, zero on a change of sign; return whether one was set so."""
+    """Set the nodes' travel, zero on a change of sign; return whether one was set so.
+
+    A change of sign within rounding, of a node that rests, is none: it would never end.
+    """
     stopped = 0
     for i in range(1, laws.n + 1):
         moved = chain[POSITION + i] - chain[POSITION_BEFORE + i]
         reversed_sign = moved * chain[TRAVEL + i] < 0.0
-        stopped += reversed_sign
+        stopped += reversed_sign and abs(moved - chain[TRAVEL + i]) > TOLERANCE * laws.scale_mm
         moved = 0.0 if reversed_sign else moved
         chain[TRAVEL + i] = moved
         chain[SHARE + i] = friction_share(chain[SHARE_BEFORE + i], moved, laws.presliding_mm)
