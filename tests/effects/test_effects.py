@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tsas_cli.effects
-from tsas_cli.effects import EFFECTS, Effects
+from tsas_cli.effects import EFFECTS, LAWS, Effects
 
 FOLDER = Path(tsas_cli.effects.__file__).parent
 BY_NAME = {effect.name: effect for effect in EFFECTS}
@@ -30,7 +30,7 @@ SUFFIXES = {p.unit: unit_suffix(p.unit) for e in EFFECTS for p in e.parameters i
 def test_every_file_is_in_the_list_in_the_order_of_the_fields():
     files = {path.stem for path in FOLDER.glob("*.py")} - {"__init__", "effect"}
     assert {effect.name for effect in EFFECTS} == files
-    assert tuple(effect.name for effect in EFFECTS) == Effects._fields
+    assert tuple(effect.name for effect in (*EFFECTS, *LAWS)) == Effects._fields
 
 
 @every_effect

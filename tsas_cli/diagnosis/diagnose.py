@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
-from tsas_cli.diagnosis.held_out import Folds, folds_of
+from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
+from tsas_cli.diagnosis.law import Law, describe
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, estimates_with_tolerances, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
@@ -33,8 +34,9 @@ FEW_BLOCKS = 6  # fewer are too few for a test
 class Diagnosis:
     """The verdict with its evidence, which is None where it is undecided.
 
-    `model` is the extended one, `nominal` the one without the named effects, `stand_in_model` that
-    with all effects that gain, proven or not, where some are not. `search` has all
+    `model` is the extended one, with the `law` that describes what the named effects leave, if one
+    does; `nominal` the one without both, `stand_in_model` that with all effects that gain, proven
+    or not, where some are not and no law describes them. `search` has all
     hypotheses, `judged` those fitted with the final weights, among them the nominal model `before`
     and the `final` one.
     """
@@ -54,20 +56,27 @@ class Diagnosis:
     final: HypothesisFit | None = None
     cannot_tell: tuple[str, ...] = ()
     stand_in_model: Model | None = None
+    law: Law | None = None
 
     @property
     def unexplained(self) -> bool:
         """Whether a residual remains that no effect explains."""
-        return self.verdict in ("partly", "stand_in", "unexplained")
+        return self.verdict in ("partly", "described", "stand_in", "unexplained")
 
 
 def verdict_of(
-    rivals: Sequence[tuple[str, ...]], stand_ins: Sequence[str], *, complete: bool
+    rivals: Sequence[tuple[str, ...]],
+    stand_ins: Sequence[str],
+    *,
+    complete: bool,
+    described: bool = False,
 ) -> Verdict:
     """Return the verdict by the rivals of each proven effect, the stand-ins, and what remains.
 
-    `complete` is whether only noise remains.
+    `complete` is whether only noise remains, `described` whether a law describes what does.
     """
+    if not rivals and described:
+        return "described"
     if not rivals:
         if stand_ins:
             return "stand_in"
@@ -106,7 +115,7 @@ def diagnose_runs(
     if folds.blocks < FEW_BLOCKS:
         reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
-    found = _concluded(proven_effects(find_effects(bench, folds, step), step), base)
+    found = _concluded(proven_effects(find_effects(bench, folds, step), step), base, step)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model
     whole = None if whole is None else with_preload_correction(whole, runs)
@@ -142,7 +151,7 @@ def bench_folds(bench: Bench) -> Folds:
     return folds_of(blocks_of(bench.closed, bench.rigs))
 
 
-def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
+def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     """Return the diagnosis from the effects that prove to be causes."""
     judged, causes, stand_ins = proven.judged, proven.causes, proven.stand_ins
     bench, folds, named = judged.bench, judged.folds, judged.named
@@ -155,16 +164,21 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
         nominal, _ = estimates_with_tolerances(judged, before, tolerated)
         start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
+    law = None
+    if stand_ins or not after.complete:
+        law = describe(bench, final, predicted_folds(final, folds), step)
     verdict = verdict_of(
         [cause.rivals for cause in causes],
         [cause.effect for cause in stand_ins],
         complete=complete,
+        described=law is not None,
     )
-    errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
+    rmse = proven.held_out[named].rmse if law is None else law.after.rmse
+    errors = proven.held_out[frozenset()].rmse, rmse
     return Diagnosis(
         verdict,
-        reason_of(verdict, causes, stand_ins, start, after),
-        Model(proven.estimates).over(base.model),
+        reason_of(verdict, causes, stand_ins, start, after, law),
+        Model(proven.estimates if law is None else law.estimates).over(base.model),
         Model(tuple(nominal)).over(base.model),
         causes,
         stand_ins,
@@ -176,7 +190,8 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
         before,
         final,
         base.not_identifiable,
-        Model(proven.with_stand_ins).over(base.model) if stand_ins else None,
+        Model(proven.with_stand_ins).over(base.model) if stand_ins and law is None else None,
+        law,
     )
 
 

@@ -3,9 +3,12 @@
 import math
 from collections.abc import Sequence
 
+from tsas_cli.diagnosis.law import Law
 from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
 from tsas_cli.diagnosis.remainder import LEAST_SLOW, Remainder
 from tsas_cli.diagnosis.signals import signal_in_words
+from tsas_cli.recordings.columns import BY_NAME as BY_COLUMN
+from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.wording import listed
 
@@ -16,10 +19,12 @@ def reason_of(
     stand_ins: Sequence[FoundCause],
     start: Remainder,
     after: Remainder,
+    law: Law | None = None,
 ) -> str:
     """Return the verdict in sentences: what is lacking, what it gains, what remains.
 
-    `start` and `after` are the remaining residuals without and with the causes.
+    `start` and `after` are the remaining residuals without and with the causes, `law` describes
+    what remains.
     """
     sentences = []
     if causes:
@@ -57,6 +62,16 @@ def reason_of(
         if causes:
             sentences.append("No catalogued effect explains the remaining residual.")
         sentences += _dependence(after)
+    if law is not None:
+        falls = [
+            f"{name} from {number_text(law.before.rmse[name])} to "
+            f"{number_text(law.after.rmse[name])} {BY_COLUMN[name].unit}"
+            for name in law.after.rmse
+        ]
+        sentences.append(
+            "A law of unnamed origin describes it: with it the RMS on held-out data falls in "
+            f"{listed(falls)}."
+        )
     return " ".join(text[0].upper() + text[1:] for text in sentences)
 
 

@@ -20,18 +20,19 @@ from tsas_cli.support.arrays import Floats, Mask
 class HeldOutFit:
     """Errors of one hypothesis on held-out data.
 
-    `rmse` is the RMS of each channel, in its unit; `squares` the sum of squares of the weighted
-    residuals in each block, shape (blocks,).
+    `rmse` is the RMS of each channel, in its unit, `by_run` that of each run's number and channel;
+    `squares` the sum of squares of the weighted residuals in each block, shape (blocks,).
     """
 
     rmse: dict[str, float]
     squares: Floats
+    by_run: dict[tuple[int, str], float]
 
 
 def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
     """Return the errors of a hypothesis on each fold, simulated with a fit to the others."""
     runs = bench.errors_for(trial)
-    raw: dict[str, list[Floats]] = {}
+    raw: dict[tuple[int, str], list[Floats]] = {}
     weighted = np.empty(folds.fold.size)
     starts = np.concatenate(([0], np.cumsum(trial.sizes)))
     for fold in range(int(folds.fold.max()) + 1):
@@ -44,10 +45,18 @@ def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
             here = weighted[starts[k] : starts[k + 1]]
             here[held_out[k]] = run.residuals(rig)[held_out[k]]
             for name, errors in run.raw(rig).items():
-                raw.setdefault(name, []).append(errors[run.spread(name, held_out[k])])
-    rmse = {n: float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) for n, parts in raw.items()}
+                raw.setdefault((k, name), []).append(errors[run.spread(name, held_out[k])])
+    by_run = {key: _rms(parts) for key, parts in raw.items()}
+    rmse = {
+        name: _rms([part for (_, n), parts in raw.items() if n == name for part in parts])
+        for name in bench.channels
+    }
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
-    return HeldOutFit(rmse, squares.astype(np.float64))
+    return HeldOutFit(rmse, squares.astype(np.float64), by_run)
+
+
+def _rms(parts: Sequence[Floats]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 
 def refitted_values(bench: Bench, trial: HypothesisFit, folds: Folds, fold: int) -> Floats:

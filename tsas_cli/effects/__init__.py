@@ -28,6 +28,8 @@ from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET, ForceSenso
 from tsas_cli.effects.force_sensor_tilt import FORCE_SENSOR_TILT, ForceSensorTilt
 from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
 from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
+from tsas_cli.effects.laws.drive_law import DRIVE_LAW, DriveLaw
+from tsas_cli.effects.laws.load_law import LOAD_LAW, LoadLaw
 from tsas_cli.effects.load_damping import LOAD_DAMPING, LoadDamping
 from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, LoadDependentFriction
 from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
@@ -95,9 +97,11 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     SENSOR_LAG,
 )
 
+LAWS: tuple[Effect, ...] = (DRIVE_LAW, LOAD_LAW)  # of unnamed origin: they describe, not explain
+
 
 class Effects(NamedTuple):
-    """The values of every effect's parameters, neutral by default."""
+    """The values of the parameters of every effect and law, neutral by default."""
 
     backlash: Backlash = Backlash()
     drive_friction: DriveFriction = DriveFriction()
@@ -137,10 +141,13 @@ class Effects(NamedTuple):
     position_sensor_ripple: PositionSensorRipple = PositionSensorRipple()
     channel_delay: ChannelDelay = ChannelDelay()
     sensor_lag: SensorLag = SensorLag()
+    drive_law: DriveLaw = DriveLaw()
+    load_law: LoadLaw = LoadLaw()
 
 
 __all__ = [
     "EFFECTS",
+    "LAWS",
     "Backlash",
     "BendDrift",
     "ChannelDelay",
@@ -149,6 +156,7 @@ __all__ = [
     "DriveDamping",
     "DriveFriction",
     "DriveInertia",
+    "DriveLaw",
     "DriveRipple",
     "Effect",
     "Effects",
@@ -167,6 +175,7 @@ __all__ = [
     "LoadFriction",
     "LoadHysteresis",
     "LoadInertia",
+    "LoadLaw",
     "LoadRelaxation",
     "LoadRipple",
     "LoadSpringNonlinearity",

@@ -9,8 +9,9 @@ class Parameter:
     """One parameter of an effect: unit, exact neutral value, initial value, plausible bounds.
 
     A `shape` parameter matters only where another one of the effect is not neutral; a `period` is
-    one of a wave over a position, which shows where the stroke is longer. `starts` are the initial
-    values that a fit tries one after the other; empty means `start` alone.
+    one of a wave over a position, which shows where the stroke is longer. A `given` one is set by
+    the range of the recordings and not fitted. `starts` are the initial values that a fit tries one
+    after the other; empty means `start` alone.
     """
 
     name: str
@@ -21,12 +22,13 @@ class Parameter:
     upper: float
     shape: bool = False
     period: bool = False
+    given: bool = False
     starts: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class Effect:
-    """One cause that makes a real rig differ from the nominal one.
+    """One cause that makes a real rig differ from the nominal one, or a law of unnamed origin.
 
     `closed_form` is True where the closed form of the distributed model is valid with it, else the
     slip chain alone is. `equation` is the law as reports print it. `doc` is the docstring of the

@@ -261,4 +261,8 @@ def _pairs(trial: HypothesisFit) -> list[tuple[Unknown, float]]:
 
 
 def _parameters(effects: Sequence[str]) -> list[str]:
-    return [name for name in QUANTITIES if name.split(".")[0] in effects and "." in name]
+    return [
+        name
+        for name, quantity in QUANTITIES.items()
+        if name.split(".")[0] in effects and "." in name and not quantity.given
+    ]

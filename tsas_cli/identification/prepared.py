@@ -24,6 +24,8 @@ LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_m
 GAP = 1.5  # times the median time between a column's samples
 HIDDEN = 0.03  # error of f_in by a step, over its noise; all steps together stay below a third
 FINEST_TOLERANCE = 1e-7  # of a step of the dynamic chain
+MOTOR = "motor_angle_rad"
+MOST_UNEXPLAINED = 0.2  # of x_in's standard deviation, by the angle of a motor that drives it
 START_SAMPLES = 20  # for the tension at the start
 
 
@@ -33,7 +35,8 @@ class Prepared:
 
     Of a run that is too long for memory it has one in `every` of `all_rows` samples, those at
     reversals of the drive, and `all_noise`, the noise level of all samples. `temperature_C` is from
-    the lowest to the highest, where it was recorded.
+    the lowest to the highest, `motor_mm` the motor's angle in displacement of the drive, shape
+    (n,), where they were recorded.
     """
 
     run: Run
@@ -47,6 +50,7 @@ class Prepared:
     all_rows: int = 0
     all_noise: Mapping[str, float] | None = None
     temperature_C: tuple[float, float] | None = None
+    motor_mm: Floats | None = None
 
     @cached_property
     def drive(self) -> DriveInput:
@@ -60,6 +64,7 @@ class Prepared:
             load_values=None if load is None else self.conditioned[load].values,
             f_in_N=self.measured.get("f_in_N"),
             session_s=self.session_s,
+            motor_mm=self.motor_mm,
         )
 
     @cached_property
@@ -109,6 +114,7 @@ def drive_of(
     load_values: Floats | None,
     f_in_N: Floats | None,
     session_s: float,
+    motor_mm: Floats | None = None,
 ) -> DriveInput:
     """Return the drive of a run: conditioned values at the drive and, where given, at the load.
 
@@ -123,6 +129,7 @@ def drive_of(
         start_f_in_N=start,
         time_s=time_s - time_s[0],
         session_s=session_s,
+        motor_mm=motor_mm,
     )
 
 
@@ -179,7 +186,25 @@ def prepare(
         gap,
         session_s,
         temperature_C=_span(recording.columns.get("temperature_C")),
+        motor_mm=_motor(time_s, recording.columns.get(MOTOR), conditioned.get("x_in_mm")),
     )
+
+
+def _motor(time_s: Floats, angle: Floats | None, x_in: Conditioned | None) -> Floats | None:
+    """Return the motor's angle in displacement of the drive, conditioned, shape (n,) [mm].
+
+    The transmission is the slope of x_in over the angle. None where the angle was not recorded over
+    the whole run, or does not drive x_in.
+    """
+    if angle is None or x_in is None or not np.isfinite(angle).all() or np.ptp(angle) == 0.0:
+        return None
+    turned = condition(time_s, np.array(angle)).values
+    slope = np.polyfit(turned - turned.mean(), x_in.values, 1)[0]
+    left = x_in.values - slope * turned
+    if float(left.std()) > MOST_UNEXPLAINED * float(x_in.values.std()):
+        return None
+    driven: Floats = slope * turned
+    return driven
 
 
 def _span(values: Floats | None) -> tuple[float, float] | None:

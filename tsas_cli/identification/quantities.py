@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from tsas_cli.effects import EFFECTS
+from tsas_cli.effects import EFFECTS, LAWS
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import BRISTLES, NOMINAL
 
@@ -24,7 +24,7 @@ class Quantity:
 
     A positive one is fitted by its logarithm, any other in units of `size`. An effect's is named
     effect.parameter. One that is not shared has a value for each run; a shape matters only where
-    another parameter of its effect is not neutral.
+    another parameter of its effect is not neutral; a given one is never fitted.
     """
 
     name: str
@@ -36,6 +36,7 @@ class Quantity:
     positive: bool = False
     size: float = 1.0
     shape: bool = False
+    given: bool = False
 
     def scaled(self, value: float) -> float:
         """Return the scaled value of a parameter, clipped to its bounds."""
@@ -78,10 +79,11 @@ QUANTITIES: dict[str, Quantity] = (
             p.lower,
             p.upper,
             p.neutral,
-            size=abs(p.start - p.neutral) or abs(p.start),
+            size=abs(p.start - p.neutral) or abs(p.start) or 1.0,
             shape=p.shape,
+            given=p.given,
         )
-        for effect in EFFECTS
+        for effect in (*EFFECTS, *LAWS)
         for p in effect.parameters
     }
 )

@@ -98,7 +98,10 @@ def _solved(
     at = slice(None) if slip and is_closed(rig, drive) else simulation.points
     load = None if drive.load_values is None else drive.load_values[at]
     time_s = None if drive.time_s is None else drive.time_s[at]
-    followed = replace(drive, values=drive.values[at], load_values=load, time_s=time_s)
+    motor = None if drive.motor_mm is None else drive.motor_mm[at]
+    followed = replace(
+        drive, values=drive.values[at], load_values=load, time_s=time_s, motor_mm=motor
+    )
     return followed, solve(
         rig,
         followed,

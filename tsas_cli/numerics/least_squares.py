@@ -3,7 +3,7 @@
 Each step solves the normal equations of a few unknowns, which for tens of thousands of residuals
 is a hundred times cheaper than the decompositions of the whole Jacobian in scipy's
 `least_squares`; simulations dominate the cost. An unknown that reaches its bound stays there while
-the gradient points outwards (active set, projected steps).
+the gradient points outwards, and the others step on (active set).
 
 With slopes that are known nearly, from another fit, the Jacobian is corrected after each step by
 what the step has shown (Broyden 1965), and calculated where steps fail or reduce the squares by
@@ -78,9 +78,12 @@ def least_squares(
         gradient, gram = J.T @ r, J.T @ J
         at_bound = ((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0))
         step = _step(gradient, gram, at_bound, damping)
-        step = np.clip(x + step, lower, upper) - x
-        predicted = -2.0 * float(gradient @ step + 0.5 * step @ gram @ step)
+        inside = np.clip(x + step, lower, upper) - x
         squares = float(r @ r)
+        if np.any(inside != step):
+            inside = _bounded_step(step, gradient, gram, (lower - x, upper - x), damping)
+        step = inside
+        predicted = -2.0 * float(gradient @ step + 0.5 * step @ gram @ step)
         reliable = exact or values_only
         if predicted <= tolerance * (LAST if reliable and slopes is not None else 1.0) * squares:
             if reliable:
@@ -111,6 +114,28 @@ def least_squares(
     return Minimum(
         x, r, J, False, f"squares still decreasing after {most} evaluations", evaluations
     )
+
+
+def _bounded_step(
+    step: Floats, gradient: Floats, gram: Floats, bounds: tuple[Floats, Floats], damping: float
+) -> Floats:
+    """Return a damped step within bounds: what reaches one first stops there, the others go on.
+
+    A step that is cut in one unknown alone would leave the valley that it shares with others.
+    """
+    fixed = np.zeros(step.size, bool)
+    at, toward = np.zeros(step.size), step
+    while True:
+        beyond = (toward < bounds[0]) | (toward > bounds[1])
+        if not beyond.any():
+            return toward
+        end = np.clip(toward, *bounds)
+        way = np.full(step.size, np.inf)
+        way[beyond] = np.abs((end - at)[beyond] / (toward - at)[beyond])
+        first = int(np.argmin(way))
+        at = at + way[first] * (toward - at)
+        at[first], fixed[first] = end[first], True
+        toward = at + _step(gradient + gram @ at, gram, fixed, damping)
 
 
 def _corrected(J: Floats, step: Floats, change: Floats, weights: Floats) -> Floats:

@@ -107,19 +107,32 @@ def simulate_pieces(
         else:
             state, memory = start.state, start.memory
         to = piece.until if piece.next_begin is None else piece.next_begin
-        time_s = _times(piece.drive)
         outputs, state = _follow(rig, ends.part(piece.begin, to), mesh, state)
-        signals = sensed(outputs, time_s[piece.begin : to], rig, ends.boundary, memory)
+        signals = _read(rig, piece, ends, outputs, slice(piece.begin, to), memory)
         if piece.handover is not None:
             at = piece.handover
             position, direction = float(ends.drive[at]), float(ends.direction[at])
             start = Start(deepcopy(state), memory.copy(), position, direction)
             further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
-            further = sensed(further, time_s[to : piece.until], rig, ends.boundary, memory)
+            further = _read(rig, piece, ends, further, slice(to, piece.until), memory)
             signals = _concatenated(signals, further)
         drive = _part(piece.drive, piece.begin, piece.until)
         response = readings_of(rig, drive, signals, solver_of(mesh, dynamics))
         yield _own_samples(response, piece.first - piece.begin, piece.end - piece.begin)
+
+
+def _read(
+    rig: Rig,
+    piece: _OverlappingPiece,
+    ends: EndInputs,
+    outputs: Output,
+    at: slice,
+    memory: Floats,
+) -> Output:
+    """Return the signals of some samples of a piece, with the memory of the sensors."""
+    motor = piece.drive.motor_mm
+    own = None if motor is None else motor[at]
+    return sensed(outputs, _times(piece.drive)[at], rig, ends.boundary, memory, own)
 
 
 def _at_rest(rig: Rig, ends: EndInputs, mesh: int) -> State:
@@ -187,16 +200,25 @@ def _part(drive: DriveInput, first: int, end: int) -> DriveInput:
     """Return the samples first … end−1 of a drive."""
     load = None if drive.load_values is None else drive.load_values[first:end]
     time_s = _times(drive)[first:end]
-    return replace(drive, values=drive.values[first:end], load_values=load, time_s=time_s)
+    motor = None if drive.motor_mm is None else drive.motor_mm[first:end]
+    return replace(
+        drive,
+        values=drive.values[first:end],
+        load_values=load,
+        time_s=time_s,
+        motor_mm=motor,
+    )
 
 
 def _concatenated_drives(parts: Sequence[DriveInput]) -> DriveInput:
     loads = [part.load_values for part in parts if part.load_values is not None]
+    motors = [part.motor_mm for part in parts if part.motor_mm is not None]
     return replace(
         parts[0],
         values=np.concatenate([part.values for part in parts]),
         load_values=np.concatenate(loads) if loads else None,
         time_s=np.concatenate([_times(part) for part in parts]),
+        motor_mm=np.concatenate(motors) if motors else None,
     )
 
 

@@ -32,7 +32,8 @@ class DriveInput:
     `time_s` is the time since the start of the run, shape (n,); without it the run is quasi-static:
     no rate and no time plays a part. `session_s` is the start of the run since that of the first
     run of its dataset. `start_f_in_N` is the tension at the drive at the start of the run, where it
-    was measured: the tendon's history before that is chosen so that it fits.
+    was measured: the tendon's history before that is chosen so that it fits. `motor_mm` is the
+    motor's angle in displacement of the drive, where it was recorded, shape (n,).
     """
 
     values: Floats
@@ -42,6 +43,7 @@ class DriveInput:
     start_f_in_N: float | None = None
     time_s: Floats | None = None
     session_s: float = 0.0
+    motor_mm: Floats | None = None
 
 
 @dataclass(frozen=True)

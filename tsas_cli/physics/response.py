@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from tsas_cli.effects import EFFECTS, Effects
+from tsas_cli.effects import EFFECTS, LAWS, Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
@@ -35,7 +35,8 @@ MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 _effects_on_chain = attrgetter(*ON_CHAIN)
 _NEUTRAL_ON_CHAIN = _effects_on_chain(Effects())
-_NEUTRAL_SENSORS = {e.name: getattr(Effects(), e.name) for e in EFFECTS if e.acts_on == "sensor"}
+READ = tuple(e.name for e in (*EFFECTS, *LAWS) if e.acts_on == "sensor" or e in LAWS)
+_NEUTRAL_READ = {name: getattr(Effects(), name) for name in READ}
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,9 @@ def simulate(
 
 def read(rig: Rig, drive: DriveInput, solved: SolvedRun) -> Prediction:
     """Return the sensor readings of a solved run."""
-    signals = sensed(solved.output, drive.time_s, rig, boundary_of(drive), new_memory())
+    signals = sensed(
+        solved.output, drive.time_s, rig, boundary_of(drive), new_memory(), drive.motor_mm
+    )
     response = readings_of(rig, drive, signals, solved.solver)
     return replace(response, step_ends_s=solved.step_ends_s, frames=solved.frames)
 
@@ -111,7 +114,7 @@ def mechanics_of(rig: Rig, drive: DriveInput) -> Rig:
     """
     if drive.kind != "displacement" or drive.load != "spring" or drive.start_f_in_N is not None:
         return rig
-    effects = rig.effects._replace(**_NEUTRAL_SENSORS)
+    effects = rig.effects._replace(**_NEUTRAL_READ)
     return rig._replace(effects=effects, x_out_zero_mm=0.0)
 
 

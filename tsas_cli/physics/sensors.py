@@ -17,6 +17,8 @@ from tsas_cli.effects.force_sensor_gain_drift import drifted_gain
 from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
 from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.force_sensor_tilt import read_tilted
+from tsas_cli.effects.laws.drive_law import DriveLaw, drive_law_force
+from tsas_cli.effects.laws.load_law import LoadLaw, load_law_motion
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.effects.position_sensor_ripple import (
     PositionSensorRipple,
@@ -26,7 +28,8 @@ from tsas_cli.effects.position_sensor_ripple import (
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.numerics.settling import lag_after
-from tsas_cli.physics.boundary import FORCE, Boundary
+from tsas_cli.numerics.stops import ELEMENTS
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, Boundary
 from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
@@ -34,26 +37,36 @@ from tsas_cli.support.arrays import Floats
 Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
 CHANNELS: tuple[Channel, ...] = ("f_in_N", "f_out_N", "x_out_mm")
 
+NO_DRIVE_LAW, NO_LOAD_LAW = DriveLaw(), LoadLaw()
+LAW_MEMORY = 5  # where the memory of a law begins
+
 
 def new_memory() -> Floats:
     """Return the memory of the sensors before the first sample of a run.
 
     For each of `CHANNELS` time [s] and input of its low pass at the last sample, and by how much
-    the low pass lags there; input and force of its elastoplastic element; shape (3, 5), NaN before
-    the first sample.
+    the low pass lags there; input and force of its elastoplastic element; input and states of the
+    elements of the law that acts on it; shape (3, 12), NaN before the first sample.
     """
-    return np.full((len(CHANNELS), 5), np.nan)
+    return np.full((len(CHANNELS), LAW_MEMORY + 1 + ELEMENTS), np.nan)
 
 
 def sensed(
-    output: Output, time_s: Floats | None, rig: Rig, boundary: Boundary, memory: Floats
+    output: Output,
+    time_s: Floats | None,
+    rig: Rig,
+    boundary: Boundary,
+    memory: Floats,
+    motor_mm: Floats | None = None,
 ) -> Output:
-    """Return an output with its signals after tilt, crosstalk, hysteresis and low pass.
+    """Return an output with its signals after laws, tilt, crosstalk, hysteresis and low pass.
 
     `time_s` are the times of the samples, shape (n,), None for a run without time, which passes no
     filter. A force that is given at the `boundary` is read as it is given, without tilt, crosstalk
-    and hysteresis. `memory` is that after the sample before, updated in place.
+    and hysteresis. `memory` is that after the sample before, updated in place. `motor_mm` is
+    the motor's displacement, where it was recorded, shape (n,).
     """
+    output = with_laws(output, rig, boundary, memory, motor_mm)
     f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
     loops, tilts = rig.effects.force_sensor_hysteresis, rig.effects.force_sensor_tilt
     if boundary.drive != FORCE:
@@ -77,6 +90,22 @@ def sensed(
                 signals[k] = low_pass(signals[k], time_s, lag_s, memory[k])
     f_in, f_out, x_out = signals
     return output._replace(f_in=f_in, f_out=f_out, x_out=x_out)
+
+
+def with_laws(
+    output: Output, rig: Rig, boundary: Boundary, memory: Floats, motor_mm: Floats | None
+) -> Output:
+    """Return an output with the laws of unnamed origin at both ends, but for a given quantity."""
+    effects, f_in, x_out = rig.effects, output.f_in, output.x_out
+    if boundary.drive != FORCE and effects.drive_law != NO_DRIVE_LAW:
+        f_in = f_in + drive_law_force(
+            effects.drive_law, output.x_in, f_in, memory[0, LAW_MEMORY:], motor_mm
+        )
+    if boundary.load != DISPLACEMENT and effects.load_law != NO_LOAD_LAW:
+        x_out = x_out + load_law_motion(
+            effects.load_law, x_out, output.f_out, memory[2, LAW_MEMORY:]
+        )
+    return output._replace(f_in=f_in, x_out=x_out)
 
 
 @kernel

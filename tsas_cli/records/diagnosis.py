@@ -20,7 +20,14 @@ from tsas_cli.records.base import (
 EXTENDED_MODEL, NOMINAL_MODEL = "model-extended.toml", "model-nominal.toml"
 STAND_IN_MODEL = "model-stand-in.toml"
 Verdict = Literal[
-    "named", "ambiguous", "partly", "stand_in", "unexplained", "sufficient", "undecided"
+    "named",
+    "ambiguous",
+    "partly",
+    "described",
+    "stand_in",
+    "unexplained",
+    "sufficient",
+    "undecided",
 ]
 UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 
@@ -50,6 +57,28 @@ class NamedCause(Record):
             if value is not None and value.unit != unit:
                 raise ValueError(f"{name} is in {value.unit}, expected {unit}")
         return self
+
+
+class DescribedLaw(Record):
+    """A law of unnamed origin; the errors are its channel's on held-out data.
+
+    `after_reversal` is the change of the channel over the travel since a reversal from full slip,
+    at the mean tension; `along_stroke` the curve at the places.
+    """
+
+    law: str
+    title: str
+    equation: str
+    sentence: str
+    parameters: dict[str, Value]
+    channel: str
+    unit: str
+    rmse_before: NotNegative
+    rmse_after: NotNegative
+    travel_mm: tuple[float, ...] = ()
+    after_reversal: tuple[float, ...] = ()
+    place_mm: tuple[float, ...] = ()
+    along_stroke: tuple[float, ...] = ()
 
 
 class HeldOut(Record):
@@ -144,6 +173,7 @@ class Findings(Record):
     verdict: Verdict
     named: tuple[NamedCause, ...]
     stand_ins: tuple[NamedCause, ...] = ()
+    laws: tuple[DescribedLaw, ...] = ()
     channels: dict[str, HeldOut] = {}
     remainder: RemainingResidual
     next_experiment: str = ""
@@ -164,7 +194,7 @@ class Findings(Record):
     @property
     def warns(self) -> bool:
         """Whether it says that something is there which it has no name for."""
-        warned = ("partly", "stand_in", "unexplained")
+        warned = ("partly", "described", "stand_in", "unexplained")
         return self.verdict in warned or self.remainder.unexplained
 
 

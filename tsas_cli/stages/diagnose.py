@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tsas_cli.diagnosis import found
 from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
+from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.against_data_sheet import contradictions
@@ -47,7 +48,7 @@ class DiagnosisResult(Result):
 
     @property
     def verdict(self) -> records.Verdict:
-        """`named`, `ambiguous`, `partly`, `stand_in`, `unexplained`, `sufficient`, `undecided`."""
+        """`named`, `ambiguous`, `partly`, `described`, `stand_in` … (`records.Verdict`)."""
         return self.diagnosis.verdict
 
     @property
@@ -79,6 +80,7 @@ class DiagnosisResult(Result):
         slow = self.record.remainder.slow_noise
         return [
             self.reason,
+            *(law.sentence for law in self.record.laws),
             *(noise.text(name) for name, noise in slow.items()),
             f"Next: {self.next_experiment}",
             *notes([*self.record.accepted(), *self.record.cannot_tell]),
@@ -147,6 +149,7 @@ def diagnose(
             reason=result.reason,
             named=[found.cause_of(cause) for cause in result.causes],
             stand_ins=[found.cause_of(cause) for cause in result.stand_ins],
+            laws=() if result.law is None else records_of(result.law),
             channels=found.held_out_of(result),
             remainder=found.remainder_of(result),
             next_experiment=next_experiment(result, step),

@@ -1,0 +1,1 @@
+"""Laws of unnamed origin: what describes a residual that no proven cause explains."""

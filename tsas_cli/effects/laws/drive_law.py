@@ -1,0 +1,79 @@
+"""A force at the drive depends on its displacement, by a law of unnamed origin.
+
+What one sees: a residual of f_in that repeats with the displacement of the drive: with its place,
+and with the travel since its reversals; f_out and x_out have none of it.
+Equation: f_in = T + Σ (friction_k + share_k·T)·s_k + curve(x), T the tension of the tendon, s_k the
+stop operator of width travel·4^(1−k) on the displacement of the motor where its angle was recorded,
+else of the drive: generalised Maxwell slip (Al-Bender, Lampaert and Swevers 2005). With friction
+and shares that are not negative its elements only dissipate. The paper has none.
+Mistaken for: a cause. A law describes what no proven cause explains: friction, lost motion or
+springs at the drive, and whatever else acts there.
+Not validated: displacements, tensions and speeds beyond those that it was fitted to.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.stops import ELEMENTS, curve_of, states_of, widths_of
+from tsas_cli.support.arrays import Floats
+
+
+class DriveLaw(NamedTuple):
+    """Longest width, range of the curve; weights of the elements; heights of the curve."""
+
+    travel_mm: float = 1.0
+    low_mm: float = 0.0
+    high_mm: float = 1.0
+    friction_1_N: float = 0.0
+    friction_2_N: float = 0.0
+    friction_3_N: float = 0.0
+    friction_4_N: float = 0.0
+    friction_5_N: float = 0.0
+    friction_6_N: float = 0.0
+    share_1: float = 0.0
+    share_2: float = 0.0
+    share_3: float = 0.0
+    share_4: float = 0.0
+    share_5: float = 0.0
+    share_6: float = 0.0
+    curve_1_N: float = 0.0
+    curve_2_N: float = 0.0
+    curve_3_N: float = 0.0
+    curve_4_N: float = 0.0
+    curve_5_N: float = 0.0
+
+
+FIRST = 3  # of the weights
+
+
+def drive_law_force(
+    law: DriveLaw, x: Floats, tension: Floats, memory: Floats, motor_mm: Floats | None
+) -> Floats:
+    """Return the force beside the tendon at each sample [N], from arrays of shape (n,).
+
+    `memory` is that of the elements, updated in place.
+    """
+    friction, share = law[FIRST : FIRST + ELEMENTS], law[FIRST + ELEMENTS : FIRST + 2 * ELEMENTS]
+    states = states_of(x if motor_mm is None else motor_mm, widths_of(law.travel_mm), memory)
+    heights = law[FIRST + 2 * ELEMENTS :]
+    force: Floats = friction @ states + (share @ states) * tension
+    return force + curve_of(x, law.low_mm, law.high_mm, heights)
+
+
+DRIVE_LAW = Effect(
+    name="drive_law",
+    title="Force at the drive, of unnamed origin",
+    acts_on="drive",
+    closed_form=True,
+    equation="f_in = T + Σ (friction_k + share_k·T)·s_k + curve(x)",
+    doc=__doc__,
+    parameters=(
+        Parameter("travel_mm", "mm", 1.0, 1.0, 1e-6, 1e4, given=True),
+        Parameter("low_mm", "mm", 0.0, 0.0, -1e5, 1e5, given=True),
+        Parameter("high_mm", "mm", 1.0, 1.0, -1e5, 1e5, given=True),
+        *(Parameter(f"friction_{k}_N", "N", 0.0, 1.0, 0.0, 1e4) for k in range(1, 7)),
+        *(Parameter(f"share_{k}", "1", 0.0, 0.1, 0.0, 1.0) for k in range(1, 7)),
+        *(Parameter(f"curve_{k}_N", "N", 0.0, 1.0, -1e4, 1e4) for k in range(1, 6)),
+    ),
+    experiment="Nested strokes of the drive without the tendon: what f_in reads is this law alone.",
+)

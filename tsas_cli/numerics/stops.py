@@ -1,0 +1,48 @@
+"""Stop operators, the elements of generalised Maxwell slip, and curves of straight lines.
+
+An element follows a displacement until it has moved by its width, and then yields: its state is the
+share of its width, −1 to 1. A sum of elements with weights that are not negative only dissipates
+(Prandtl and Ishlinskii; Al-Bender, Lampaert and Swevers 2005).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.elastoplastic import yielded
+from tsas_cli.support.arrays import Floats
+
+ELEMENTS, KNOTS = 6, 5
+RATIO = 0.25  # width of each element over that of the one before
+
+
+def widths_of(longest: float) -> Floats:
+    """Return the widths of the elements, the longest first, shape (ELEMENTS,)."""
+    return np.array([longest * RATIO**k for k in range(ELEMENTS)])
+
+
+@kernel
+def states_of(values: Floats, widths: Floats, memory: Floats) -> Floats:
+    """Return the state of each element along a signal [1], shape (elements, n).
+
+    `memory` has the value before the first one and the states there, shape (1 + elements,), updated
+    in place; with NaN, at the start of a run, the elements are without force at the first value.
+    """
+    out = np.empty((widths.size, values.size))
+    last = memory[0]
+    for k in range(widths.size):
+        state, last = memory[1 + k], memory[0]
+        for i in range(values.size):
+            state = 0.0 if np.isnan(last) else yielded(state, (values[i] - last) / widths[k], 1.0)
+            last = values[i]
+            out[k, i] = state
+        memory[1 + k] = state
+    memory[0] = last
+    return out
+
+
+def curve_of(values: Floats, low: float, high: float, heights: Sequence[float]) -> Floats:
+    """Return a curve of straight lines between heights at even distances, constant outside."""
+    curve: Floats = np.interp(values, np.linspace(low, high, len(heights)), heights)
+    return curve
