@@ -13,7 +13,6 @@ from typer.exceptions import TyperException
 
 from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.check import check
-from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.compare import compare
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.doctor import doctor
@@ -81,8 +80,8 @@ PANELS: dict[str, tuple[Callable[..., None], ...]] = {
     ),
     "Understanding a recording or a model": (view, compare, plan, effects, explain, verify),
     "Many datasets": (runs, sweep, upload),
-    STUDIES: (close_loop,),
     "Setup": (init, doctor),
+    STUDIES: (),
 }
 for panel, commands in PANELS.items():
     for command in commands:

@@ -22,7 +22,6 @@ from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.records.drive import DriveDiagnosis
 from tsas_cli.records.tracking import Scores
 from tsas_cli.stages.calibrate import calibrate
-from tsas_cli.stages.close_drive import known_drives, record_drive
 from tsas_cli.stages.diagnose import diagnose
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.tracking.cases import Case
@@ -31,6 +30,7 @@ from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Known, Plant, plan, run_loop
+from tsas_studies.closing.drive import known_drives, record_drive
 
 STEPS = 7  # pieces of work of a case
 MODELS = ("data sheet", "calibrated", "extended", "true")

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.close_cases import MODELS, STEPS, close
 from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import stage_folder
@@ -14,6 +13,7 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.cases import CASES, Case
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import read_settings
+from tsas_studies.closing.cases import MODELS, STEPS, close
 
 
 @dataclass(frozen=True, repr=False, eq=False)
