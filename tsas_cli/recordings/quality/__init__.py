@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
@@ -62,12 +63,8 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     no_steady_motion.CHECK,
 )
 DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (copies.CHECK,)
-CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
-CODES = (
-    *(check.code for check in MANIFEST_CHECKS),
-    *(check.code for check in RUN_CHECKS),
-    *(check.code for check in DATASET_CHECKS),
-)
+CHECKS: tuple[QualityCheck[Any], ...] = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
+CODES = tuple(check.code for check in CHECKS)
 
 
 @dataclass(frozen=True)

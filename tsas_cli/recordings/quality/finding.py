@@ -44,11 +44,15 @@ class QualityCheck(Generic[Subject]):
         Yields a remark for each fault, and a reason if the check does not apply.
     needs
         Columns without which the check does not apply.
+    of_long
+        What of a run that is too long for memory is checked: its stretches one by one, or the run
+        decimated; for `strokes` the run decimated, if that still shows them, else its stretches.
     """
 
     code: str
     find: Callable[[Subject], Iterator[Remark | CannotTell]]
     needs: tuple[str, ...] = ()
+    of_long: Literal["stretches", "decimated", "strokes"] = "stretches"
 
 
 @dataclass(frozen=True)
