@@ -6,7 +6,6 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeGuard
 
 import typer
 from typer.exceptions import TyperException
@@ -115,12 +114,11 @@ def run() -> None:
             raise
         if _was_stopped(error):
             sys.exit(EXIT_CODE)
-        code = _refused(error) if _is_refusal(error) else _defect(error)
+        if isinstance(error, OSError) and error.errno in REFUSALS:
+            code = _refused(error)
+        else:
+            code = _defect(error)
     sys.exit(code)
-
-
-def _is_refusal(error: Exception) -> TypeGuard[OSError]:
-    return isinstance(error, OSError) and error.errno in REFUSALS
 
 
 def _refused(error: OSError) -> int:

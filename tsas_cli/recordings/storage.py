@@ -217,12 +217,9 @@ def files_of(scheme: str) -> Any:
     files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
     files.retries = TRIES
     logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # it raises what it logs
-    files.loop.call_soon_threadsafe(files.loop.set_exception_handler, _not_printed)
+    # A task that its call has given up fails in silence: the call has raised its own error.
+    files.loop.call_soon_threadsafe(files.loop.set_exception_handler, lambda *_: None)
     return files
-
-
-def _not_printed(_loop: object, _context: object) -> None:
-    """Let a task that its call has given up fail in silence: the call has raised its own error."""
 
 
 if hasattr(os, "register_at_fork"):  # connections belong to one process

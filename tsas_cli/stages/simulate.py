@@ -162,7 +162,8 @@ def simulate(
                 own = with_own_values(taken, run) if fit_own else taken
                 compared = compare(run, own, dynamics, nodes)
                 summary = compared.summary
-            used = _of_run(own, entry.id).over(used)
+            of_run = Model(tuple(e for e in own.estimates if e.run == entry.id))
+            used = of_run.over(used)
             record = record.with_run(
                 entry.id, summary.record(run), segment_records(run, segment(run))
             )
@@ -181,11 +182,6 @@ def simulate(
             write_model(folder / MODEL_FILE, used, version=record.version, dataset={})
     written = path and WrittenRuns(path / "runs", {run.id: run for run in data.runs})
     return SimulationResult(record.content(), path, record, taken, written or kept)
-
-
-def _of_run(model: Model, run: str) -> Model:
-    """Return what of a model belongs to a run alone."""
-    return Model(tuple(e for e in model.estimates if e.run == run))
 
 
 def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:

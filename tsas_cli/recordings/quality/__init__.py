@@ -114,7 +114,8 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
             results += _check_run(dataset, run)
         except InputError as error:
             failures.append(error)
-            results.append(_unreadable(run, error))
+            remedy = "restore the file or ingest again"
+            results.append(Finding("unreadable", "error", run.id, None, error.line(), remedy))
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
@@ -143,10 +144,4 @@ def _attributed(result: Remark | CannotTell, code: str, run: str | None) -> Find
         return NotChecked(code, run, result.reason)
     return Finding(
         code, result.severity, run, result.column, result.sentence, result.remedy, result.first_s
-    )
-
-
-def _unreadable(run: Run, error: InputError) -> Finding:
-    return Finding(
-        "unreadable", "error", run.id, None, error.line(), "restore the file or ingest again", None
     )

@@ -154,15 +154,14 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
         file = open_run(inputs.dataset.folder, run)
         written = {source.stage: inputs.written_columns(run.id, source.stage) for source in given}
         channels = tuple(
-            Channel(name, tuple(s for s in given if _says(s, name, written[s.stage])))
+            Channel(
+                name,
+                tuple(s for s in given if name in s.columns and s.named(name) in written[s.stage]),
+            )
             for name in BY_NAME
             if name in file.names and name != TIME
         )
         yield SeenRun(inputs, file, channels, _segments(inputs, run.id), tracked.get(run.id))
-
-
-def _says(source: Source, column: str, written: frozenset[str]) -> bool:
-    return column in source.columns and source.named(column) in written
 
 
 def _sources(inputs: Inputs) -> Iterator[Source]:
