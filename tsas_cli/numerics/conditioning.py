@@ -52,12 +52,9 @@ class Conditioned:
 
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
-    """Return the cleaned signal; its times increase, evenly or not.
+    """Return the cleaned signal of times and values, shape (n,).
 
-    Parameters
-    ----------
-    time_s, values
-        Times and the signal, shape (n,); NaN in the signal is a gap, filled by a straight line.
+    The times increase, evenly or not; NaN in the values is a gap, filled by a straight line.
     """
     finite = np.flatnonzero(np.isfinite(values))
     if finite.size < values.size:

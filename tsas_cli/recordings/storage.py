@@ -27,18 +27,10 @@ Returned = TypeVar("Returned")
 
 @dataclass(frozen=True)
 class Address:
-    """A folder or an object on object storage.
+    """A folder or an object on object storage."""
 
-    Parameters
-    ----------
-    scheme
-        `s3` or `gs`.
-    path
-        Bucket and key, without a slash at the end.
-    """
-
-    scheme: str
-    path: str
+    scheme: str  # s3 or gs
+    path: str  # bucket and key, without a slash at the end
 
     def __str__(self) -> str:
         """Return the address as text; it never holds a key or a password."""

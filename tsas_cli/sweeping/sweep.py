@@ -83,24 +83,10 @@ def sweep_tasks(
     force: bool,
     step: Steps,
 ) -> SweepResult:
-    """Return the results of all tasks, after running the pending ones.
+    """Return the results of all tasks, after running the pending ones, or all with `force`.
 
-    Parameters
-    ----------
-    plan
-        The plan of the tasks.
-    tasks
-        All of them.
-    out
-        A new folder, or that of an earlier sweep.
-    pool
-        Runs tasks, and yields their number and outcome.
-    inputs
-        Input files besides those of the tasks.
-    force
-        Repeat completed tasks.
-    step
-        Called after each task.
+    `out` is a new folder, or that of an earlier sweep. The pool runs tasks, and yields their number
+    and outcome. `inputs` are files besides those of the tasks.
 
     Raises
     ------
