@@ -60,11 +60,6 @@ def predict(
 
     With `fit_own` each run's own preload and zeros are fitted to it first. `step` is called after
     each simulation.
-
-    Raises
-    ------
-    InputError
-        A recording, or a model's file, cannot be read.
     """
     predictions = Predictions(step)
     runs = {n: predictions.of(side, dataset, fit_own=fit_own) for n, side in models.items()}

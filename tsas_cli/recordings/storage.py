@@ -27,7 +27,11 @@ Returned = TypeVar("Returned")
 
 @dataclass(frozen=True)
 class Address:
-    """A folder or an object on object storage."""
+    """A folder or an object on object storage.
+
+    What asks the storage raises FileNotFoundError where there is no such object, and InputError
+    where the storage fails or refuses access.
+    """
 
     scheme: str  # s3 or gs
     path: str  # bucket and key, without a slash at the end
@@ -45,13 +49,7 @@ class Address:
         return self
 
     def is_file(self) -> bool:
-        """Return whether the object exists.
-
-        Raises
-        ------
-        InputError
-            The storage fails.
-        """
+        """Return whether the object exists."""
         try:
             self.size()
         except FileNotFoundError:
@@ -59,50 +57,22 @@ class Address:
         return True
 
     def size(self) -> int:
-        """Return the size of the object [bytes].
-
-        Raises
-        ------
-        FileNotFoundError
-            There is no such object.
-        InputError
-            The storage fails.
-        """
+        """Return the size of the object [bytes]."""
         info = self._call(lambda files: _in_time(files, files._info, self.path))  # noqa: SLF001
         if info["type"] != "file":
             raise FileNotFoundError(str(self))
         return int(info["size"])
 
     def read_bytes(self, start: int | None = None, end: int | None = None) -> bytes:
-        """Return the bytes of the object, or those from `start` up to `end`, in one request.
-
-        Raises
-        ------
-        FileNotFoundError
-            There is no such object.
-        InputError
-            The storage fails.
-        """
+        """Return the bytes of the object, or those from `start` up to `end`, in one request."""
         return bytes(self._call(lambda files: files.cat_file(self.path, start=start, end=end)))
 
     def write_bytes(self, content: bytes) -> None:
-        """Write the object, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            The storage fails or refuses access.
-        """
+        """Write the object, whole or not at all."""
         self._call(lambda files: files.pipe_file(self.path, content))
 
     def copy_from(self, file: Path) -> None:
-        """Write the object from a local file, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            The storage fails or refuses access.
-        """
+        """Write the object from a local file, whole or not at all."""
         self._call(lambda files: files.put_file(str(file), self.path))
 
     def _call(self, call: Callable[[Any], Returned]) -> Returned:

@@ -54,11 +54,6 @@ def close(
 
     The controllers know the drive, so that what the tendon's model lacks stands alone. `step` is
     called after each piece of work.
-
-    Raises
-    ------
-    InputError
-        As the stages raise it.
     """
     sheet = stated_rig(settings)
     plant = Plant(with_values(sheet, case.hidden), settings.drive.actuator())

@@ -43,13 +43,7 @@ def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
 def look_by_stretches(
     checks: Sequence[QualityCheck[RunSignals]], run: RunColumns, rig: RigSheet
 ) -> dict[str, Results]:
-    """Return the results of the checks on a long run, by code.
-
-    Raises
-    ------
-    InputError
-        The run cannot be read.
-    """
+    """Return the results of the checks on a long run, by code."""
     overall, decimated = _overview(run)
     whole = RunSignals(Recording(run.run, decimated), rig, overall)
     decimatable = {"decimated", "strokes"} if _shows_strokes(whole, run) else {"decimated"}

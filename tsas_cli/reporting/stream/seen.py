@@ -118,34 +118,16 @@ class SeenRun:
         return ("run", self.id, *parts)
 
     def measured(self, column: str) -> Floats:
-        """Return a column of the recording, shape (n,), NaN for gaps.
-
-        Raises
-        ------
-        InputError
-            It cannot be read.
-        """
+        """Return a column of the recording, shape (n,), NaN for gaps."""
         return self.x_in_mm if column == X_IN else self.file.read(column)
 
     def predicted(self, column: str, source: Source) -> Floats:
-        """Return what a stage says of a column, shape (n,), NaN for gaps.
-
-        Raises
-        ------
-        InputError
-            The stage's file cannot be read, or belongs to another recording.
-        """
+        """Return what a stage says of a column, shape (n,), NaN for gaps."""
         return self.inputs.series(self.id, self.file.rows, source.named(column), source.stage)
 
 
 def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
-    """Yield the runs in the order of the manifest, none without a dataset.
-
-    Raises
-    ------
-    InputError
-        A file is missing, or is not what it was.
-    """
+    """Yield the runs in the order of the manifest, none without a dataset."""
     if inputs.dataset is None:
         return
     given, tracking = tuple(_sources(inputs)), inputs.get(TrackingFile)
