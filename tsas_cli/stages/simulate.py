@@ -42,20 +42,13 @@ DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "l
 class SimulationResult(Result):
     """Every run as a model answers it; `result["a"]` is run a.
 
-    Parameters
-    ----------
-    record
-        What `simulation.json` holds.
-    model
-        The model that was simulated.
-    runs
-        By id the compared to each run: columns of shape (n,) as in the recording, `x_in_mm` as
-        conditioned [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive.
-        Those that were written are read when they are asked for.
+    `runs` holds them by id: columns of shape (n,) as in the recording, `x_in_mm` as conditioned
+    [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive. Those that were
+    written are read when they are asked for.
     """
 
-    record: records.SimulationFile
-    model: Model
+    record: records.SimulationFile  # what `simulation.json` holds
+    model: Model  # that was simulated
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:

@@ -60,17 +60,12 @@ COLUMNS = (
 class TrackingResult(Result):
     """How well the wanted force is followed; `result["pid-undisturbed"]` is a run.
 
-    Parameters
-    ----------
-    record
-        What `tracking.json` holds.
-    runs
-        By `controller-condition` the recording of the first seed: columns of shape (m,), among
-        them `f_out_ref_N` (wanted), `f_out_true_N`, `f_out_N` (with noise), `x_in_mm` and
-        `motor_speed_rpm` (docs/tracking.md).
+    `runs` holds, by `controller-condition`, the recording of the first seed: columns of shape (m,),
+    among them `f_out_ref_N` (wanted), `f_out_true_N`, `f_out_N` (with noise), `x_in_mm` and
+    `motor_speed_rpm` (docs/tracking.md).
     """
 
-    record: TrackingFile
+    record: TrackingFile  # what `tracking.json` holds
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:

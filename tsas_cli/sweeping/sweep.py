@@ -33,18 +33,10 @@ Pool = Callable[[Sequence[str]], Iterator[tuple[int, TaskOutcome]]]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SweepResult(Result):
-    """The results of all tasks.
+    """The results of all tasks."""
 
-    Parameters
-    ----------
-    before
-        Number of tasks that an earlier call completed.
-    defects
-        Number of tasks that failed by a defect of the program, not by their input.
-    """
-
-    before: int
-    defects: int
+    before: int  # number of tasks that an earlier call completed
+    defects: int  # number of tasks that failed by a defect of the program, not by their input
 
     def frame(self) -> "pd.DataFrame":
         """Return the table as a pandas DataFrame: one row per task, with its state and results."""

@@ -18,15 +18,9 @@ from tsas_studies.closing.cases import MODELS, STEPS, close
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ClosingResult(Result):
-    """What a better model is worth in tracking, case by case.
+    """What a better model is worth in tracking, case by case."""
 
-    Parameters
-    ----------
-    record
-        What `closing.json` holds.
-    """
-
-    record: ClosingFile
+    record: ClosingFile  # what `closing.json` holds
 
     def tables(self) -> list[Table]:
         """Return what was hidden and named, and the RMSE by model."""
