@@ -39,7 +39,7 @@ def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[Case, ...]
         changes = disturbed(hide, "--hide").changes
         if any(change.from_s > 0.0 for change in changes):
             raise InputError("a hidden effect begins with the run", where="--hide")
-        return (Case(HIDDEN, ", ".join(hide), {c.name: c.value for c in changes}),)
+        return (Case(HIDDEN, ", ".join(hide), {c.quantity: c.value for c in changes}),)
     known = {case.name: case for case in CASES}
     wanted = list(known) if names is None else list(names)
     for name in wanted:
