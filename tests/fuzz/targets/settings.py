@@ -22,7 +22,7 @@ def one(data: bytes) -> None:
         return
     printed_gains(settings)
     for controller in CONTROLLERS:
-        settings.laws(controller, 1.0)
+        settings.controllers.laws(controller, 1.0)
     settings.drive.kinematic()
 
 
