@@ -100,9 +100,9 @@ def new_file(
 ) -> Iterator[Path]:
     """Yield a temporary file name that becomes `path` when the block ends without an error.
 
-    With `force` an earlier output of the same command is replaced, which has `mark` in its first 4
-    KiB; it is empty if any file may be replaced, since the path belongs to the program. The file
-    may not be one of the call's `inputs` or lie inside one.
+    With `force` an earlier output of the same command is replaced, which has `mark` in its first
+    4 KiB; an empty mark allows any file, since the path belongs to the program. The file may not
+    be one of the call's `inputs` or lie inside one.
 
     Raises
     ------

@@ -19,7 +19,7 @@ def in_processes(
 ) -> Iterator[tuple[int, TaskOutcome]]:
     """Yield the number and the outcome of each task, in the order of completion.
 
-    `work` is the function to call, `module:function`, in at most so many processes. A task whose
+    `work` is the function to call, `module:function`, in at most `workers` processes. A task whose
     worker dies is repeated once by a new one. If the loop over the outcomes ends early, the workers
     are killed.
 

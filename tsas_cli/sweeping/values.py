@@ -43,7 +43,7 @@ class Values:
 
 
 def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Values:
-    """Return the values of a task, given by name, by kind; relative paths are relative to `base`.
+    """Return the named values of a task by kind; their paths are relative to `base`.
 
     `options` holds the type of each keyword of the stage's call.
 
