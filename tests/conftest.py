@@ -33,7 +33,7 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 LONGEST = (
     *("whole_job/test_whole_job", "metamorphic/test_relations", "studies/challenge/test_found"),
     *("identification/test_dynamic_fit", "studies/challenge/test_same_numbers"),
-    *("diagnosis/test_plan", "hostile/test_hostile_files", "commands/test_close_loop"),
+    *("diagnosis/test_plan", "hostile/test_hostile_files", "studies/commands/test_close_loop"),
     *("identification/test_odd_recordings", "studies/challenge/test_run"),
     *("commands/test_calibrate", "reporting/test_in_browser", "diagnosis/test_counted_once"),
     *("identification/test_long_runs", "sweeping/test_cluster", "identification/test_calibration"),

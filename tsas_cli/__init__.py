@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from tsas_cli.stages.calibrate import calibrate
     from tsas_cli.stages.catalogue import catalogue, explain
     from tsas_cli.stages.check import check
-    from tsas_cli.stages.close_loop import close_loop
     from tsas_cli.stages.compare import compare
     from tsas_cli.stages.diagnose import diagnose
     from tsas_cli.stages.guess import guess
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from tsas_cli.stages.verify import verify
     from tsas_cli.support.errors import InputError
     from tsas_cli.support.steps import Steps
+    from tsas_studies.closing.close_loop import close_loop
     from tsas_studies.reproduction.reproduce import reproduce
 
 __all__ = [
@@ -65,6 +65,7 @@ __all__ = [
 _ELSEWHERE = {
     "InputError": "tsas_cli.support.errors",
     "Steps": "tsas_cli.support.steps",
+    "close_loop": "tsas_studies.closing.close_loop",
     "explain": "tsas_cli.stages.catalogue",
     "read_drive": "tsas_cli.stages.read",
     "read_model": "tsas_cli.stages.read",

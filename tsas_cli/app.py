@@ -6,14 +6,12 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeGuard
 
 import typer
 from typer.exceptions import TyperException
 
 from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.check import check
-from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.compare import compare
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.doctor import doctor
@@ -81,8 +79,8 @@ PANELS: dict[str, tuple[Callable[..., None], ...]] = {
     ),
     "Understanding a recording or a model": (view, compare, plan, effects, explain, verify),
     "Many datasets": (runs, sweep, upload),
-    STUDIES: (close_loop,),
     "Setup": (init, doctor),
+    STUDIES: (),
 }
 for panel, commands in PANELS.items():
     for command in commands:
@@ -116,12 +114,11 @@ def run() -> None:
             raise
         if _was_stopped(error):
             sys.exit(EXIT_CODE)
-        code = _refused(error) if _is_refusal(error) else _defect(error)
+        if isinstance(error, OSError) and error.errno in REFUSALS:
+            code = _refused(error)
+        else:
+            code = _defect(error)
     sys.exit(code)
-
-
-def _is_refusal(error: Exception) -> TypeGuard[OSError]:
-    return isinstance(error, OSError) and error.errno in REFUSALS
 
 
 def _refused(error: OSError) -> int:

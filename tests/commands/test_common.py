@@ -33,6 +33,7 @@ def test_json_replaces_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_no_bar_is_drawn_into_a_file(capsys: pytest.CaptureFixture[str]) -> None:
-    with progress("fit", 2, quiet=False) as step:
+    with progress("fit", quiet=False) as step:
+        step.ahead(2)
         step()
     assert capsys.readouterr() == ("", "")

@@ -24,9 +24,9 @@ from tsas_cli.reporting.closing.errors import MODELS, draw_dots
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.stages import close_cases as closing
-from tsas_cli.stages.close_loop import chosen
 from tsas_cli.support.errors import InputError
+from tsas_studies.closing import cases as closing
+from tsas_studies.closing.close_loop import chosen
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,9 @@
 import pytest
 
 from tests.tracking.runs import loop_of, settings_of
+from tsas_cli.records.tracking import ConditionChange
 from tsas_cli.support.errors import InputError
-from tsas_cli.tracking.conditions import Change, Condition, disturbed, proximal_spring
+from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
 
 PROXIMAL_SPRING = "proximal_spring.stiffness_N_per_mm=12.5"
 
@@ -15,8 +16,8 @@ def plant():
 
 def test_an_option_is_name_value_and_time():
     assert disturbed(["friction_coefficient=0.16@10", PROXIMAL_SPRING]).changes == (
-        Change("friction_coefficient", 0.16, 10.0),
-        Change("proximal_spring.stiffness_N_per_mm", 12.5, 0.0),
+        ConditionChange(quantity="friction_coefficient", value=0.16, from_s=10.0),
+        ConditionChange(quantity="proximal_spring.stiffness_N_per_mm", value=12.5, from_s=0.0),
     )
 
 

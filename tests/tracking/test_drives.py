@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 
 from tsas_cli.drive.file import IdentifiedDrive
-from tsas_cli.stages.close_drive import driven, known_drives, record_drive, spring_alone
-from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.drives import actuator_of, known_drive
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
@@ -67,14 +65,3 @@ def test_the_motor_leads_by_how_far_the_gear_winds_up_and_that_is_worth_it():
     wound_up = (wanted[3050] - wanted[300]) * math.exp(0.125 * math.pi) / 52.0
     assert ways[1] - ways[0] == pytest.approx(wound_up, rel=0.01)
     assert errors[1] < 0.05 * errors[0]
-
-
-def test_a_spring_alone_answers_as_a_straight_drive(tmp_path):
-    speed = np.full(2000, 400.0)
-    travel = driven(speed, spring_alone(SETTINGS), seed=1)
-    pulls_back = 1.0 + 1.579 / 52.0  # the spring winds up the gear
-    rate = (travel[-1] - travel[1000]) / 0.999
-    assert rate == pytest.approx(400.0 * 0.0236492 / pulls_back, rel=2e-3)
-    record_drive(SETTINGS, tmp_path / "dataset")
-    with pytest.raises(InputError, match=r"drive\.toml"):
-        known_drives(tmp_path / "dataset", SETTINGS)

@@ -25,11 +25,11 @@ def test_the_drive_is_that_of_the_paper():
 def test_every_controller_has_its_place_in_the_kernel():
     kinds = dict(zip(CONTROLLERS, (PID, SLIDING, ADAPTIVE, OBSERVER), strict=True))
     for name, kind in kinds.items():
-        assert Settings().laws(name, 0.02).kind == kind
+        assert Settings().controllers.laws(name, 0.02).kind == kind
 
 
 def test_gains_are_those_of_the_paper_and_come_to_their_places():
-    laws = Settings().laws("pid", 0.02)
+    laws = Settings().controllers.laws("pid", 0.02)
     assert laws.pid == (25.0, 65.0, 1.0)
     assert laws.sliding_mode.surface == (800.0, 1.0, 1.0, 1.2, 80.0)
     adaptive = laws.adaptive_sliding_mode
@@ -42,7 +42,7 @@ def test_gains_are_those_of_the_paper_and_come_to_their_places():
 
 def test_printed_gains_are_a_thousandfold_ks_and_nothing_else():
     printed, usual = printed_gains(Settings()), Settings()
-    laws = printed.laws("pid", 0.02)
+    laws = printed.controllers.laws("pid", 0.02)
     assert laws.sliding_mode.surface.ks == pytest.approx(1200.0)
     assert laws.adaptive_sliding_mode.surface.ks == pytest.approx(1115.0)
     back = printed.controllers.sliding_mode.model_copy(update={"ks": 1.2})

@@ -77,7 +77,8 @@ def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> Entry:
     try:
         return _KINDS[file](connection, folder)
     except InputError as error:
-        return {"problems": [_without_location(error)]}
+        without_location = InputError(error.what, expected=error.expected, remedy=error.remedy)
+        return {"problems": [without_location.line()]}
     except OSError as error:
         return {"problems": [f"cannot be read ({error.strerror})"]}
     except (
@@ -195,7 +196,3 @@ _KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
 def _utc(at: datetime) -> datetime:
     """Return a time without zone: converted to UTC if it has one, else unchanged."""
     return at if at.tzinfo is None else at.astimezone(UTC).replace(tzinfo=None)
-
-
-def _without_location(error: InputError) -> str:
-    return InputError(error.what, expected=error.expected, remedy=error.remedy).line()

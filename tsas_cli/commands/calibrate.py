@@ -6,25 +6,13 @@ from typing import Annotated, Literal
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    ChosenRuns,
-    DatasetFolder,
-    Despite,
-    Force,
-    Json,
-    OutFolder,
-    Quiet,
-    Rrd,
-    names,
-    present,
-    with_stream,
-)
+from tsas_cli.commands import common
 from tsas_cli.commands.progress import progress
 
 
 def calibrate(
-    dataset: DatasetFolder,
-    out: OutFolder,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
     model: Annotated[
         Path | None,
         typer.Option(metavar="M.toml", help="The initial model, whose effects are kept."),
@@ -33,23 +21,23 @@ def calibrate(
         Literal["slip", "lugre"],
         typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
     ] = "slip",
-    runs: ChosenRuns = None,
-    despite: Despite = None,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    runs: common.ChosenRuns = None,
+    despite: common.Despite = None,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Fit the nominal model and the stiffness km of each phase to a dataset."""
-    with progress("calibrate", quiet=quiet) as step, with_stream(rrd, step):
+    with progress("calibrate", quiet=quiet) as step, common.with_stream(rrd, step):
         result = tsas.calibrate(
             dataset,
             out=out,
             model=model,
             dynamics=dynamics,
-            runs=names(runs),
+            runs=common.names(runs),
             despite=despite or (),
             force=force,
             step=step,
         )
-    present(result, quiet=quiet, as_json=as_json)
+    common.present(result, quiet=quiet, as_json=as_json)

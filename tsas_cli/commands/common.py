@@ -96,16 +96,13 @@ def show(
 
         sys.stdout.write(json_text(summary))
     elif not quiet:
+        width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
         for title, header, rows in tables:
-            for line in table_text(title, header, rows, _terminal_width()):
+            for line in table_text(title, header, rows, width):
                 print(line)
             print()
         for sentence in sentences:
             print(printable(sentence))
-
-
-def _terminal_width() -> int | None:
-    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def hint(text: str, *, quiet: bool, as_json: bool) -> None:

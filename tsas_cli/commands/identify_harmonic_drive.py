@@ -5,24 +5,13 @@ from typing import Annotated, Literal
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    ChosenRuns,
-    DatasetFolder,
-    Force,
-    Json,
-    OutFolder,
-    Quiet,
-    Rrd,
-    names,
-    present,
-    with_stream,
-)
+from tsas_cli.commands import common
 from tsas_cli.commands.progress import progress
 
 
 def identify_harmonic_drive(
-    dataset: DatasetFolder,
-    out: OutFolder,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
     speed: Annotated[
         Literal["measured", "commanded"],
         typer.Option(
@@ -31,15 +20,15 @@ def identify_harmonic_drive(
             "controller. The wrong choice is a delay of half a sample.",
         ),
     ] = "measured",
-    runs: ChosenRuns = None,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    runs: common.ChosenRuns = None,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
-    with progress("identify", quiet=quiet) as step, with_stream(rrd, step):
+    with progress("identify", quiet=quiet) as step, common.with_stream(rrd, step):
         result = tsas.identify_harmonic_drive(
-            dataset, out=out, speed=speed, runs=names(runs), force=force, step=step
+            dataset, out=out, speed=speed, runs=common.names(runs), force=force, step=step
         )
-    present(result, quiet=quiet, as_json=as_json)
+    common.present(result, quiet=quiet, as_json=as_json)

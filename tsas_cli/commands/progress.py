@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class Bar(Steps):
     """A progress bar, whose total grows with the announced steps."""
 
-    def __init__(self, shown: "Progress", label: str, total: int) -> None:
-        self.shown, self.total, self.done = shown, total, 0
-        self.task = shown.add_task(label, total=total or None, left="")
+    def __init__(self, shown: "Progress", label: str) -> None:
+        self.shown, self.total, self.done = shown, 0, 0
+        self.task = shown.add_task(label, total=None, left="")
 
     def ahead(self, pieces: int) -> None:
         """Add steps to the total."""
@@ -39,18 +39,8 @@ class Bar(Steps):
 
 
 @contextmanager
-def progress(label: str, total: int = 0, *, quiet: bool) -> Iterator[Steps]:
-    """Show a bar while a stage runs; yield the receiver of its steps.
-
-    Parameters
-    ----------
-    label
-        The label of the bar.
-    total
-        Number of steps besides those that the stage announces.
-    quiet
-        Show nothing.
-    """
+def progress(label: str, *, quiet: bool) -> Iterator[Steps]:
+    """Show a bar while a stage runs, unless it is quiet; yield the receiver of its steps."""
     if quiet or not sys.stderr.isatty():
         yield NO_PROGRESS
         return
@@ -65,4 +55,4 @@ def progress(label: str, total: int = 0, *, quiet: bool) -> Iterator[Steps]:
         TextColumn("{task.fields[left]}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
-        yield Bar(shown, label, total)
+        yield Bar(shown, label)

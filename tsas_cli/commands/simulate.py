@@ -6,27 +6,15 @@ from typing import Annotated, Literal
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    ChosenRuns,
-    DatasetFolder,
-    Force,
-    Json,
-    ModelOption,
-    OutFolder,
-    Quiet,
-    Rrd,
-    names,
-    present,
-    with_stream,
-)
+from tsas_cli.commands import common
 from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
 
 
 def simulate(
-    dataset: DatasetFolder,
-    out: OutFolder,
-    model: ModelOption = None,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
+    model: common.ModelOption = None,
     dynamics: Annotated[
         Literal["static", "slip", "lugre"],
         typer.Option(
@@ -42,17 +30,17 @@ def simulate(
         int | None,
         typer.Option(help="Nodes of the chain, 2 to 1000."),
     ] = None,
-    runs: ChosenRuns = None,
-    rrd: Rrd = False,
+    runs: common.ChosenRuns = None,
+    rrd: common.Rrd = False,
     live: Live = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Simulate every run with a model, and compute its residual."""
-    data = tsas.read(dataset, runs=names(runs))
+    data = tsas.read(dataset, runs=common.names(runs))
     with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
-        with progress("simulate", quiet=quiet) as step, with_stream(rrd, step):
+        with progress("simulate", quiet=quiet) as step, common.with_stream(rrd, step):
             result = tsas.simulate(
                 data,
                 out=out,
@@ -64,4 +52,4 @@ def simulate(
                 step=step,
                 each=partial(stream.simulated, data) if stream else not_shown,
             )
-        present(result, quiet=quiet, as_json=as_json)
+        common.present(result, quiet=quiet, as_json=as_json)

@@ -6,23 +6,14 @@ from typing import Annotated, Literal
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    Force,
-    Json,
-    OutFolder,
-    Quiet,
-    Rrd,
-    names,
-    present,
-    with_stream,
-)
+from tsas_cli.commands import common
 from tsas_cli.commands.completion import controllers, references
 from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
 
 
 def track(
-    out: OutFolder,
+    out: common.OutFolder,
     model: Annotated[
         Path | None,
         typer.Option(metavar="M.toml", help="The controller's model; default: the paper's rig."),
@@ -74,21 +65,21 @@ def track(
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="Number of noise seeds.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
-    rrd: Rrd = False,
+    rrd: common.Rrd = False,
     live: Live = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Track a reference of the distal tension with controllers that measure x_in only."""
     with watched(live, "tracking", quiet=quiet) as stream:
-        with progress("track", quiet=quiet) as step, with_stream(rrd, step):
+        with progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
             result = tsas.track(
                 out=out,
                 model=model,
                 plant=plant,
                 drive=drive,
-                controllers=names(controller) or (),
+                controllers=common.names(controller) or (),
                 compare=compare,
                 reference=reference,
                 disturb=disturb or (),
@@ -101,4 +92,4 @@ def track(
                 step=step,
                 each=stream.tracked if stream else not_shown,
             )
-        present(result, quiet=quiet, as_json=as_json)
+        common.present(result, quiet=quiet, as_json=as_json)

@@ -56,23 +56,10 @@ def read_models(given: Sequence[Path | Model]) -> dict[str, Side]:
 def predict(
     models: dict[str, Side], dataset: Dataset, *, fit_own: bool, step: Steps = NO_PROGRESS
 ) -> Predicted:
-    """Return what models predict of the runs of a dataset.
+    """Return what models, from `read_models`, predict of the runs of a dataset.
 
-    Parameters
-    ----------
-    models
-        From `read_models`.
-    dataset
-        The recordings.
-    fit_own
-        Whether each run's own preload and zeros are fitted to it first.
-    step
-        Called after each simulation.
-
-    Raises
-    ------
-    InputError
-        A recording, or a model's file, cannot be read.
+    With `fit_own` each run's own preload and zeros are fitted to it first. `step` is called after
+    each simulation.
     """
     predictions = Predictions(step)
     runs = {n: predictions.of(side, dataset, fit_own=fit_own) for n, side in models.items()}

@@ -79,13 +79,7 @@ class Predictions:
     def of(
         self, side: Side, dataset: Dataset | None, *, fit_own: bool = False
     ) -> list[ComparedRun]:
-        """Return what a side answers to the runs of a dataset, none where it is not there.
-
-        Raises
-        ------
-        InputError
-            A recording, or what a simulation has written, cannot be read.
-        """
+        """Return what a side answers to the runs of a dataset, none where it is not there."""
         if dataset is None:
             return []
         out = []

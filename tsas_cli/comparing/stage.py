@@ -93,7 +93,14 @@ def held_out(it: Comparison) -> list[HeldOutPair]:
 def tables(it: Comparison) -> list[Table]:
     """Return what the stage prints."""
     every: list[Table] = [
-        ("sides", ("", "kind", "path", "recordings", "verdict"), _sides(it)),
+        (
+            "sides",
+            ("", "kind", "path", "recordings", "verdict"),
+            [
+                (name, side.kind, str(side.path), _recordings_of(side), side.verdict)
+                for name, side in it.sides.items()
+            ],
+        ),
         (
             "parameters",
             ("name", "run", "A [95 %]", "B [95 %]", "B − A [95 %]", "differs", "unit"),
@@ -109,26 +116,16 @@ def tables(it: Comparison) -> list[Table]:
             "error on held-out data",
             ("channel", "unit", "RMSE A", "RMSE B", "noise A", "noise B"),
             [
-                (row.channel, row.unit, *(number_text(v, ".4g") for v in _held_out_values(row)))
-                for row in held_out(it)
+                (pair.channel, pair.unit, *(number_text(value, ".4g") for value in values))
+                for pair in held_out(it)
+                for values in [(pair.rmse_a, pair.rmse_b, pair.noise_a, pair.noise_b)]
             ],
         ),
     ]
     return [table for table in every if table[2]]
 
 
-def _held_out_values(row: HeldOutPair) -> tuple[float | None, ...]:
-    return row.rmse_a, row.rmse_b, row.noise_a, row.noise_b
-
-
-def _sides(it: Comparison) -> list[tuple[str, ...]]:
-    return [
-        (name, side.kind, str(side.path), recordings_of(side), side.verdict)
-        for name, side in it.sides.items()
-    ]
-
-
-def recordings_of(side: Side) -> str:
+def _recordings_of(side: Side) -> str:
     """Return how many recordings of which dataset a side has read."""
     if side.source is None or side.recordings is None:
         return "unknown"
@@ -171,12 +168,7 @@ def _errors(it: Comparison) -> list[tuple[str, ...]]:
             number_text(row.ratio, ".4g"),
             number_text(row.noise, ".2g"),
             row.unit,
-            fitted_to(row.fitted_a, row.fitted_b),
+            ", ".join(name for name, seen in (("A", row.fitted_a), ("B", row.fitted_b)) if seen),
         )
         for row in it.errors
     ]
-
-
-def fitted_to(a: bool | None, b: bool | None) -> str:
-    """Say which side's fit has seen a recording."""
-    return ", ".join(name for name, seen in (("A", a), ("B", b)) if seen)

@@ -73,13 +73,7 @@ def are_tracked(a: Path, b: Path) -> bool:
 
 
 def compare_tracked(a: Path, b: Path) -> Tracks:
-    """Hold two folders against each other, by controller and condition.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or is not whole.
-    """
+    """Hold two folders against each other, by controller and condition."""
     raw = [read_json(path / TRACKING_FILE) for path in (a, b)]
     one, other = (
         parse(TrackingFile, r, p / TRACKING_FILE) for r, p in zip(raw, (a, b), strict=True)

@@ -52,12 +52,9 @@ class Conditioned:
 
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
-    """Return the cleaned signal; its times increase, evenly or not.
+    """Return the cleaned signal of times and values, shape (n,).
 
-    Parameters
-    ----------
-    time_s, values
-        Times and the signal, shape (n,); NaN in the signal is a gap, filled by a straight line.
+    The times increase, evenly or not; NaN in the values is a gap, filled by a straight line.
     """
     finite = np.flatnonzero(np.isfinite(values))
     if finite.size < values.size:
@@ -77,7 +74,8 @@ def noise_and_memory(values: Floats) -> tuple[float, float]:
     """Return the noise level with quantisation, and for how many samples its error persists."""
     step = quantisation_step(values)
     noise = max(noise_sd(values), step / math.sqrt(12.0))
-    return noise, _plateau(values) if step > 0.0 else 1.0
+    plateau = values.size / (1.0 + np.count_nonzero(np.diff(values)))  # mean samples at one level
+    return noise, plateau if step > 0.0 else 1.0
 
 
 def smooth_out(
@@ -111,11 +109,6 @@ def _with_gaps(cleaned: Conditioned, time_s: Floats, finite: Indices) -> Conditi
         unseen=np.interp(time_s, time_s[finite], cleaned.unseen),
         reversals=reversals,
     )
-
-
-def _plateau(values: Floats) -> float:
-    """Return the mean number of samples that a quantised signal stays at one level."""
-    return values.size / (1.0 + np.count_nonzero(np.diff(values)))
 
 
 def remove_overshoot(smooth: Floats, cuts: Indices) -> None:

@@ -104,14 +104,8 @@ def plan(pieces: Iterable[Samples], count: int) -> CleaningPlan:
 def cleaned(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Iterator[Cleaned]:
     """Yield the rows of the cleaned signal in order, as they become final.
 
-    Parameters
-    ----------
-    pieces
-        The signal in pieces, each of which begins with the last 2 `beside` rows of the one before.
-    beside
-        Rows at both ends of a piece that only support the fits of the others.
-    plan
-        The estimates for the whole signal.
+    Each of the `pieces` begins with the last 2 `beside` rows of the one before: so many rows at
+    both ends only support the fits of the others.
     """
     last = np.empty((5, 0))  # the final sample before those that wait
     start, waiting = 0, np.empty(0)

@@ -59,14 +59,9 @@ def block_numbers(sizes: list[int], length: int) -> Indices:
 def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
     """Return the covariance of least-squares parameters and Student's t for 95 % intervals.
 
-    Each parameter has its own t, shape (p,): the fewer blocks determine it, the larger.
-
-    Parameters
-    ----------
-    jacobian, residual
-        Weighted, shapes (n, p) and (n,).
-    block
-        The number of the block that each row belongs to, shape (n,), counted from 0.
+    Each parameter has its own t, shape (p,): the fewer blocks determine it, the larger. Jacobian
+    and residual are weighted, shapes (n, p) and (n,); `block` is the number of each row's block,
+    shape (n,), counted from 0.
     """
     from scipy.special import stdtrit  # a fifth of the time that scipy.stats takes to load
 

@@ -62,14 +62,8 @@ def delayed(u: Sampled, delay_s: float) -> Sampled:
 def integrator_with_lags(u: Sampled, leak_per_s: float, lags: Floats) -> Floats:
     """Return y at each sample, shape (n,), from rest.
 
-    Parameters
-    ----------
-    u
-        The input.
-    leak_per_s
-        a [1/s]; 0 is an integrator.
-    lags
-        The coefficients p0 = 1, p1 [s], p2 [s²] … of P, the last not zero.
+    The leak is a [1/s], 0 for an integrator; `lags` are the coefficients p0 = 1, p1 [s], p2 [s²] …
+    of P, the last not zero.
     """
     a = leak_per_s * u.step_s
     scaled = lags / u.step_s ** np.arange(lags.size)  # time in samples

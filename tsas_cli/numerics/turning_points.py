@@ -11,16 +11,9 @@ def turning_points(values: Floats, threshold: float, direction: int = 0) -> Indi
     """Return the indices of the extrema between which the signal moves by more than a threshold.
 
     The first and the last sample are always included, so that neighbouring indices bound the
-    strokes. Extrema alternate; a flat extremum counts at its first sample.
-
-    Parameters
-    ----------
-    values
-        The signal, shape (n,), finite.
-    threshold
-        The amplitude beyond which a move back is a reversal, in the signal's unit.
-    direction
-        Of the first stroke, 1 or −1, where the signal continues a longer one; else 0.
+    strokes. Extrema alternate; a flat extremum counts at its first sample. The values are finite,
+    shape (n,), the threshold is in their unit. Where the signal continues a longer one, `direction`
+    is that of its first stroke, 1 or −1; else 0.
     """
     n = values.size
     found = np.zeros(n, dtype=np.int64)

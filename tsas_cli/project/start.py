@@ -2,7 +2,7 @@
 
 import filecmp
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import tomlkit
@@ -37,28 +37,28 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], MapProposal
     """
     name = printable(folder.resolve().name) or "bench"
     quoted = tomlkit.item(name).as_string()
-    texts = {
+    files: dict[str, str | Path] = {  # by place in the project: a text, or what is copied there
         "Makefile": makefile(),
         "README.md": _file("README.md", name),
         ".gitignore": _file("gitignore", name),
         f"{RAW}/README.md": _file("raw.md", name),
     }
-    copies = _copies(sources, folder)
     proposal = propose(find_files(sources, "*")) if sources else None
-    texts[MAP] = map_text(proposal) if proposal else _file("bench.toml", quoted)
-    present = _present(folder, texts, copies)
+    files[MAP] = map_text(proposal) if proposal else _file("bench.toml", quoted)
+    files |= _copies(sources, folder)
+    present = _present(folder, files)
     if folder.exists():
-        for home in {folder.parent, *((folder / place).parent for place in (*texts, *copies))}:
+        for home in {folder.parent, *((folder / place).parent for place in files)}:
             sweep(home)  # also if all files exist and nothing is written
-        for place in [p for p in (*texts, *copies) if p not in present]:
+        for place in [p for p in files if p not in present]:
             with new_file(folder / place, mark=b"", inputs=sources) as new:
-                _write(new, place, texts, copies)
+                _write(new, files[place])
     else:
         with new_folder(folder, stage="init", inputs=sources) as new:
-            for place in (*texts, *copies):
+            for place, content in files.items():
                 (new / place).parent.mkdir(parents=True, exist_ok=True)
-                _write(new / place, place, texts, copies)
-    return [*texts, *copies], proposal
+                _write(new / place, content)
+    return list(files), proposal
 
 
 def _file(name: str, project: str) -> str:
@@ -82,12 +82,12 @@ def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
     return copies
 
 
-def _present(folder: Path, texts: dict[str, str], copies: dict[str, Path]) -> set[str]:
+def _present(folder: Path, files: Mapping[str, str | Path]) -> set[str]:
     """Return the files that exist already; refuse those with other content."""
     if folder.is_file():
         raise InputError("is a file", where=folder, expected="a folder's name")
-    present = [place for place in (*texts, *copies) if (folder / place).exists()]
-    other = [place for place in present if not _is_same(folder / place, place, texts, copies)]
+    present = [place for place in files if (folder / place).exists()]
+    other = [place for place in present if not _is_same(folder / place, files[place])]
     if other:
         raise InputError(
             f"{', '.join(other)} already {'exists' if len(other) == 1 else 'exist'}",
@@ -98,16 +98,16 @@ def _present(folder: Path, texts: dict[str, str], copies: dict[str, Path]) -> se
     return set(present)
 
 
-def _is_same(path: Path, place: str, texts: dict[str, str], copies: dict[str, Path]) -> bool:
+def _is_same(path: Path, content: str | Path) -> bool:
     if not path.is_file():
         return False
-    if place in texts:
-        return path.read_bytes() == texts[place].encode()
-    return filecmp.cmp(path, copies[place], shallow=False)
+    if isinstance(content, str):
+        return path.read_bytes() == content.encode()
+    return filecmp.cmp(path, content, shallow=False)
 
 
-def _write(path: Path, place: str, texts: dict[str, str], copies: dict[str, Path]) -> None:
-    if place in texts:
-        path.write_text(texts[place], encoding="utf-8")
+def _write(path: Path, content: str | Path) -> None:
+    if isinstance(content, str):
+        path.write_text(content, encoding="utf-8")
     else:
-        shutil.copyfile(copies[place], path)
+        shutil.copyfile(content, path)

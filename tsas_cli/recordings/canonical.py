@@ -35,19 +35,10 @@ def canonical_columns(
     map_path: Path,
     before: PrecedingRows | None = None,
 ) -> tuple[dict[str, Floats], PrecedingRows]:
-    """Return the canonical columns in their units, the extra columns unchanged, and the next state.
+    """Return the canonical columns in their units, shape (n,), the extra ones, and the next state.
 
-    Parameters
-    ----------
-    table
-        A file, or a part of it.
-    before
-        The state after the preceding part; None at the beginning of a file.
-
-    Returns
-    -------
-    columns, before
-        The columns by name, shape (n,), and the state for the next part.
+    The table is a file, or a part of it; `before` is the state after the preceding part, None at
+    the beginning of a file.
 
     Raises
     ------

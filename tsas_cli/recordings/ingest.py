@@ -34,12 +34,7 @@ class Ingested:
 
 
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
-    """Return the source files, and the readable files below the source folders.
-
-    Parameters
-    ----------
-    pattern
-        A glob for the names of a folder's files ("*.csv").
+    """Return the source files, and those below the source folders that fit a pattern ("*.csv").
 
     Raises
     ------

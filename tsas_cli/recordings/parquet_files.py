@@ -90,14 +90,8 @@ def check_size(
 ) -> None:
     """Refuse a file whose footer claims more data than its size can hold.
 
-    Parameters
-    ----------
-    names
-        The columns to read.
-    whole
-        Whether they are read into memory at once.
-    size
-        Size of the file [bytes]; default: that of `path`.
+    The columns `names` are to be read, at once if `whole`; `size` is that of the file [bytes], by
+    default that of `path`.
 
     Raises
     ------

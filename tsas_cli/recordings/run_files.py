@@ -51,9 +51,7 @@ def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Record
     if len(columns[TIME]) < 2:
         raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
     if strict:
-        check_time(columns[TIME], path)
-        for name, values in columns.items():
-            check_magnitude(name, values, path)
+        _check_values(columns, path)
     return Recording(run, columns)
 
 
@@ -96,9 +94,7 @@ class RunColumns:
         with reading(self.path):
             table = self.file.read(columns=[name])
         values = floats_of(table, name, self.path)
-        if name == TIME:
-            check_time(values, self.path)
-        check_magnitude(name, values, self.path)
+        _check_values({name: values}, self.path)
         return values
 
 
@@ -136,9 +132,7 @@ def read_columns(path: Path) -> dict[str, Floats]:
     columns = {name: floats_of(table, name, path) for name in table.column_names}
     if TIME not in columns or len(columns[TIME]) < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
-    check_time(columns[TIME], path)
-    for name, values in columns.items():
-        check_magnitude(name, values, path)
+    _check_values(columns, path)
     return columns
 
 
@@ -224,6 +218,13 @@ def check_columns(known: list[str], present: list[str], path: Location) -> None:
             expected=f"one of {', '.join(INPUTS)} and another of {', '.join(OUTPUTS)}",
             remedy=f"there are: {listed}",
         )
+
+
+def _check_values(columns: dict[str, Floats], path: Location) -> None:
+    if TIME in columns:
+        check_time(columns[TIME], path)
+    for name, values in columns.items():
+        check_magnitude(name, values, path)
 
 
 def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:

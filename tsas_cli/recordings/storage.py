@@ -29,16 +29,12 @@ Returned = TypeVar("Returned")
 class Address:
     """A folder or an object on object storage.
 
-    Parameters
-    ----------
-    scheme
-        `s3` or `gs`.
-    path
-        Bucket and key, without a slash at the end.
+    What asks the storage raises FileNotFoundError where there is no such object, and InputError
+    where the storage fails or refuses access.
     """
 
-    scheme: str
-    path: str
+    scheme: str  # s3 or gs
+    path: str  # bucket and key, without a slash at the end
 
     def __str__(self) -> str:
         """Return the address as text; it never holds a key or a password."""
@@ -53,13 +49,7 @@ class Address:
         return self
 
     def is_file(self) -> bool:
-        """Return whether the object exists.
-
-        Raises
-        ------
-        InputError
-            The storage fails.
-        """
+        """Return whether the object exists."""
         try:
             self.size()
         except FileNotFoundError:
@@ -67,50 +57,22 @@ class Address:
         return True
 
     def size(self) -> int:
-        """Return the size of the object [bytes].
-
-        Raises
-        ------
-        FileNotFoundError
-            There is no such object.
-        InputError
-            The storage fails.
-        """
+        """Return the size of the object [bytes]."""
         info = self._call(lambda files: _in_time(files, files._info, self.path))  # noqa: SLF001
         if info["type"] != "file":
             raise FileNotFoundError(str(self))
         return int(info["size"])
 
     def read_bytes(self, start: int | None = None, end: int | None = None) -> bytes:
-        """Return the bytes of the object, or those from `start` up to `end`, in one request.
-
-        Raises
-        ------
-        FileNotFoundError
-            There is no such object.
-        InputError
-            The storage fails.
-        """
+        """Return the bytes of the object, or those from `start` up to `end`, in one request."""
         return bytes(self._call(lambda files: files.cat_file(self.path, start=start, end=end)))
 
     def write_bytes(self, content: bytes) -> None:
-        """Write the object, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            The storage fails or refuses access.
-        """
+        """Write the object, whole or not at all."""
         self._call(lambda files: files.pipe_file(self.path, content))
 
     def copy_from(self, file: Path) -> None:
-        """Write the object from a local file, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            The storage fails or refuses access.
-        """
+        """Write the object from a local file, whole or not at all."""
         self._call(lambda files: files.put_file(str(file), self.path))
 
     def _call(self, call: Callable[[Any], Returned]) -> Returned:
@@ -217,12 +179,9 @@ def files_of(scheme: str) -> Any:
     files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
     files.retries = TRIES
     logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # it raises what it logs
-    files.loop.call_soon_threadsafe(files.loop.set_exception_handler, _not_printed)
+    # A task that its call has given up fails in silence: the call has raised its own error.
+    files.loop.call_soon_threadsafe(files.loop.set_exception_handler, lambda *_: None)
     return files
-
-
-def _not_printed(_loop: object, _context: object) -> None:
-    """Let a task that its call has given up fail in silence: the call has raised its own error."""
 
 
 if hasattr(os, "register_at_fork"):  # connections belong to one process

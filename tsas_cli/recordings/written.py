@@ -65,13 +65,7 @@ def result_file(folder: Path, run: str) -> Path:
 
 
 def names_of(path: Path) -> list[str]:
-    """Return the names of the columns of such a file.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read.
-    """
+    """Return the names of the columns of such a file."""
     with reading(path), open_parquet(path) as file:
         return list(file.schema_arrow.names)
 
@@ -94,13 +88,7 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
 
 
 def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -> None:
-    """Refuse a result whose number of samples differs from the recording's.
-
-    Raises
-    ------
-    InputError
-        It does; the remedy is to run `stage` again.
-    """
+    """Refuse a result whose number of samples differs from the recording's."""
     if found != rows:
         raise InputError(
             f"{found} rows",

@@ -7,6 +7,8 @@ from pydantic import Field
 from tsas_cli.records.base import Record, StageFile
 from tsas_cli.records.tracking import Scores, Spread, StatedSettings
 
+HIDDEN = "hidden"  # name of the case that hides what a user asks for
+
 
 class Rmse(Spread):
     """Mean and standard deviation over the seeds [N]; of one seed no spread."""

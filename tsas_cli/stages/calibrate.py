@@ -40,18 +40,10 @@ DYNAMICS: tuple[Literal["slip", "lugre"], ...] = ("slip", "lugre")
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CalibrationResult(Result):
-    """A calibrated model, and what was found on the way.
+    """A calibrated model, and what was found on the way."""
 
-    Parameters
-    ----------
-    record
-        What `calibration.json` holds.
-    calibration
-        The calibrated model and, run by run, phases, slopes and answers.
-    """
-
-    record: records.CalibrationFile
-    calibration: Calibration
+    record: records.CalibrationFile  # what `calibration.json` holds
+    calibration: Calibration  # and, run by run, phases, slopes and answers
 
     @property
     def model(self) -> Model:

@@ -13,13 +13,7 @@ WIDTH = 100  # of the explanation's text
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CatalogueResult(Result):
-    """Every effect that makes a real rig differ from the nominal one.
-
-    Parameters
-    ----------
-    effects
-        Each with its name, equation, text, parameters and the experiment that isolates it.
-    """
+    """Every effect that makes a real rig differ from the nominal one."""
 
     effects: tuple[Effect, ...]
 
@@ -32,13 +26,7 @@ class CatalogueResult(Result):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Explanation(Result):
-    """One effect: what it is, what one sees of it, and how to isolate it.
-
-    Parameters
-    ----------
-    effect
-        The effect with its parameters: unit, neutral value, start and bounds of a fit.
-    """
+    """One effect: what it is, what one sees of it, and how to isolate it."""
 
     effect: Effect
 

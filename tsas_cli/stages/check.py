@@ -15,15 +15,9 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CheckResult(Result):
-    """What the checks found, and which of them could not tell.
+    """What the checks found, and which of them could not tell."""
 
-    Parameters
-    ----------
-    record
-        What `check.json` holds: the findings, and the checks that could not tell.
-    """
-
-    record: CheckFile
+    record: CheckFile  # what `check.json` holds
 
     @property
     def findings(self) -> tuple[Finding, ...]:

@@ -20,18 +20,10 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CompareResult(Result):
-    """What differs between A and B, and whether that is more than the uncertainty.
+    """What differs between A and B, and whether that is more than the uncertainty."""
 
-    Parameters
-    ----------
-    record
-        What `compare.json` holds.
-    both
-        The two sides: models and their answers, or two folders of tracked runs.
-    """
-
-    record: ComparisonFile
-    both: Comparison | Tracks
+    record: ComparisonFile  # what `compare.json` holds
+    both: Comparison | Tracks  # models, or folders of tracked runs
 
     def tables(self) -> list[Table]:
         """Return the values, effects and errors of both sides."""

@@ -33,18 +33,10 @@ SHOWN = 8  # hypotheses that are printed
 
 @dataclass(frozen=True, repr=False, eq=False)
 class DiagnosisResult(Result):
-    """A verdict on what the nominal model lacks, and the extended model.
+    """A verdict on what the nominal model lacks, and the extended model."""
 
-    Parameters
-    ----------
-    record
-        What `diagnosis.json` holds.
-    diagnosis
-        The verdict and all that it rests on: causes, errors, what is left, every hypothesis.
-    """
-
-    record: records.DiagnosisFile
-    diagnosis: Diagnosis
+    record: records.DiagnosisFile  # what `diagnosis.json` holds
+    diagnosis: Diagnosis  # all that the verdict rests on
 
     @property
     def verdict(self) -> records.Verdict:

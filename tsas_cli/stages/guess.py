@@ -13,15 +13,9 @@ from tsas_cli.support.files import new_file
 
 @dataclass(frozen=True, repr=False, eq=False)
 class GuessResult(Result):
-    """A proposed map; its text is `map`, which is what is printed where nothing was written.
+    """A proposed map; its text is `map`, which is what is printed where nothing was written."""
 
-    Parameters
-    ----------
-    proposal
-        Which column each channel takes, how sure that is, and what is open.
-    """
-
-    proposal: MapProposal
+    proposal: MapProposal  # which column each channel takes, how sure that is, what is open
 
     @property
     def map(self) -> str:

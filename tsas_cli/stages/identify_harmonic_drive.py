@@ -42,19 +42,12 @@ STAGE = "identify-harmonic-drive"
 class DriveResult(Result):
     """An identified drive, what the nominal drive equation lacks, and the simulated runs.
 
-    Parameters
-    ----------
-    record
-        What `drive.json` holds.
-    estimates
-        Every parameter by name: fitted, derived, or given by the data sheet.
-    runs
-        By id the simulated runs: columns of shape (n,) as in the recording, `x_in_mm` and that of
-        the nominal drive, `x_in_nominal_mm` [mm].
+    `runs` holds them by id: columns of shape (n,) as in the recording, `x_in_mm` and that of the
+    nominal drive, `x_in_nominal_mm` [mm].
     """
 
-    record: DriveFile
-    estimates: Mapping[str, Estimate]
+    record: DriveFile  # what `drive.json` holds
+    estimates: Mapping[str, Estimate]  # fitted, derived, or of the data sheet
     runs: Mapping[str, Recording]
 
     @property

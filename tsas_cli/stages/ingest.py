@@ -15,18 +15,10 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 @dataclass(frozen=True, repr=False, eq=False)
 class IngestResult(Result):
-    """What became of the files.
-
-    Parameters
-    ----------
-    dataset
-        The dataset that was written.
-    runs
-        Of each file the run's id, its rows, duration [s], rate [Hz] and columns.
-    """
+    """What became of the files."""
 
     dataset: Dataset
-    runs: tuple[Ingested, ...]
+    runs: tuple[Ingested, ...]  # of each file: rows, duration, rate, columns
 
     def tables(self) -> list[Table]:
         """Return a row for each run."""

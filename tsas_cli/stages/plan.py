@@ -23,17 +23,9 @@ SAID = 4  # improvements of a proposal that are printed
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PlanResult(Result):
-    """What a set of runs could show, and which further run helps most.
+    """What a set of runs could show, and which further run helps most."""
 
-    Parameters
-    ----------
-    record
-        What `plan.json` holds.
-    plan
-        From which size on each effect is seen and named, what hides in what, and the proposals.
-    """
-
-    record: RunPlan
+    record: RunPlan  # what `plan.json` holds
     plan: ExperimentPlan
 
     def tables(self) -> list[Table]:

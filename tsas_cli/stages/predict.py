@@ -21,18 +21,10 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PredictResult(Result):
-    """How well models predict recordings, and whether these lie in what they were fitted to.
+    """How well models predict recordings, and whether these lie in what they were fitted to."""
 
-    Parameters
-    ----------
-    record
-        What `predict.json` holds.
-    predicted
-        The models by letter, and what each predicts of each run.
-    """
-
-    record: PredictionFile
-    predicted: Predicted
+    record: PredictionFile  # what `predict.json` holds
+    predicted: Predicted  # the models by letter, and what each predicts of each run
 
     def tables(self) -> list[Table]:
         """Return the models, their errors, and which runs lie outside their ranges."""

@@ -21,15 +21,9 @@ from tsas_cli.verifying.seal import PAGE_MARK, with_seal
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ReportResult(Result):
-    """A page that was written, and from what; `out` is the page.
+    """A page that was written, and from what; `out` is the page."""
 
-    Parameters
-    ----------
-    sizes
-        Each file that was written, in bytes.
-    """
-
-    sizes: dict[str, int]
+    sizes: dict[str, int]  # of each file that was written [bytes]
 
     def tables(self) -> list[Table]:
         """Return what was read."""

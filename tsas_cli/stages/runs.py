@@ -37,18 +37,10 @@ MOST_NOTES = 10
 
 @dataclass(frozen=True, repr=False, eq=False)
 class RunsResult(Result):
-    """The runs that a query names.
+    """The runs that a query names."""
 
-    Parameters
-    ----------
-    found
-        The columns that were asked for, and a row of values for each run.
-    shown
-        The columns of the table.
-    """
-
-    found: QueryResult
-    shown: Sequence[str]
+    found: QueryResult  # the columns that were asked for, and a row of values for each run
+    shown: Sequence[str]  # the columns of the table
 
     @property
     def paths(self) -> tuple[str, ...]:

@@ -42,20 +42,13 @@ DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "l
 class SimulationResult(Result):
     """Every run as a model answers it; `result["a"]` is run a.
 
-    Parameters
-    ----------
-    record
-        What `simulation.json` holds.
-    model
-        The model that was simulated.
-    runs
-        By id the compared to each run: columns of shape (n,) as in the recording, `x_in_mm` as
-        conditioned [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive.
-        Those that were written are read when they are asked for.
+    `runs` holds them by id: columns of shape (n,) as in the recording, `x_in_mm` as conditioned
+    [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive. Those that were
+    written are read when they are asked for.
     """
 
-    record: records.SimulationFile
-    model: Model
+    record: records.SimulationFile  # what `simulation.json` holds
+    model: Model  # that was simulated
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
@@ -162,7 +155,8 @@ def simulate(
                 own = with_own_values(taken, run) if fit_own else taken
                 compared = compare(run, own, dynamics, nodes)
                 summary = compared.summary
-            used = _of_run(own, entry.id).over(used)
+            of_run = Model(tuple(e for e in own.estimates if e.run == entry.id))
+            used = of_run.over(used)
             record = record.with_run(
                 entry.id, summary.record(run), segment_records(run, segment(run))
             )
@@ -181,11 +175,6 @@ def simulate(
             write_model(folder / MODEL_FILE, used, version=record.version, dataset={})
     written = path and WrittenRuns(path / "runs", {run.id: run for run in data.runs})
     return SimulationResult(record.content(), path, record, taken, written or kept)
-
-
-def _of_run(model: Model, run: str) -> Model:
-    """Return what of a model belongs to a run alone."""
-    return Model(tuple(e for e in model.estimates if e.run == run))
 
 
 def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:

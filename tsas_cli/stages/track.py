@@ -60,17 +60,12 @@ COLUMNS = (
 class TrackingResult(Result):
     """How well the wanted force is followed; `result["pid-undisturbed"]` is a run.
 
-    Parameters
-    ----------
-    record
-        What `tracking.json` holds.
-    runs
-        By `controller-condition` the recording of the first seed: columns of shape (m,), among
-        them `f_out_ref_N` (wanted), `f_out_true_N`, `f_out_N` (with noise), `x_in_mm` and
-        `motor_speed_rpm` (docs/tracking.md).
+    `runs` holds, by `controller-condition`, the recording of the first seed: columns of shape (m,),
+    among them `f_out_ref_N` (wanted), `f_out_true_N`, `f_out_N` (with noise), `x_in_mm` and
+    `motor_speed_rpm` (docs/tracking.md).
     """
 
-    record: TrackingFile
+    record: TrackingFile  # what `tracking.json` holds
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
@@ -181,7 +176,7 @@ def track(
         dynamics=dynamics,
         gains="as printed" if as_printed else "default",
         seeds=(numbers[0], numbers[-1]),
-        conditions={condition.name: _changes_of(condition) for condition in changes},
+        conditions={condition.name: condition.changes for condition in changes},
     )
     follow = partial(run_loop, wanted, drive_path, known, dynamics=dynamics, relay=as_printed)
     results, tables = list[records.TrackedResult](), dict[str, pa.Table]()
@@ -227,13 +222,6 @@ def _known_controllers(named: Sequence[str]) -> Sequence[str]:
 
 def _reference_of(reference: Path, out: Path | None) -> dict[str, str]:
     return read_from(reference, out or Path()) if reference.is_file() else {"shape": str(reference)}
-
-
-def _changes_of(condition: Condition) -> list[records.ConditionChange]:
-    return [
-        records.ConditionChange(quantity=c.name, value=c.value, from_s=c.from_s)
-        for c in condition.changes
-    ]
 
 
 def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:

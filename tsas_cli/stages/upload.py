@@ -3,12 +3,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from tsas_cli.recordings.checked import changed, local_file
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Run
 from tsas_cli.recordings.storage import Address, location_of
-from tsas_cli.recordings.upload import upload_dataset
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
@@ -25,7 +28,9 @@ class UploadResult(Result):
 def upload(
     folder: Named, address: str, *, force: bool = False, step: Steps = NO_PROGRESS
 ) -> UploadResult:
-    """Put a dataset on object storage.
+    """Put a dataset on object storage: its recordings, and the manifest last.
+
+    Until then the checksums of an older manifest reveal that its recordings are being replaced.
 
     Parameters
     ----------
@@ -46,14 +51,35 @@ def upload(
     Raises
     ------
     InputError
-        The dataset is wrong, one is there and `force` is not set, or the storage refuses.
+        The dataset is wrong, one is there and `force` is not set, a recording would replace an
+        object of no dataset, or the storage refuses.
     """
     source, target = location_of(folder), location_of(address)
     if not isinstance(source, Path):
         raise InputError("is no local folder", where=source, expected="a dataset's folder")
     if not isinstance(target, Address):
         raise InputError("is no address", where=target, expected="s3://… or gs://…")
-    files = upload_dataset(source, target, force=force, step=step)
+    dataset, manifest = read_dataset(source), target / MANIFEST_FILE
+    exists = manifest.is_file()
+    if exists and not force:
+        raise InputError(
+            "already exists",
+            where=manifest,
+            expected="an address that is free",
+            remedy="choose another, or replace it with --force",
+        )
+    step.ahead(len(dataset.runs))
+    replaced = {run.file for run in read_dataset(target).runs} if exists else set()
+    for run in dataset.runs:  # before anything is sent or replaced
+        if run.file not in replaced:
+            _refuse_foreign(target / run.file, local_file(source, run).stat().st_size)
+    files: dict[str, int] = {}
+    for run in dataset.runs:
+        files[run.file] = _upload_run(source, run, target)
+        step()
+    content = (source / MANIFEST_FILE).read_bytes()
+    manifest.write_bytes(content)
+    files[MANIFEST_FILE] = len(content)
     summary = {
         "format": 1,
         "stage": "upload",
@@ -63,3 +89,22 @@ def upload(
         "files": files,
     }
     return UploadResult(summary, None)
+
+
+def _refuse_foreign(existing: Address, size: int) -> None:
+    """Refuse to replace an object, unless an interrupted upload of this size wrote it."""
+    if existing.is_file() and existing.size() != size:
+        raise InputError(
+            "was not written by `tsas upload`",
+            where=existing,
+            expected="an address that is free, or a dataset",
+            remedy="choose another address, or remove the object with the storage's own tools",
+        )
+
+
+def _upload_run(folder: Path, run: Run, target: Address) -> int:
+    path = local_file(folder, run)
+    if sha256_of(path) != run.sha256.lower():
+        raise changed(path, run)
+    (target / run.file).copy_from(path)
+    return path.stat().st_size

@@ -17,11 +17,8 @@ STATES = ("fits", "changed", "missing", "cannot tell")
 class VerifyResult(Result):
     """What became of every file whose checksum is recorded, and of those that lack one.
 
-    Parameters
-    ----------
-    files
-        Each with its `state` (`fits`, `changed`, `missing`, `cannot tell`), who recorded its
-        checksum (`by`), and `why` it does not fit.
+    Each has a `state` (`fits`, `changed`, `missing`, `cannot tell`), who recorded its checksum
+    (`by`), and `why` it does not fit.
     """
 
     files: tuple[Verified, ...]

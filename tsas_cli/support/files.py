@@ -42,16 +42,8 @@ def new_folder(
 ) -> Iterator[Path]:
     """Yield a temporary folder that becomes `path` when the block ends without an error.
 
-    Parameters
-    ----------
-    path
-        The folder to write.
-    stage
-        The stage that writes it, as its JSON names it.
-    inputs
-        The inputs of the call; the folder may not be, contain or lie inside one.
-    force
-        Replace an earlier output of the same stage.
+    `stage` writes it, as its JSON names it; with `force` an earlier output of the same stage is
+    replaced. The folder may not be, contain or lie inside one of the call's `inputs`.
 
     Raises
     ------
@@ -108,17 +100,9 @@ def new_file(
 ) -> Iterator[Path]:
     """Yield a temporary file name that becomes `path` when the block ends without an error.
 
-    Parameters
-    ----------
-    path
-        The file to write.
-    mark
-        Bytes in the first 4 KiB of an earlier output of the same command; empty if any file may be
-        replaced, since the path belongs to the program.
-    inputs
-        The inputs of the call; the file may not be one or lie inside one.
-    force
-        Replace an earlier output of the same command.
+    With `force` an earlier output of the same command is replaced, which has `mark` in its first
+    4 KiB; an empty mark allows any file, since the path belongs to the program. The file may not
+    be one of the call's `inputs` or lie inside one.
 
     Raises
     ------

@@ -60,13 +60,7 @@ def text_of(path: Path, most: int) -> str:
 
 
 def decoded(content: bytes, path: object, most: int) -> str:
-    """Return the content of a file as text, as `text_of` does.
-
-    Raises
-    ------
-    InputError, UnicodeDecodeError
-        As from `text_of`.
-    """
+    """Return the content of a file as text, as `text_of` does."""
     if len(content) > most:
         raise InputError(
             f"is larger than {size(most)}", where=path, expected="a file written by tsas or by hand"
@@ -75,15 +69,7 @@ def decoded(content: bytes, path: object, most: int) -> str:
 
 
 def regular(path: Path, state: os.stat_result | None = None) -> None:
-    """Refuse a pipe or a device, which may never end, a folder, or a name that is not UTF-8.
-
-    Raises
-    ------
-    InputError
-        It is one of these.
-    OSError
-        The file does not exist.
-    """
+    """Refuse a pipe or a device, which may never end, a folder, or a name that is not UTF-8."""
     mode = (state or path.stat()).st_mode
     if not stat.S_ISREG(mode):
         kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"

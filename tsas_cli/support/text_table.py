@@ -16,15 +16,8 @@ def table_text(
 ) -> Iterator[str]:
     """Yield the lines of a table; control characters in names from files are escaped.
 
-    Parameters
-    ----------
-    title
-        The line above the table, without rows the only line.
-    header, rows
-        Cells, the same number in each row.
-    width
-        Columns of the terminal, None for other outputs. Cells are wrapped between words; the
-        terminal breaks lines that are still too long.
+    Without rows there is only its title. Cells are wrapped between words to `width`, the columns of
+    the terminal, None for other outputs; the terminal breaks lines that are still too long.
     """
     yield printable(title)
     if not rows:

@@ -35,18 +35,9 @@ def on_cluster(
     """Yield the number and the outcome of each task, in the order of completion.
 
     The scheduler reassigns the tasks of a worker that dies; after its `allowed-failures` a task has
-    failed. If the loop over the outcomes ends early, pending tasks are cancelled.
-
-    Parameters
-    ----------
-    work
-        The function to call, `module:function`.
-    texts
-        The tasks.
-    address
-        The scheduler's, as `dask scheduler` prints it.
-    shared
-        A file that every worker has to see, to check the shared file system.
+    failed. If the loop over the outcomes ends early, pending tasks are cancelled. `work` is the
+    function to call, `module:function`, `address` what `dask scheduler` prints, `shared` a file
+    that every worker has to see, to check the shared file system.
 
     Raises
     ------

@@ -19,17 +19,9 @@ def in_processes(
 ) -> Iterator[tuple[int, TaskOutcome]]:
     """Yield the number and the outcome of each task, in the order of completion.
 
-    A task whose worker dies is repeated once by a new one. If the loop over the outcomes ends
-    early, the workers are killed.
-
-    Parameters
-    ----------
-    work
-        The function to call, `module:function`.
-    texts
-        The tasks.
-    workers
-        Largest number of processes.
+    `work` is the function to call, `module:function`, in at most `workers` processes. A task whose
+    worker dies is repeated once by a new one. If the loop over the outcomes ends early, the workers
+    are killed.
 
     Raises
     ------

@@ -33,18 +33,10 @@ Pool = Callable[[Sequence[str]], Iterator[tuple[int, TaskOutcome]]]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SweepResult(Result):
-    """The results of all tasks.
+    """The results of all tasks."""
 
-    Parameters
-    ----------
-    before
-        Number of tasks that an earlier call completed.
-    defects
-        Number of tasks that failed by a defect of the program, not by their input.
-    """
-
-    before: int
-    defects: int
+    before: int  # number of tasks that an earlier call completed
+    defects: int  # number of tasks that failed by a defect of the program, not by their input
 
     def frame(self) -> "pd.DataFrame":
         """Return the table as a pandas DataFrame: one row per task, with its state and results."""
@@ -83,24 +75,10 @@ def sweep_tasks(
     force: bool,
     step: Steps,
 ) -> SweepResult:
-    """Return the results of all tasks, after running the pending ones.
+    """Return the results of all tasks, after running the pending ones, or all with `force`.
 
-    Parameters
-    ----------
-    plan
-        The plan of the tasks.
-    tasks
-        All of them.
-    out
-        A new folder, or that of an earlier sweep.
-    pool
-        Runs tasks, and yields their number and outcome.
-    inputs
-        Input files besides those of the tasks.
-    force
-        Repeat completed tasks.
-    step
-        Called after each task.
+    `out` is a new folder, or that of an earlier sweep. The pool runs tasks, and yields their number
+    and outcome. `inputs` are files besides those of the tasks.
 
     Raises
     ------

@@ -22,27 +22,13 @@ LONGEST = 100  # characters of the readable part of a name
 
 @dataclass(frozen=True)
 class Task:
-    """One call of a stage.
+    """One call of a stage, whose result depends on `inputs` alone: files by their checksums."""
 
-    Attributes
-    ----------
-    key
-        Its name: the varied values, and a digest of `inputs`.
-    source
-        The dataset or run; None if the stage has none.
-    point
-        The varied values.
-    inputs
-        Everything that its result depends on, as plain data; files by their checksums.
-    places
-        The paths of the files.
-    """
-
-    key: str
-    source: SweepSource | None
-    point: Row
+    key: str  # its name: the varied values, and a digest of `inputs`
+    source: SweepSource | None  # the dataset or run; None if the stage has none
+    point: Row  # the varied values
     inputs: Mapping[str, Any]
-    places: Mapping[str, str]
+    places: Mapping[str, str]  # the paths of the files
 
     def text(self, out: Path, **more: Any) -> str:
         """Return the task as JSON for a worker."""

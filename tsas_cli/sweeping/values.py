@@ -29,42 +29,23 @@ Options = Mapping[str, TypeAdapter[Any]]
 class Values:
     """The values of one task, by kind.
 
-    Attributes
-    ----------
-    options
-        Keywords of the stage's call.
-    files
-        Paths of the files among them, by keyword.
-    sums
-        The files' checksums, by keyword.
-    model, plant
-        Quantities of either, by name, that replace those of its file or the data sheet.
-    conditions
-        Conditions of every run that replace those of the manifest.
-    settings
-        Settings of the closed loop by their dotted keys.
+    Those of model and plant replace those of its file or the data sheet, conditions those of every
+    run in the manifest.
     """
 
-    options: Raw = field(default_factory=dict)
-    files: dict[str, Path] = field(default_factory=dict)
-    sums: dict[str, dict[str, str]] = field(default_factory=dict)
+    options: Raw = field(default_factory=dict)  # keywords of the stage's call
+    files: dict[str, Path] = field(default_factory=dict)  # paths of the files among them
+    sums: dict[str, dict[str, str]] = field(default_factory=dict)  # their checksums, by keyword
     model: dict[str, float] = field(default_factory=dict)
     plant: dict[str, float] = field(default_factory=dict)
     conditions: dict[str, float] = field(default_factory=dict)
-    settings: Raw = field(default_factory=dict)
+    settings: Raw = field(default_factory=dict)  # of the closed loop, by dotted keys
 
 
 def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Values:
-    """Return named values by kind.
+    """Return the named values of a task by kind; their paths are relative to `base`.
 
-    Parameters
-    ----------
-    given
-        The values by name.
-    options
-        The type of each keyword of the stage's call.
-    base
-        The folder of relative paths.
+    `options` holds the type of each keyword of the stage's call.
 
     Raises
     ------

@@ -8,6 +8,7 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.paper import yang2025
 from tsas_cli.physics.rig import with_values
+from tsas_cli.records.tracking import ConditionChange
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.tracking.track import Plant
 
@@ -27,25 +28,16 @@ ONLY_FROM_THE_START = {
 
 
 @dataclass(frozen=True)
-class Change:
-    """One quantity of the plant and its new value, from a time on."""
-
-    name: str
-    value: float
-    from_s: float
-
-
-@dataclass(frozen=True)
 class Condition:
     """A name for the table, and the changes."""
 
     name: str
-    changes: tuple[Change, ...] = ()
+    changes: tuple[ConditionChange, ...] = ()
 
     def of(self, plant: Plant) -> Plant:
         """Return the plant under this condition."""
-        early = {c.name: c.value for c in self.changes if c.from_s <= 0.0}
-        late = {c.name: c.value for c in self.changes if c.from_s > 0.0}
+        early = {c.quantity: c.value for c in self.changes if c.from_s <= 0.0}
+        late = {c.quantity: c.value for c in self.changes if c.from_s > 0.0}
         rig = with_values(plant.rig, early)
         if not late:
             return replace(plant, rig=rig)
@@ -75,36 +67,38 @@ def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
 
 def proximal_spring() -> Condition:
     """Return the disturbance of Fig. 11: a spring at the drive's end of the tendon."""
-    stiffness = yang2025().value("reference.disturbance_stiffness")
-    return Condition(
-        "disturbed", (Change("proximal_spring.stiffness_N_per_mm", stiffness, from_s=0.0),)
+    spring = ConditionChange(
+        quantity="proximal_spring.stiffness_N_per_mm",
+        value=yang2025().value("reference.disturbance_stiffness"),
+        from_s=0.0,
     )
+    return Condition("disturbed", (spring,))
 
 
-def _change(option: str, where: str) -> Change:
+def _change(option: str, where: str) -> ConditionChange:
     name, _, rest = option.partition("=")
-    value, _, from_s = rest.partition("@")
+    number, _, moment = rest.partition("@")
     if name not in ALLOWED:
         raise InputError(f"unknown quantity {name}", where=where, remedy=nearest(name, ALLOWED))
     try:
-        change = Change(name, float(value), float(from_s or 0.0))
+        value, from_s = float(number), float(moment or 0.0)
     except ValueError as error:
         raise InputError(
             f"{option!r} is no change", where=where, expected="NAME=VALUE or NAME=VALUE@SECONDS"
         ) from error
-    if not 0.0 <= change.from_s < math.inf:
-        raise InputError(f"{option!r} begins at {from_s} s", where=where, expected="0 s or later")
+    if not 0.0 <= from_s < math.inf:
+        raise InputError(f"{option!r} begins at {moment} s", where=where, expected="0 s or later")
     lower, upper, unit = ALLOWED[name]
-    if not lower <= change.value <= upper:
+    if not lower <= value <= upper:
         raise InputError(
-            f"{name} of {change.value:g}",
+            f"{name} of {value:g}",
             where=where,
             expected=f"{lower:g} to {upper:g} {unit}",
         )
-    if change.from_s > 0.0 and name in ONLY_FROM_THE_START:
+    if from_s > 0.0 and name in ONLY_FROM_THE_START:
         raise InputError(
             f"{name} cannot change during a run",
             where=where,
-            remedy=f"leave out @{from_s}: {ONLY_FROM_THE_START[name]}",
+            remedy=f"leave out @{moment}: {ONLY_FROM_THE_START[name]}",
         )
-    return change
+    return ConditionChange(quantity=name, value=value, from_s=from_s)

@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import Field
 
-from tsas_cli.controllers.laws import ControlLaws, ControllerSettings
+from tsas_cli.controllers.laws import ControllerSettings
 from tsas_cli.controllers.sliding_mode import MM_PER_M
 from tsas_cli.paper.settings import printed
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
@@ -105,19 +105,6 @@ class Settings(StrictTable):
     def step_s(self) -> float:
         """Return the time between samples."""
         return 1.0 / self.sensor.rate_Hz
-
-    def with_phi2(self, phi2: float) -> "Settings":
-        """Return the settings with another φ2 of both sliding modes, as it starts [rpm s/mm]."""
-        gains = self.controllers
-        changed = {
-            name: law.model_copy(update={"phi": (law.phi[0], phi2, law.phi[2])})
-            for name, law in gains.sliding_modes().items()
-        }
-        return self.model_copy(update={"controllers": gains.model_copy(update=changed)})
-
-    def laws(self, controller: str, gain_mm_per_s_rpm: float) -> ControlLaws:
-        """Return every controller's gains as the kernel takes them, one of them at work."""
-        return self.controllers.laws(controller, gain_mm_per_s_rpm)
 
 
 def read_settings(given: Path | Mapping[str, Any] | None) -> Settings:

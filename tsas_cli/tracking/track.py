@@ -133,7 +133,7 @@ def run_loop(
             np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]
         ),
         DriveSensor(step_s, noise, settings.sensor.step_mm, A, b),
-        settings.laws(controller, known.actuator.gain_mm_per_s_rpm),
+        settings.controllers.laws(controller, known.actuator.gain_mm_per_s_rpm),
         LoopPlant(
             actuator=plant.actuator,
             rigs=(plant.rig, plant.later or plant.rig),

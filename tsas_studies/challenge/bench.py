@@ -45,24 +45,12 @@ SENSORS = Sensors(
 
 @dataclass(frozen=True)
 class Bench:
-    """What one case's rig is really like, beside what is hidden.
+    """What one case's rig is really like, beside what is hidden."""
 
-    Attributes
-    ----------
-    nominal
-        Friction coefficient, load stiffness, tendon modulus and preload as options of the rig.
-    bend_profile
-        Where the sheath is bent more and where less.
-    started
-        When each run began.
-    nuisance
-        What its conditions add.
-    """
-
-    nominal: Mapping[str, float]
-    bend_profile: Course
-    started: Mapping[str, datetime]
-    nuisance: Nuisance = field(default_factory=Nuisance)
+    nominal: Mapping[str, float]  # friction, load stiffness, tendon modulus, preload: rig options
+    bend_profile: Course  # where the sheath is bent more and where less
+    started: Mapping[str, datetime]  # when each run began
+    nuisance: Nuisance = field(default_factory=Nuisance)  # what its conditions add
 
 
 def data_sheet() -> dict[str, float]:

@@ -55,30 +55,17 @@ class Hidden:
 class Case:
     """One case of the set of a seed.
 
-    Attributes
-    ----------
-    name
-        What it is, for people; sealed like the rest.
-    kind
-        How many effects of the catalogue are hidden, or that it is something else.
-    size
-        Factor on the full sizes.
-    hidden
-        The causes.
-    seed, number
-        The seed of the set and the place in it; both together seed what else is drawn.
-    conditions
-        What its rig has beside what is hidden. The same case under other conditions has the same
-        number, and the same rig but for that.
+    Seed and number, its place in the set, together seed what else is drawn. The same case under
+    other conditions has the same number, and the same rig but for that.
     """
 
-    name: str
-    kind: Kind
-    size: float
+    name: str  # what it is, for people; sealed like the rest
+    kind: Kind  # how many effects of the catalogue are hidden, or that it is something else
+    size: float  # factor on the full sizes
     hidden: tuple[Hidden, ...]
     seed: int
     number: int
-    conditions: Conditions = "clean"
+    conditions: Conditions = "clean"  # what its rig has beside what is hidden
 
 
 # Full sizes, from which a case draws one variant. Chosen with benchmarks/challenge_sizes.py: each

@@ -29,21 +29,11 @@ def make(
     rate_Hz: float = 200.0,
     step: Callable[[], None] = lambda: None,
 ) -> None:
-    """Write `cases/ID/dataset` for each case, and `answers.json` beside them, into a folder.
+    """Write `cases/ID/dataset` for each case, and `answers.json` beside them, into an empty folder.
 
-    The same cases give the same files, byte for byte. The ids are drawn, and the folders' order
-    is theirs, so that neither tells a case's place in the list.
-
-    Parameters
-    ----------
-    out
-        An empty folder.
-    cases
-        Cases of one or more seeds.
-    rate_Hz
-        Sample rate of the recordings.
-    step
-        Called after each case.
+    The same cases, of one or more seeds, give the same files, byte for byte. The ids are drawn, and
+    the folders' order is theirs, so that neither tells a case's place in the list. `step` is called
+    after each case.
 
     Raises
     ------

@@ -29,21 +29,11 @@ STREAM = 2  # of chance, beside those of `make`
 
 @dataclass(frozen=True)
 class Size:
-    """One variant of a cause at full size.
+    """One variant of a cause at full size."""
 
-    Attributes
-    ----------
-    scaled
-        What grows with the size.
-    drawn
-        What shapes it, from a lowest to a highest value.
-    one_sign
-        The cause has no opposite.
-    """
-
-    scaled: Mapping[str, float]
-    drawn: Mapping[str, tuple[float, float]]
-    one_sign: bool = True
+    scaled: Mapping[str, float]  # what grows with the size
+    drawn: Mapping[str, tuple[float, float]]  # what shapes it, from a lowest to a highest value
+    one_sign: bool = True  # the cause has no opposite
 
 
 PHASE = (0.0, 2.0 * np.pi)

@@ -67,29 +67,11 @@ def make_set(
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> SealedSet:
-    """Make recordings with known causes, and seal the truth beside them.
+    """Make recordings with known causes, and seal the truth beside them in the folder `out`.
 
-    Parameters
-    ----------
-    out
-        The folder to write.
-    seed, seeds
-        The first seed, and how many from that one on.
-    small
-        Each effect once at full size, and a few of what is none.
-    kind, conditions
-        Only cases in which this is hidden, and only those under these conditions.
-    rate_Hz
-        Samples per second.
-    force
-        Replace the folder if it is there.
-    step
-        Called once for each case.
-
-    Returns
-    -------
-    SealedSet
-        `.summary["cases"]` says how many cases hide what.
+    There are so many seeds from the first one on. A small set has each effect once at full size,
+    and a few of what is none; with `kind` or `conditions` only such cases are made. `step` is
+    called once for each.
 
     Raises
     ------
@@ -137,25 +119,8 @@ def run_set(
 ) -> EntryResult:
     """Diagnose every case of a sealed set; the answers stay unread.
 
-    Parameters
-    ----------
-    sealed
-        The set's folder.
-    out
-        The folder to write, with `ID/diagnosis.json` for each case.
-    tool
-        `diagnose`: this program's; the rest are baselines.
-    workers
-        How many cases at a time, each in a process of its own.
-    force
-        Replace the folder if it is there.
-    step
-        Called once for each case.
-
-    Returns
-    -------
-    EntryResult
-        `.summary["no_answer"]` says why which case has no answer.
+    Written are `out/ID/diagnosis.json` for each case, by this program or by a baseline. Each of the
+    workers does one case at a time, in a process of its own.
 
     Raises
     ------
@@ -174,21 +139,7 @@ def score_set(
 ) -> Score:
     """Score the answers of one or more tools against the truth, side by side.
 
-    Parameters
-    ----------
-    sealed
-        The set's folder.
-    entries
-        Folders with `ID/diagnosis.json`.
-    out
-        Where to write `score.json`; None writes nothing.
-    force
-        Replace the folder if it is there.
-
-    Returns
-    -------
-    Score
-        `.summary` is what `score.json` holds.
+    The entries are folders with `ID/diagnosis.json`; `out` gets `score.json`.
 
     Raises
     ------

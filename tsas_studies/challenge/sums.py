@@ -21,11 +21,6 @@ def check_recordings(sealed: Path, answers: Truth) -> None:
 
     Recordings that are not beside the answers any more are not looked at, nor those of a set that
     was made without checksums.
-
-    Raises
-    ------
-    InputError
-        A file of a case has changed, is missing, or belongs to another case.
     """
     for name, case in answers.cases.items():
         dataset = sealed / CASES / name / DATASET
@@ -41,13 +36,7 @@ def check_recordings(sealed: Path, answers: Truth) -> None:
 
 
 def check_said(said: object, sums: Mapping[str, str], where: Path) -> None:
-    """Refuse a diagnosis that names the checksums of other recordings than those of its case.
-
-    Raises
-    ------
-    InputError
-        It does.
-    """
+    """Refuse a diagnosis that names the checksums of other recordings than those of its case."""
     source = said.get("dataset") if isinstance(said, dict) else None
     hashes = source.get("hashes") if isinstance(source, dict) else None
     if not sums or not isinstance(hashes, dict):

@@ -1,9 +1,8 @@
 """`tsas challenge`: make a sealed set of recordings, let a tool diagnose it, score the answers."""
 
 import os
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -16,35 +15,9 @@ challenge = typer.Typer(
     help="A blind benchmark of diagnosis, for this and any other tool (docs/challenge.md).",
 )
 SealedSet = Annotated[Path, typer.Argument(metavar="SET", help="A sealed set's folder.")]
-
-
-class ToolOption(StrEnum):
-    """What can diagnose the cases of a set."""
-
-    diagnose = "diagnose"
-    bic = "bic"
-    training = "training"
-    sparse = "sparse"
-
-
-class KindOption(StrEnum):
-    """What can be hidden in a case."""
-
-    one = "one"
-    pair = "pair"
-    triple = "triple"
-    nothing = "nothing"
-    unknown = "unknown"
-    near = "near"
-    fault = "fault"
-
-
-class ConditionsOption(StrEnum):
-    """What the rig of a case has beside what is hidden."""
-
-    clean = "clean"
-    slow = "slow"
-    realistic = "realistic"
+Tool = Literal["diagnose", "bic", "training", "sparse"]
+Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near", "fault"]
+Conditions = Literal["clean", "slow", "realistic"]
 
 
 @challenge.command("make")
@@ -61,10 +34,10 @@ def make(
         typer.Option("--small", help="Each effect once at full size, and a few of what is none."),
     ] = False,
     kind: Annotated[
-        KindOption | None, typer.Option("--kind", help="Only cases in which this is hidden.")
+        Kind | None, typer.Option("--kind", help="Only cases in which this is hidden.")
     ] = None,
     conditions: Annotated[
-        ConditionsOption | None,
+        Conditions | None,
         typer.Option("--conditions", help="Only cases under these; slow: slow noise."),
     ] = None,
     rate: Annotated[
@@ -83,8 +56,8 @@ def make(
             seed=seed,
             seeds=seeds,
             small=small,
-            kind=None if kind is None else kind.value,
-            conditions=None if conditions is None else conditions.value,
+            kind=kind,
+            conditions=conditions,
             rate_Hz=rate,
             force=force,
             step=step,
@@ -97,8 +70,8 @@ def run(
     sealed: SealedSet,
     out: OutFolder,
     tool: Annotated[
-        ToolOption, typer.Option("--tool", help="diagnose: this program's; the rest are baselines.")
-    ] = ToolOption.diagnose,
+        Tool, typer.Option("--tool", help="diagnose: this program's; the rest are baselines.")
+    ] = "diagnose",
     workers: Annotated[
         int, typer.Option("--workers", min=1, help="How many cases at a time.")
     ] = os.cpu_count() or 1,
@@ -110,7 +83,7 @@ def run(
     from tsas_studies.challenge.stages import run_set
 
     with progress("challenge", quiet=quiet) as step:
-        result = run_set(sealed, out=out, tool=tool.value, workers=workers, force=force, step=step)
+        result = run_set(sealed, out=out, tool=tool, workers=workers, force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)
 
 

@@ -94,7 +94,13 @@ def _followed(
 ) -> Followed:
     settings = settings_for(reading)
     if phi2 is not None:
-        settings = settings.with_phi2(phi2)
+        gains = settings.controllers
+        changed = {
+            name: law.model_copy(update={"phi": (law.phi[0], phi2, law.phi[2])})
+            for name, law in gains.sliding_modes().items()
+        }
+        controllers = gains.model_copy(update=changed)
+        settings = settings.model_copy(update={"controllers": controllers})
     known, plant = paper_plant(settings, condition)
     mu = plant.rig.friction_coefficient * friction
     plant = replace(plant, rig=plant.rig._replace(friction_coefficient=mu))

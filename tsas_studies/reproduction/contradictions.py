@@ -40,12 +40,12 @@ def contradictions(paper: Paper) -> Group:
         "contradictions",
         "Where the paper contradicts itself or its rig",
         ("Nine places, some with several rows. Where a row differs, that is the contradiction.",),
-        tuple(_numbered(number, row) for number, rows in enumerate(found, 1) for row in rows),
+        tuple(
+            replace(row, what=f"{number}. {row.what}")
+            for number, rows in enumerate(found, 1)
+            for row in rows
+        ),
     )
-
-
-def _numbered(number: int, row: Row) -> Row:
-    return replace(row, what=f"{number}. {row.what}")
 
 
 def _misplaced(paper: Paper) -> Row:

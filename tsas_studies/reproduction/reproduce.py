@@ -16,15 +16,9 @@ from tsas_studies.reproduction.summary import sentence, summary_of, verdict_tabl
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ReproductionResult(Result):
-    """What agrees with the paper, and what does not.
+    """What agrees with the paper, and what does not."""
 
-    Parameters
-    ----------
-    groups
-        One for each table or figure, with its rows and figures.
-    """
-
-    groups: Sequence[Group]
+    groups: Sequence[Group]  # one for each table or figure, with its rows and figures
 
     def tables(self) -> list[Table]:
         """Return how many rows have which verdict."""

@@ -13,10 +13,18 @@ def to_the_digit(
     what: str, printed: Printed, ours: float, *, because: str = "", evidence: str = ""
 ) -> Row:
     """Compare with a printed number as far as its digits go."""
-    agrees = abs(ours - printed.value) <= printed.half_a_digit * (1.0 + 1e-9)
     half = f"{printed.half_a_digit:.12f}".rstrip("0").rstrip(".")
-    criterion = f"to the last digit printed, ± {half}"
-    return _row(what, printed, ours, agrees, criterion, because, evidence)
+    return holds(
+        what,
+        printed.source,
+        true=abs(ours - printed.value) <= printed.half_a_digit * (1.0 + 1e-9),
+        criterion=f"to the last digit printed, ± {half}",
+        unit=printed.unit,
+        paper=printed.value,
+        ours=ours,
+        because=because,
+        evidence=evidence,
+    )
 
 
 def within(
@@ -29,8 +37,17 @@ def within(
     evidence: str = "",
 ) -> Row:
     """Compare with a printed number, to some percent of it."""
-    agrees = abs(ours - printed.value) <= 1e-2 * percent * abs(printed.value)
-    return _row(what, printed, ours, agrees, f"within {percent:g} %", because, evidence)
+    return holds(
+        what,
+        printed.source,
+        true=abs(ours - printed.value) <= 1e-2 * percent * abs(printed.value),
+        criterion=f"within {percent:g} %",
+        unit=printed.unit,
+        paper=printed.value,
+        ours=ours,
+        because=because,
+        evidence=evidence,
+    )
 
 
 def holds(
@@ -58,35 +75,12 @@ def undetermined(
     because: str,
     evidence: str = "",
     unit: str = "",
-    paper: float | None = None,
     ours: float | None = None,
 ) -> Row:
     """Say that a number cannot be computed, or has nothing to be held against."""
-    return Row(what, source, unit, paper, ours, "cannot tell", "", because, evidence)
+    return Row(what, source, unit, None, ours, "cannot tell", "", because, evidence)
 
 
 def signed(value: float, decimals: int) -> str:
     """Return a number with its sign, for a sentence."""
     return f"{value:+.{decimals}f}".replace("-", "−")
-
-
-def _row(
-    what: str,
-    printed: Printed,
-    ours: float,
-    agrees: bool,
-    criterion: str,
-    because: str,
-    evidence: str,
-) -> Row:
-    return holds(
-        what,
-        printed.source,
-        true=agrees,
-        criterion=criterion,
-        unit=printed.unit,
-        paper=printed.value,
-        ours=ours,
-        because=because,
-        evidence=evidence,
-    )

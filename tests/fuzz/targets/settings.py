@@ -20,9 +20,9 @@ def one(data: bytes) -> None:
     settings: Settings | None = answer(read_settings, _scratch.file("settings.toml", data))
     if settings is None:
         return
-    printed_gains(settings.with_phi2(1.0))
+    printed_gains(settings)
     for controller in CONTROLLERS:
-        settings.laws(controller, 1.0)
+        settings.controllers.laws(controller, 1.0)
     settings.drive.kinematic()
 
 

@@ -31,7 +31,11 @@ def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, l
     """
     m = motor_mm.size
     rpm = np.append(np.diff(motor_mm) / step_s, 0.0) / actuator.gain_mm_per_s_rpm
-    laws = Settings().laws("pid", actuator.gain_mm_per_s_rpm)._replace(pid=Pid(0.0, 0.0, 0.0))
+    laws = (
+        Settings()
+        .controllers.laws("pid", actuator.gain_mm_per_s_rpm)
+        ._replace(pid=Pid(0.0, 0.0, 0.0))
+    )
     path = np.zeros((4, m))
     path[0] = motor_mm
     columns, unsettled, done = close_loop(

@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
@@ -14,7 +15,7 @@ from tsas_studies.challenge.entry import read_entry
 from tsas_studies.challenge.run import TOOLS
 from tsas_studies.challenge.targets import TARGETS
 from tsas_studies.challenge.truth import read_truth
-from tsas_studies.commands.challenge import ConditionsOption, KindOption, ToolOption, make, score
+from tsas_studies.commands.challenge import Conditions, Kind, Tool, make, score
 
 DOCS = (Path(__file__).parents[3] / "docs" / "challenge.md").read_text(encoding="utf-8")
 
@@ -116,30 +117,30 @@ def test_several_seeds_are_one_set(monkeypatch, capsys, tmp_path):
 def test_cases_of_one_kind_are_a_set(monkeypatch, capsys, tmp_path):
     few = [c for c in cases.cases(17)[:79] if c.kind in ("nothing", "pair")][-2:]
     monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
-    make(tmp_path / "set", seed=17, kind=KindOption.nothing, rate=50.0, as_json=True)
+    make(tmp_path / "set", seed=17, kind="nothing", rate=50.0, as_json=True)
     summary = json.loads(capsys.readouterr().out)
     assert summary["cases"] == {"nothing": len([c for c in few if c.kind == "nothing"])}
     with pytest.raises(InputError, match="no case is of this kind"):
-        make(tmp_path / "none", seed=17, small=True, kind=KindOption.pair, rate=50.0)
+        make(tmp_path / "none", seed=17, small=True, kind="pair", rate=50.0)
     assert not (tmp_path / "none").exists()
 
 
 def test_every_kind_can_be_asked_for():
     listed = cases.cases(17)
-    assert {option.value for option in KindOption} == {c.kind for c in listed}
-    assert {option.value for option in ConditionsOption} == {c.conditions for c in listed}
+    assert set(get_args(Kind)) == {c.kind for c in listed}
+    assert set(get_args(Conditions)) == {c.conditions for c in listed}
 
 
 def test_cases_under_the_same_conditions_are_a_set(monkeypatch, capsys, tmp_path):
     few = [c for c in cases.cases(17) if c.name.startswith("nothing 10")]
     monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
-    make(tmp_path / "set", seed=17, conditions=ConditionsOption.realistic, rate=50.0, as_json=True)
+    make(tmp_path / "set", seed=17, conditions="realistic", rate=50.0, as_json=True)
     assert json.loads(capsys.readouterr().out)["cases"] == {"realistic nothing": 1}
     assert len(few) == 3
 
 
 def test_every_tool_can_be_asked_for():
-    assert [option.value for option in ToolOption] == list(TOOLS)
+    assert list(get_args(Tool)) == list(TOOLS)
     section = DOCS.split("## Baselines")[1].split("\n## ")[0]
     assert all(f"| `{name}` |" in section for name in TOOLS if name != "diagnose")
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
@@ -62,12 +63,8 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     no_steady_motion.CHECK,
 )
 DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (copies.CHECK,)
-CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
-CODES = (
-    *(check.code for check in MANIFEST_CHECKS),
-    *(check.code for check in RUN_CHECKS),
-    *(check.code for check in DATASET_CHECKS),
-)
+CHECKS: tuple[QualityCheck[Any], ...] = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
+CODES = tuple(check.code for check in CHECKS)
 
 
 @dataclass(frozen=True)
@@ -117,7 +114,8 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
             results += _check_run(dataset, run)
         except InputError as error:
             failures.append(error)
-            results.append(_unreadable(run, error))
+            remedy = "restore the file or ingest again"
+            results.append(Finding("unreadable", "error", run.id, None, error.line(), remedy))
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
@@ -146,10 +144,4 @@ def _attributed(result: Remark | CannotTell, code: str, run: str | None) -> Find
         return NotChecked(code, run, result.reason)
     return Finding(
         code, result.severity, run, result.column, result.sentence, result.remedy, result.first_s
-    )
-
-
-def _unreadable(run: Run, error: InputError) -> Finding:
-    return Finding(
-        "unreadable", "error", run.id, None, error.line(), "restore the file or ingest again", None
     )

@@ -43,12 +43,7 @@ class Batches:
 def batches_of(time_s: Floats, channels: Mapping[str, Floats]) -> Batches | None:
     """Return the batches that a recording's time stamps come in, or None.
 
-    Parameters
-    ----------
-    time_s
-        Time, not decreasing, shape (n,).
-    channels
-        The channels that move, shape (n,) each.
+    Time does not decrease; the channels are those that move, shape (n,) each.
     """
     interval = np.diff(time_s)
     if interval.size < _FEWEST or bool((interval < 0.0).any()):

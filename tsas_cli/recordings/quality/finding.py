@@ -34,21 +34,16 @@ class CannotTell:
 
 @dataclass(frozen=True)
 class QualityCheck(Generic[Subject]):
-    """One check: its code, its function and the columns it needs.
+    """One check, whose function yields a remark for each fault, or why it does not apply.
 
-    Parameters
-    ----------
-    code
-        The name of the check's module, with hyphens.
-    find
-        Yields a remark for each fault, and a reason if the check does not apply.
-    needs
-        Columns without which the check does not apply.
+    `of_long` is what of a run that is too long for memory is checked: its stretches one by one, or
+    the run decimated; for `strokes` the run decimated, if that still shows them, else stretches.
     """
 
-    code: str
+    code: str  # the name of the check's module, with hyphens
     find: Callable[[Subject], Iterator[Remark | CannotTell]]
-    needs: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()  # columns without which it does not apply
+    of_long: Literal["stretches", "decimated", "strokes"] = "stretches"
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,8 @@ def outlying(
     neighbouring motion explain. A lasting step is none. The first and the last samples have one
     neighbour only, so they have to deviate by more than the span.
 
-    Parameters
-    ----------
-    time_s, values
-        Time and values of a channel, shape (n,) each; gaps are NaN.
-    most
-        The largest plausible magnitude [unit of the channel].
-    noise, step, span
-        Those of the whole channel [its unit]; the noise is NaN if it is unknown.
+    Times and values have the shape (n,), gaps are NaN; `most` is the largest plausible magnitude.
+    Noise (NaN if it is unknown), step and span are those of the whole channel, in its unit.
     """
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         found = np.abs(values) > most

@@ -24,12 +24,9 @@ def span_of(values: Floats) -> float:
 
 
 def alternates(values: Floats) -> bool:
-    """Return whether a channel is noisy: third differences alternate for noise, not for motion.
+    """Return whether a channel, shape (n,), is noisy.
 
-    Parameters
-    ----------
-    values
-        A channel, shape (n,).
+    Third differences alternate for noise, not for motion.
     """
     clean = values[np.isfinite(values)]
     third = np.diff(clean, 3)
@@ -50,14 +47,9 @@ def smallest_change(values: Floats) -> float:
 
 
 def plateaus(values: Floats, shortest: int) -> list[slice]:
-    """Return the stretches of at least `shortest` rows in which a channel is constant.
+    """Return the stretches of at least `shortest` rows in which a channel, shape (n,), is constant.
 
-    Parameters
-    ----------
-    values
-        A channel, shape (n,); NaN belongs to no stretch.
-    shortest
-        Rows in the shortest stretch to return.
+    NaN belongs to no stretch.
     """
     changes = np.flatnonzero(values[1:] != values[:-1]) + 1
     edges = np.concatenate(([0], changes, [values.size]))

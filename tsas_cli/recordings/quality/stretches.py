@@ -18,15 +18,6 @@ from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.pieces import known_columns, pieces
-from tsas_cli.recordings.quality.checks import (
-    exchanged,
-    few_reversals,
-    negative_tension,
-    no_steady_motion,
-    quantised,
-    sign,
-    unit,
-)
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import span_of, step_of
 from tsas_cli.recordings.quality.trial import RunSignals, Size
@@ -38,14 +29,6 @@ Results = list[Remark | CannotTell]
 
 _NUMBER = r"-?\d[\d.,e+-]*( \w+)?"
 OVERLAP = 16  # consecutive stretches share one in so many of their rows
-_WHOLE = (quantised.CHECK, few_reversals.CHECK)  # always checked on the decimated run
-_MOTION = (
-    sign.CHECK,
-    negative_tension.CHECK,
-    exchanged.CHECK,
-    unit.CHECK,
-    no_steady_motion.CHECK,
-)
 
 
 def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
@@ -60,27 +43,23 @@ def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
 def look_by_stretches(
     checks: Sequence[QualityCheck[RunSignals]], run: RunColumns, rig: RigSheet
 ) -> dict[str, Results]:
-    """Return the results of the checks on a long run, by code.
-
-    Raises
-    ------
-    InputError
-        The run cannot be read.
-    """
+    """Return the results of the checks on a long run, by code."""
     overall, decimated = _overview(run)
     whole = RunSignals(Recording(run.run, decimated), rig, overall)
-    by_whole = (*_WHOLE, *_MOTION) if _shows_strokes(whole, run) else _WHOLE
-    results: dict[str, list[tuple[str, Results]]] = {check.code: [] for check in checks}
+    decimatable = {"decimated", "strokes"} if _shows_strokes(whole, run) else {"decimated"}
+    results: dict[str, list[tuple[str, Results]]] = {
+        check.code: [] for check in checks if check.of_long not in decimatable
+    }
     for piece in pieces(
         run, known_columns(run), overlap=reading.MOST_ROWS // OVERLAP, strict=False
     ):
         trial = RunSignals(Recording(run.run, piece.columns), rig, overall, piece.start)
         rows = f"rows {piece.start} to {piece.stop - 1}"
         for check in checks:
-            if check not in by_whole:
+            if check.code in results:
                 results[check.code].append((rows, look(check, trial)))
     return {
-        check.code: look(check, whole) if check in by_whole else _merged(results[check.code])
+        check.code: _merged(results[check.code]) if check.code in results else look(check, whole)
         for check in checks
     }
 

@@ -2,17 +2,15 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.closing import HIDDEN, ClosingFile
 
 SETTINGS = "settings.toml"
 
 
 def options(closing: ClosingFile) -> Iterator[str]:
     """Yield the options; settings that are not the defaults as if they stood in `SETTINGS`."""
-    from tsas_cli.tracking.cases import CASES
-
     names = [case.case for case in closing.cases]
-    if set(names) <= {case.name for case in CASES}:
+    if HIDDEN not in names:
         yield from ("--cases", ",".join(names))
     else:
         hidden = (change for case in closing.cases for change in case.hidden.items())

@@ -50,13 +50,7 @@ def residuals_of(run: SeenRun) -> dict[str, list[Entity]]:
 
 
 def record_channels(recorder: Recorder, run: SeenRun) -> None:
-    """Record the channels of one run, its residuals and its loops; of series all samples.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or does not belong to the run.
-    """
+    """Record the channels of one run, its residuals and its loops; of series all samples."""
     controller = None if run.tracked is None else run.tracked.controller
     for channel in run.channels:
         measured, name, colour = run.measured(channel.column), channel.key, _ROLES[channel.key]
@@ -79,13 +73,7 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
 
 
 def record_tracking(recorder: Recorder, run: SeenRun) -> None:
-    """Record what a tracked run holds beside its sensors; nothing for any other run.
-
-    Raises
-    ------
-    InputError
-        A column is missing or cannot be read.
-    """
+    """Record what a tracked run holds beside its sensors; nothing for any other run."""
     if run.tracked is None:
         return
     name = run.tracked.controller

@@ -24,14 +24,7 @@ PATIENCE_S = 10.0  # in which a file grows, or is whole
 def to_file(path: Path, name: str, layout: Blueprint | None = None) -> Iterator[Recorder]:
     """Record into a file that is there, whole, when the block ends without an error.
 
-    Parameters
-    ----------
-    path
-        The file, usually `….rrd`.
-    name
-        What the viewer calls the recording.
-    layout
-        What the viewer opens with, where it is known from the start.
+    The viewer calls the recording `name`, and opens with `layout` where it is known from the start.
 
     Raises
     ------

@@ -39,11 +39,8 @@ def _first_screen(inputs: Inputs) -> Iterator[str]:
     yield plain_text(first.numbers)
     for fact in first.facts:
         number = " → ".join(filter(None, (fact.before, fact.value)))
-        yield f"- {plain_text(f'{fact.label}: {number}')}{_in_brackets(fact.note)}"
-
-
-def _in_brackets(note: str) -> str:
-    return f" ({plain_text(note)})" if note else ""
+        note = f" ({plain_text(fact.note)})" if fact.note else ""
+        yield f"- {plain_text(f'{fact.label}: {number}')}{note}"
 
 
 def _points(inputs: Inputs) -> Iterator[str]:

@@ -118,34 +118,16 @@ class SeenRun:
         return ("run", self.id, *parts)
 
     def measured(self, column: str) -> Floats:
-        """Return a column of the recording, shape (n,), NaN for gaps.
-
-        Raises
-        ------
-        InputError
-            It cannot be read.
-        """
+        """Return a column of the recording, shape (n,), NaN for gaps."""
         return self.x_in_mm if column == X_IN else self.file.read(column)
 
     def predicted(self, column: str, source: Source) -> Floats:
-        """Return what a stage says of a column, shape (n,), NaN for gaps.
-
-        Raises
-        ------
-        InputError
-            The stage's file cannot be read, or belongs to another recording.
-        """
+        """Return what a stage says of a column, shape (n,), NaN for gaps."""
         return self.inputs.series(self.id, self.file.rows, source.named(column), source.stage)
 
 
 def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
-    """Yield the runs in the order of the manifest, none without a dataset.
-
-    Raises
-    ------
-    InputError
-        A file is missing, or is not what it was.
-    """
+    """Yield the runs in the order of the manifest, none without a dataset."""
     if inputs.dataset is None:
         return
     given, tracking = tuple(_sources(inputs)), inputs.get(TrackingFile)
@@ -154,15 +136,14 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
         file = open_run(inputs.dataset.folder, run)
         written = {source.stage: inputs.written_columns(run.id, source.stage) for source in given}
         channels = tuple(
-            Channel(name, tuple(s for s in given if _says(s, name, written[s.stage])))
+            Channel(
+                name,
+                tuple(s for s in given if name in s.columns and s.named(name) in written[s.stage]),
+            )
             for name in BY_NAME
             if name in file.names and name != TIME
         )
         yield SeenRun(inputs, file, channels, _segments(inputs, run.id), tracked.get(run.id))
-
-
-def _says(source: Source, column: str, written: frozenset[str]) -> bool:
-    return column in source.columns and source.named(column) in written
 
 
 def _sources(inputs: Inputs) -> Iterator[Source]:

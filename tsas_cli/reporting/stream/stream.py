@@ -35,13 +35,7 @@ class Stream:
         return layout_of(self.runs)
 
     def record(self, recorder: Recorder, step: Callable[[], None] = lambda: None) -> None:
-        """Record texts and runs, one run after the other; `step` is called after each.
-
-        Raises
-        ------
-        InputError
-            A file cannot be read, or does not belong to its run.
-        """
+        """Record texts and runs, one run after the other; `step` is called after each."""
         text = rr.TextDocument(self.overview, media_type=rr.MediaType.MARKDOWN)
         recorder.static(OVERVIEW, text)
         for run in self.runs:
@@ -52,13 +46,7 @@ class Stream:
 
 
 def stream_of(inputs: Inputs) -> Stream:
-    """Return what there is to see of what the stages wrote.
-
-    Raises
-    ------
-    InputError
-        A file is missing, or is not what it was.
-    """
+    """Return what there is to see of what the stages wrote."""
     dataset = "tsas" if inputs.dataset is None else inputs.dataset.manifest.name
     stages = [kind.FILE.removesuffix(".json") for kind in inputs.folders]
     return Stream(", ".join([dataset, *stages]), overview(inputs), tuple(seen_runs(inputs)))

@@ -54,11 +54,6 @@ def models_of(run: SeenRun) -> TendonModels | None:
 
     None where neither stage took the run or wrote its models, and for the lumped model, which
     does not say what is along the tendon.
-
-    Raises
-    ------
-    InputError
-        A model's file cannot be read.
     """
     diagnosis, simulation = run.inputs.get(DiagnosisFile), run.inputs.get(SimulationFile)
     files = {SIMULATED: MODEL_FILE}
@@ -78,13 +73,7 @@ def models_of(run: SeenRun) -> TendonModels | None:
 
 
 def record_tendon(recorder: Recorder, run: SeenRun) -> None:
-    """Simulate the run again with the models that a stage wrote, and record their tendons.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or is not what it was.
-    """
+    """Simulate the run again with the models that a stage wrote, and record their tendons."""
     given = models_of(run)
     if given is None:
         return
@@ -186,13 +175,7 @@ def _record_front(
 
 
 def view_of_tendon(run: SeenRun) -> rrb.View | None:
-    """Return the view of a run's tendon, None where no stage tells a model of it.
-
-    Raises
-    ------
-    InputError
-        A model's file cannot be read.
-    """
+    """Return the view of a run's tendon, None where no stage tells a model of it."""
     given = models_of(run)
     if given is None:
         return None

@@ -18,7 +18,7 @@ from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
 from tsas_studies.challenge.rig.give import Path, given
 from tsas_studies.challenge.rig.load_end import AT_REST, Load, LoadState, extra_force, moved
 from tsas_studies.challenge.rig.motions import Floats
-from tsas_studies.challenge.rig.surface import Past, SurfaceLaw, remembered, roughness
+from tsas_studies.challenge.rig.surface import Past, Surface, remembered, roughness
 
 MAX_ITERATIONS = 100
 MAX_CUTS = 10
@@ -52,7 +52,7 @@ class Tendon(NamedTuple):
     velocity: float
     exponent: float
     viscous: Floats
-    surface: SurfaceLaw
+    surface: Surface
     round: bool
     stiffening: float
     shift: float
@@ -132,7 +132,7 @@ def run(
 
 
 @compiled
-def _at_rest(n: int, law: SurfaceLaw) -> State:
+def _at_rest(n: int, law: Surface) -> State:
     """Return the state of n nodes before the first sample."""
     start = roughness(Past(0.0, 0.0, 0.0), 0.0, law)
     return State(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.full(n, start))

@@ -4,15 +4,13 @@ Neither is in the catalogue of effects. Both follow the tension of the sample be
 creep has to be slow beside the clock.
 """
 
-from dataclasses import dataclass
 from math import exp, inf
 from typing import NamedTuple
 
 from tsas_studies.challenge.rig.compiled import compiled
 
 
-@dataclass(frozen=True)
-class Give:
+class Give(NamedTuple):
     """How the path gives way; zeros are a firm one.
 
     Attributes
@@ -32,33 +30,21 @@ class Give:
 
 
 class Path(NamedTuple):
-    """`Give` in the solver, and what has been given so far [mm]: by the clamp and by creep."""
+    """How the path gives way, and what has been given so far [mm]: by the clamp and by creep."""
 
-    step: float
-    up: float
-    down: float
-    compliance: float
-    time: float
-    jumped: float
-    crept: float
-
-
-def path(give: Give) -> Path:
-    """Return the path before anything has given way."""
-    g = give
-    return Path(
-        g.clamp_step_mm, g.clamp_up_N, g.clamp_down_N, g.creep_mm_per_N, g.creep_time_s, 0.0, 0.0
-    )
+    give: Give
+    jumped: float = 0.0
+    crept: float = 0.0
 
 
 @compiled
 def given(path: Path, tension: float, preload: float, h: float) -> Path:
     """Return the path after h seconds at a tension of the drive's end [N]."""
-    jumped = path.jumped
-    if tension > path.up:
-        jumped = path.step
-    elif tension < path.down:
+    give, jumped = path.give, path.jumped
+    if tension > give.clamp_up_N:
+        jumped = give.clamp_step_mm
+    elif tension < give.clamp_down_N:
         jumped = 0.0
-    wanted = path.compliance * (tension - preload)
-    crept = wanted + (path.crept - wanted) * exp(-h / path.time)
-    return Path(path.step, path.up, path.down, path.compliance, path.time, jumped, crept)
+    wanted = give.creep_mm_per_N * (tension - preload)
+    crept = wanted + (path.crept - wanted) * exp(-h / give.creep_time_s)
+    return Path(give, jumped, crept)

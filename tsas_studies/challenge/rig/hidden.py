@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeVar
 
 from tsas_studies.challenge.rig.near import NEAR
@@ -162,4 +163,7 @@ def hide(name: str, parameters: Parameters, rig: Rig, sensors: Sensors) -> tuple
 
 
 def _set(record: Record, group: str, option: str, value: Any) -> Record:
-    return replace(record, **{group: replace(getattr(record, group), **{option: value})})
+    known: Any = getattr(record, group)
+    change = known._replace if hasattr(known, "_replace") else partial(replace, known)
+    changed: Any = change(**{option: value})
+    return replace(record, **{group: changed})

@@ -5,7 +5,6 @@ is in the catalogue of effects; they are other laws that are found in sheaths. A
 speeds and displacements of the step before.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +14,7 @@ from tsas_studies.challenge.rig.compiled import compiled
 RESTS_MM_S = 0.05  # below which a place counts as resting
 
 
-@dataclass(frozen=True)
-class Surface:
+class Surface(NamedTuple):
     """Laws of friction by place beside those of `Friction`; all shares and excesses 0 are none.
 
     Attributes
@@ -52,26 +50,6 @@ class Surface:
     roll_phase_rad: float = 0.0
 
 
-class SurfaceLaw(NamedTuple):
-    """`Surface` in the solver."""
-
-    rational_excess: float
-    rational_velocity: float
-    rational_power: float
-    root_excess: float
-    root_velocity: float
-    log_share: float
-    log_velocity: float
-    ageing_share: float
-    ageing_time: float
-    ageing_length: float
-    breakaway_excess: float
-    breakaway_length: float
-    roll_share: float
-    roll_period: float
-    roll_phase: float
-
-
 class Past(NamedTuple):
     """What one place remembers: speed [mm/s], age of its contacts [s], slid since a rest [mm]."""
 
@@ -81,33 +59,33 @@ class Past(NamedTuple):
 
 
 @compiled
-def remembered(past: Past, du: float, h: float, forgotten: float, law: SurfaceLaw) -> Past:
+def remembered(past: Past, du: float, h: float, forgotten: float, law: Surface) -> Past:
     """Return the past of a place after it has gone by du [mm] within h seconds.
 
     `forgotten` is the share of its former speed that it forgets meanwhile.
     """
     speed = past.speed + forgotten * (abs(du) / h - past.speed)
-    renewed = np.exp(-abs(du) / law.ageing_length)
+    renewed = np.exp(-abs(du) / law.ageing_mm)
     slid = 0.0 if speed < RESTS_MM_S else past.slid + abs(du)
     return Past(speed, past.age * renewed + h, slid)
 
 
 @compiled
-def roughness(past: Past, u: float, law: SurfaceLaw) -> float:
+def roughness(past: Past, u: float, law: Surface) -> float:
     """Return the factor on the friction of a place at displacement u [mm]."""
     v, factor = past.speed, 1.0
     if law.rational_excess != 0.0:
-        tail = (v / law.rational_velocity) ** law.rational_power
+        tail = (v / law.rational_velocity_mm_per_s) ** law.rational_power
         factor *= 1.0 + law.rational_excess / (1.0 + tail)
     if law.root_excess != 0.0:
-        factor *= 1.0 + law.root_excess * np.exp(-np.sqrt(v / law.root_velocity))
+        factor *= 1.0 + law.root_excess * np.exp(-np.sqrt(v / law.root_velocity_mm_per_s))
     if law.log_share != 0.0:
-        factor *= 1.0 + law.log_share * np.log(1.0 + v / law.log_velocity)
+        factor *= 1.0 + law.log_share * np.log(1.0 + v / law.log_velocity_mm_per_s)
     if law.ageing_share != 0.0:
-        factor *= 1.0 + law.ageing_share * np.log(1.0 + past.age / law.ageing_time)
+        factor *= 1.0 + law.ageing_share * np.log(1.0 + past.age / law.ageing_s)
     if law.breakaway_excess != 0.0:
-        factor *= 1.0 + law.breakaway_excess * np.exp(-past.slid / law.breakaway_length)
+        factor *= 1.0 + law.breakaway_excess * np.exp(-past.slid / law.breakaway_mm)
     if law.roll_share != 0.0:
-        turn = 2.0 * np.pi * u / law.roll_period + law.roll_phase
+        turn = 2.0 * np.pi * u / law.roll_mm + law.roll_phase_rad
         factor *= 1.0 + law.roll_share * np.sin(turn)
     return float(factor)

@@ -6,7 +6,7 @@ columns = measure(clean, Sensors(), seed=1)          # in tsas_studies.challenge
 
 import math
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass, field
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from tsas_studies.challenge.rig import continuum
 from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
 from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
 from tsas_studies.challenge.rig.friction import Friction, over_time, over_travel
-from tsas_studies.challenge.rig.give import Give, path
+from tsas_studies.challenge.rig.give import Give, Path
 from tsas_studies.challenge.rig.load_end import LoadEnd, load
 from tsas_studies.challenge.rig.motions import Floats, Motion
 from tsas_studies.challenge.rig.restraint import Restraint, restraint
-from tsas_studies.challenge.rig.surface import Surface, SurfaceLaw
+from tsas_studies.challenge.rig.surface import Surface
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def simulate(
     mu = mu * over_time(rig.friction, rig.total_bend_rad, t, session_s)
     mu = mu * over_travel(rig.friction, x_in)
     position = tendon_end(rig.drive_end, x_in)
-    t_in, t_out, u_end, guide, solved = continuum.run(tendon, path(rig.give), t, position, mu, q)
+    t_in, t_out, u_end, guide, solved = continuum.run(tendon, Path(rig.give), t, position, mu, q)
     if solved < t.size:
         what = "the tendon is slack" if np.isfinite(t_in[solved]) else "the step fails"
         raise ValueError(f"{what} at {t[solved]:.6g} s")
@@ -170,7 +170,7 @@ def _tendon(rig: Rig) -> continuum.Tendon:
         velocity=f.stribeck_velocity_mm_per_s,
         exponent=f.load_exponent,
         viscous=f.viscous_N_s_per_mm * np.diff(_edges(s)) / rig.sheath_length_mm,
-        surface=SurfaceLaw(*astuple(rig.surface)),
+        surface=rig.surface,
         round=f.round_mm > 0.0,
         stiffening=rig.stiffening_per_N,
         shift=f.shift_per_N,

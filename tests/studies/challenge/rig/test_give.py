@@ -3,13 +3,13 @@ import math
 import numpy as np
 import pytest
 
-from tsas_studies.challenge.rig.give import Give, given, path
+from tsas_studies.challenge.rig.give import Give, Path, given
 from tsas_studies.challenge.rig.motions import through
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 
 def test_a_loose_clamp_jumps_when_pulled_hard_and_comes_back_late():
-    state, jumps = path(Give(clamp_step_mm=0.3, clamp_up_N=50.0, clamp_down_N=30.0)), []
+    state, jumps = Path(Give(clamp_step_mm=0.3, clamp_up_N=50.0, clamp_down_N=30.0)), []
     for tension in (40.0, 51.0, 40.0, 31.0, 29.0, 40.0):
         state = given(state, tension, 25.0, 0.01)
         jumps.append(state.jumped)
@@ -17,7 +17,7 @@ def test_a_loose_clamp_jumps_when_pulled_hard_and_comes_back_late():
 
 
 def test_creep_comes_to_its_end_exponentially():
-    state = path(Give(creep_mm_per_N=0.01, creep_time_s=2.0))
+    state = Path(Give(creep_mm_per_N=0.01, creep_time_s=2.0))
     for _ in range(300):
         state = given(state, 45.0, 25.0, 0.01)
     assert state.crept == pytest.approx(0.2 * (1.0 - math.exp(-1.5)))

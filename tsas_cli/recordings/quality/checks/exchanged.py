@@ -52,4 +52,4 @@ def _excess_while_pulling(trial: RunSignals) -> float:
     return float(fit[0])
 
 
-CHECK = QualityCheck("exchanged", find, needs=("x_in_mm", "f_in_N", "f_out_N"))
+CHECK = QualityCheck("exchanged", find, needs=("x_in_mm", "f_in_N", "f_out_N"), of_long="strokes")

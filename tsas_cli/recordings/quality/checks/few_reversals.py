@@ -28,4 +28,4 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     )
 
 
-CHECK = QualityCheck("few-reversals", find, needs=("x_in_mm",))
+CHECK = QualityCheck("few-reversals", find, needs=("x_in_mm",), of_long="decimated")

@@ -34,4 +34,4 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
             )
 
 
-CHECK = QualityCheck("negative-tension", find)
+CHECK = QualityCheck("negative-tension", find, of_long="strokes")

@@ -61,4 +61,4 @@ def _moving(trial: RunSignals, name: str, stroke: Stroke) -> float:
     return float(abs((x[-1] - x[begin]) / (x[-1] - x[0])))
 
 
-CHECK = QualityCheck("no-steady-motion", find, needs=("x_in_mm",))
+CHECK = QualityCheck("no-steady-motion", find, needs=("x_in_mm",), of_long="strokes")

@@ -29,4 +29,4 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         )
 
 
-CHECK = QualityCheck("quantised", find)
+CHECK = QualityCheck("quantised", find, of_long="decimated")

@@ -55,4 +55,4 @@ def _remark(column: str, what: str) -> Remark:
     )
 
 
-CHECK = QualityCheck("sign", find, needs=("x_in_mm",))
+CHECK = QualityCheck("sign", find, needs=("x_in_mm",), of_long="strokes")

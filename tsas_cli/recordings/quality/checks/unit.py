@@ -148,4 +148,4 @@ def _time(trial: RunSignals) -> Iterator[Remark]:
         )
 
 
-CHECK = QualityCheck("unit", find)
+CHECK = QualityCheck("unit", find, of_long="strokes")

@@ -47,18 +47,10 @@ class Agreement:
 def agreement(
     source: RunSamples, samples: RunSamples, tolerance: Floats, *, spline: bool = False
 ) -> Agreement:
-    """Return the agreement of samples with a source on the same clock.
+    """Return the agreement of samples with a source of at least two, on the same clock.
 
-    Parameters
-    ----------
-    source
-        At least two samples.
-    samples
-        The samples to compare; beyond the source's times they differ.
-    tolerance
-        Largest deviation of each channel, shape (d,).
-    spline
-        Whether the interpolation is a cubic spline instead of linear.
+    Beyond the source's times samples differ. The tolerance is the largest deviation of each
+    channel, shape (d,); the interpolation is linear, or a cubic spline.
     """
     time_s, n = source.time_s, source.time_s.size
     row = np.clip(np.searchsorted(time_s, samples.time_s, side="right") - 1, 0, n - 2)
@@ -144,14 +136,8 @@ def stretches(
 ) -> list[tuple[RowSpan, int]]:
     """Return the stretches of agreeing consecutive samples, each with its `every` (see `Copy`).
 
-    Parameters
-    ----------
-    row
-        The number of the first sample.
-    samples, found
-        The samples, and their agreement with a source.
-    information
-        −ln of the probability that a repeat agrees with a changing sample [nats], shape (d,).
+    `row` is the number of the first sample, `information` −ln of the probability that a repeat
+    agrees with a changing sample [nats], shape (d,).
     """
     changed = np.zeros(samples.values.shape, dtype=np.bool_)
     changed[1:] = samples.values[1:] != samples.values[:-1]

@@ -33,30 +33,16 @@ class RowSpan:
 
 @dataclass(frozen=True)
 class Copy:
-    """A stretch of a run whose samples are those of another run.
+    """A stretch of a run whose samples are those of another run."""
 
-    Parameters
-    ----------
-    run, other
-        The run that holds the copy, and the original.
-    span, all_of_run, all_of_other
-        The stretch, and the whole of both runs.
-    shift_s
-        Shift of the samples to the other run's clock [s].
-    every
-        k if the copy holds every k-th sample of the original; 0 if it is interpolated.
-    contradicts
-        The conditions that differ between the two runs in the manifest.
-    """
-
-    run: Run
-    other: Run
+    run: Run  # that holds the copy
+    other: Run  # the original
     span: RowSpan
     all_of_run: RowSpan
     all_of_other: RowSpan
-    shift_s: float = 0.0
-    every: int = 1
-    contradicts: tuple[str, ...] = ()
+    shift_s: float = 0.0  # of the samples to the other run's clock
+    every: int = 1  # k if it holds every k-th sample of the original; 0 if it is interpolated
+    contradicts: tuple[str, ...] = ()  # conditions that differ between the two in the manifest
 
     @property
     def whole(self) -> bool:

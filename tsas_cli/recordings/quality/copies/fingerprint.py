@@ -93,13 +93,7 @@ class Fingerprint:
 
 
 def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
-    """Return the fingerprint of a run.
-
-    Raises
-    ------
-    InputError
-        The run cannot be read.
-    """
+    """Return the fingerprint of a run."""
     channels: dict[str, _Channel] = {}
     dense: tuple[str, ...] = ()
     stretches: dict[int, list[RunSamples]] = {length: [] for length in SHORT}

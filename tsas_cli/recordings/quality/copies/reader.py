@@ -84,16 +84,9 @@ class SideBySide:
 def side_by_side(
     run: Iterator[Piece], source: Iterator[Piece], names: Sequence[str], shift_s: float
 ) -> Iterator[SideBySide]:
-    """Yield all samples of a run, moved onto a source's clock, in order.
+    """Yield all samples of a run, moved by `shift_s` onto a source's clock, in order.
 
-    Parameters
-    ----------
-    run, source
-        The pieces of each run, at least one.
-    names
-        The common channels.
-    shift_s
-        Shift of the run's times to the source's clock.
+    Run and source are given in pieces, at least one each; `names` are the common channels.
     """
     row, left = 0, RunSamples(np.empty(0), np.empty((0, len(names))))
     around = _samples(next(source), names)

@@ -42,11 +42,6 @@ def find_copies(dataset: Dataset, *, strict: bool = True) -> Found:
     """Return the runs that hold samples of others.
 
     With `strict=False`, unreadable runs are left out, and time may decrease.
-
-    Raises
-    ------
-    InputError
-        A run cannot be read.
     """
     if len(dataset.runs) < 2:
         return Found()

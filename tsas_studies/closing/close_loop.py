@@ -4,29 +4,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.closing import HIDDEN, ClosingFile
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.close_cases import MODELS, STEPS, close
 from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import stage_folder
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-from tsas_cli.tracking.cases import CASES, Case
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import read_settings
+from tsas_studies.closing.cases import MODELS, STEPS, close
+from tsas_studies.closing.hidden import CASES, Case
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ClosingResult(Result):
-    """What a better model is worth in tracking, case by case.
+    """What a better model is worth in tracking, case by case."""
 
-    Parameters
-    ----------
-    record
-        What `closing.json` holds.
-    """
-
-    record: ClosingFile
+    record: ClosingFile  # what `closing.json` holds
 
     def tables(self) -> list[Table]:
         """Return what was hidden and named, and the RMSE by model."""
@@ -45,7 +39,7 @@ def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[Case, ...]
         changes = disturbed(hide, "--hide").changes
         if any(change.from_s > 0.0 for change in changes):
             raise InputError("a hidden effect begins with the run", where="--hide")
-        return (Case("hidden", ", ".join(hide), {c.name: c.value for c in changes}),)
+        return (Case(HIDDEN, ", ".join(hide), {c.quantity: c.value for c in changes}),)
     known = {case.name: case for case in CASES}
     wanted = list(known) if names is None else list(names)
     for name in wanted:

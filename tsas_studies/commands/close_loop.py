@@ -7,21 +7,12 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    Force,
-    Json,
-    OutFolder,
-    Quiet,
-    Rrd,
-    names,
-    present,
-    with_stream,
-)
+from tsas_cli.commands import common
 from tsas_cli.commands.progress import progress
 
 
 def close_loop(
-    out: OutFolder,
+    out: common.OutFolder,
     cases: Annotated[
         str | None,
         typer.Option(metavar="NAMES", help="Only these cases, comma-separated; default: all."),
@@ -36,16 +27,16 @@ def close_loop(
     ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="Number of noise seeds.")] = 5,
     seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Compare tracking with the nominal, the extended and the true model of a rig."""
-    with progress("close-loop", quiet=quiet) as step, with_stream(rrd, step, _of_each_case):
+    with progress("close-loop", quiet=quiet) as step, common.with_stream(rrd, step, _of_each_case):
         result = tsas.close_loop(
             out=out,
-            cases=names(cases),
+            cases=common.names(cases),
             hide=hide or (),
             settings=settings,
             seeds=seeds,
@@ -53,7 +44,7 @@ def close_loop(
             force=force,
             step=step,
         )
-    present(result, quiet=quiet, as_json=as_json)
+    common.present(result, quiet=quiet, as_json=as_json)
 
 
 def _of_each_case(folder: Path) -> Iterator[tuple[Path, list[Path]]]:

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 
 from tests.commands.documented import documented
-from tsas_cli.commands.close_loop import _of_each_case
 from tsas_cli.identification.model import CORRECTION, read_model
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_studies.commands.close_loop import _of_each_case
 
 
 def rmse(row, model):

@@ -22,15 +22,15 @@ from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.records.drive import DriveDiagnosis
 from tsas_cli.records.tracking import Scores
 from tsas_cli.stages.calibrate import calibrate
-from tsas_cli.stages.close_drive import known_drives, record_drive
 from tsas_cli.stages.diagnose import diagnose
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
-from tsas_cli.tracking.cases import Case
 from tsas_cli.tracking.recorded import conditions, manifest, stated_rig, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Known, Plant, plan, run_loop
+from tsas_studies.closing.drive import known_drives, record_drive
+from tsas_studies.closing.hidden import Case
 
 STEPS = 7  # pieces of work of a case
 MODELS = ("data sheet", "calibrated", "extended", "true")
@@ -54,11 +54,6 @@ def close(
 
     The controllers know the drive, so that what the tendon's model lacks stands alone. `step` is
     called after each piece of work.
-
-    Raises
-    ------
-    InputError
-        As the stages raise it.
     """
     sheet = stated_rig(settings)
     plant = Plant(with_values(sheet, case.hidden), settings.drive.actuator())

@@ -78,7 +78,7 @@ def driven(rpm: Floats, bench: Settings, seed: int) -> Floats:
     columns, _, _ = close_loop(
         LoopReference(np.zeros((4, m)), rpm),
         DriveSensor(bench.step_s, noise, bench.sensor.step_mm, A, b),
-        bench.laws("pid", drive.gain_mm_per_s_rpm)._replace(pid=Pid(0.0, 0.0, 0.0)),
+        bench.controllers.laws("pid", drive.gain_mm_per_s_rpm)._replace(pid=Pid(0.0, 0.0, 0.0)),
         LoopPlant(
             actuator=drive,
             rigs=(rig, rig),

@@ -1,0 +1,1 @@
+"""From diagnosis to tracking: whether a better model tracks better."""
