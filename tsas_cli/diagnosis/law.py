@@ -24,9 +24,19 @@ from tsas_cli.identification.run_errors import ReversalShapes, RunErrors
 from tsas_cli.physics.rig import with_values
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-FOLLOWS = {"drive_law": "x_in_mm", "load_law": "x_out_mm"}  # the displacement of each law
-CHANGES = {"drive_law": "f_in_N", "load_law": "x_out_mm"}  # the channel of each law
-AS_WELL = 0.02  # least share of the squares that more laws take away than fewer
+# The displacement that each law follows, and the channel that shows it.
+FOLLOWS = {"drive_law": "x_in_mm", "tendon_law": "x_in_mm", "load_law": "x_out_mm"}
+CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"}
+AS_WELL = 0.1  # share by which the squares of a set exceed those of the best one at most
+REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
+SETS: tuple[tuple[str, ...], ...] = (
+    ("drive_law",),
+    ("load_law",),
+    ("tendon_law",),
+    ("drive_law", "load_law"),
+    ("tendon_law", "load_law"),
+    ("drive_law", "tendon_law", "load_law"),
+)
 WORSE = 0.03  # relative rise of a channel's RMS on held-out runs that refuses a law
 
 
@@ -34,11 +44,13 @@ WORSE = 0.03  # relative rise of a channel's RMS on held-out runs that refuses a
 class Law:
     """Laws that describe what is left, with the whole model's estimates.
 
-    `before` and `after` are the errors on held-out data without the laws and with them, weighted
-    alike; `bench` and `trial` are the fit.
+    `rivals` are other sets of as many laws that describe it as well. `before` and `after` are the
+    errors on held-out data without the laws and with them, weighted alike; `bench` and `trial` are
+    the fit.
     """
 
     names: tuple[str, ...]
+    rivals: tuple[str, ...]
     estimates: tuple[Estimate, ...]
     before: HeldOutFit
     after: HeldOutFit
@@ -51,32 +63,38 @@ def describe(
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
 
-    All laws together, and each alone: the nominal parameters trade with what a missing law leaves.
-    Of those that predict, the set that reduces the squares most; a single one if that does as well.
+    Laws at the ends are tried together and alone, since the nominal parameters trade with what a
+    missing law leaves; that of the tendon alone and with them. Of the sets that predict, the one
+    that reduces the squares most; one of fewer laws if that does as well.
     """
     ranges = ranges_of([run.run for run in bench.closed])
     bench = in_channel_units(bench, trial, ranges)
-    effects, mesh = sorted(trial.effects), trial.on_mesh
-    possible = tuple(n for n in CHANGES if n in ranges and CHANGES[n] in bench.channels)
-    sets = dict.fromkeys((possible, *((name,) for name in possible)))
-    step.ahead(1 + len(sets))
-    without = bench.fit(effects, near=trial, on_mesh=mesh)
-    before = refitted(bench, without, folds)
-    step()
-    found = None
+    possible = {n for n in CHANGES if n in ranges and CHANGES[n] in bench.channels}
+    sets = [names for names in SETS if possible.issuperset(names)]
+    step.ahead(len(sets))
+    held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
+    found: list[tuple[tuple[str, ...], HypothesisFit, HeldOutFit, float]] = []
     for names in sets:
-        with_laws = bench.fit([*effects, *names], near=without, on_mesh=mesh)
-        after = refitted(bench, with_laws, folds)
+        mesh = trial.on_mesh or bench.on_mesh(names)
+        if mesh not in held_out:
+            without = bench.fit(sorted(trial.effects), near=trial, on_mesh=mesh)
+            held_out[mesh] = without, refitted(bench, without, folds)
+        without, before = held_out[mesh]
+        fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
+        after = refitted(bench, fitted, folds)
+        reduction = gain(before.squares, after.squares)
+        if reduction.convincing and not _worse(before, after):
+            found.append((names, fitted, after, reduction.part))
         step()
-        if not gain(before.squares, after.squares).convincing or _worse(before, after):
-            continue
-        if found is None or gain(after.squares, found[2].squares).part < AS_WELL:
-            found = names, with_laws, after
-    if found is None:
+    if not found:
         return None
-    names, fitted, after = found
+    most = max(part for *_, part in found)
+    as_good = [f for f in found if 1.0 - f[3] <= (1.0 + AS_WELL) * (1.0 - most)]
+    names, fitted, after, _ = min(as_good, key=lambda f: (len(f[0]), -f[3]))
+    rivals = tuple("+".join(f[0]) for f in as_good if len(f[0]) == len(names) and f[0] != names)
     estimates = tuple(_estimates(bench, fitted, folds, ranges, names))
-    return Law(names, estimates, before, after, bench, fitted)
+    before = held_out[fitted.on_mesh][1]
+    return Law(names, rivals, estimates, before, after, bench, fitted)
 
 
 def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
@@ -94,7 +112,18 @@ def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
             f"{law}.low_mm": float(whole.min()),
             f"{law}.high_mm": float(whole.max()),
         }
+        if law == "tendon_law":
+            slow, fast = speeds_of(runs)
+            out[law] |= {f"{law}.slow_mm_per_s": slow, f"{law}.fast_mm_per_s": fast}
     return out
+
+
+def speeds_of(runs: Sequence[Prepared]) -> tuple[float, float]:
+    """Return a low and a high speed of the drive: quantiles over all runs [mm/s]."""
+    speed = np.concatenate([np.abs(np.gradient(r.drive.values, r.time_s)) for r in runs])
+    moving = speed[speed > REST * np.quantile(speed, FAST)]
+    slow, fast = np.quantile(moving, (1.0 - FAST, FAST))
+    return float(slow), float(max(fast, 1.1 * slow))
 
 
 def in_channel_units(

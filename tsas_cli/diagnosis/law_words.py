@@ -6,109 +6,145 @@ import numpy as np
 
 from tsas_cli.diagnosis.law import CHANGES, Law
 from tsas_cli.effects import LAWS
-from tsas_cli.numerics.stops import ELEMENTS, KNOTS, widths_of
+from tsas_cli.effects.laws.tendon_law import STARTS
+from tsas_cli.numerics.stops import ELEMENTS, KNOTS, RATIO, widths_of
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import Value
 from tsas_cli.support.arrays import Floats
 
-BUILT_UP = 0.9  # share of the change after a reversal that has happened once it is built up
-POINTS = 60  # of a drawn curve
+BUILT_UP = 0.9  # share of the change after a reversal from which it is built up
+POINTS = 200  # of a drawn curve
 LEAST = 0.1  # of the largest part of a law, below which a part is not worth a clause
+WHAT = {  # what each law changes, and its unit in the names of its parameters
+    "drive_law": ("f_in [N]", "_N"),
+    "tendon_law": ("share of the friction", ""),
+    "load_law": ("x_out [mm]", "_mm"),
+}
 
 
 def records_of(law: Law) -> tuple[records.DescribedLaw, ...]:
     """Return the records of the laws that describe what is left."""
-    return tuple(_record(law, name) for name in law.names)
+    tensions = tensions_of(law)
+    return tuple(_record(law, name, tensions) for name in law.names)
 
 
-def _record(law: Law, name: str) -> records.DescribedLaw:
+def _record(law: Law, name: str, tensions: tuple[float, float]) -> records.DescribedLaw:
     effect = next(e for e in LAWS if e.name == name)
     own = {e.name.split(".")[1]: e for e in law.estimates if e.name.startswith(f"{name}.")}
     value = {parameter: e.value for parameter, e in own.items()}
     channel = CHANGES[name]
-    travel = np.concatenate(([0.0], np.geomspace(*_ends(value), POINTS)))
-    places = np.linspace(value["low_mm"], value["high_mm"], KNOTS)
-    tensions = tensions_of(law)
+    travel = _travels(value)
     return records.DescribedLaw(
         law=name,
         title=effect.title,
         equation=effect.equation,
         sentence=sentence_of(name, value, tensions),
         parameters={p: Value.model_validate(e, from_attributes=True) for p, e in own.items()},
+        rivals=law.rivals,
         channel=channel,
         unit=BY_NAME[channel].unit,
         rmse_before=law.before.rmse[channel],
         rmse_after=law.after.rmse[channel],
+        what=WHAT[name][0],
         travel_mm=tuple(travel),
         after_reversal=tuple(after_reversal(name, value, travel, float(np.mean(tensions)))),
-        place_mm=tuple(places),
-        along_stroke=tuple(_heights(value)),
+        place_mm=tuple(np.linspace(value["low_mm"], value["high_mm"], KNOTS)),
+        along_stroke=tuple(_heights(name, value)),
     )
 
 
 def tensions_of(law: Law) -> tuple[float, float]:
     """Return the lowest and the highest simulated tension at the drive [N]."""
-    runs = law.bench.errors_for(law.trial)
-    predicted = [run.predict(law.bench.rig(law.trial, k))["f_in_N"] for k, run in enumerate(runs)]
-    return min(float(p.min()) for p in predicted), max(float(p.max()) for p in predicted)
-
-
-def weights_of(name: str, value: Mapping[str, float], tension: float) -> Floats:
-    """Return the weight of each element at a tension, in the unit of the law's channel."""
-    if name == "load_law":
-        return np.array([value[f"lost_{k}_mm"] for k in range(1, ELEMENTS + 1)])
-    return np.array(
-        [value[f"friction_{k}_N"] + value[f"share_{k}"] * tension for k in range(1, ELEMENTS + 1)]
-    )
+    runs = enumerate(law.bench.errors_for(law.trial))
+    f_in = [run.predict(law.bench.rig(law.trial, k))["f_in_N"] for k, run in runs]
+    return min(float(f.min()) for f in f_in), max(float(f.max()) for f in f_in)
 
 
 def after_reversal(name: str, value: Mapping[str, float], travel: Floats, tension: float) -> Floats:
     """Return the change after a reversal from one full slip towards the other, over the travel."""
+    if name == "tendon_law":
+        widths = value["travel_mm"] * RATIO ** np.arange(1, STARTS + 1)
+        weights = [value[f"start_{k}"] for k in range(1, STARTS + 1)]
+        decaying: Floats = np.exp(-travel[:, None] / widths) @ weights
+        return decaying
     moved = np.minimum(travel[:, None] / widths_of(value["travel_mm"]), 2.0)
-    change: Floats = moved @ weights_of(name, value, tension)
+    change: Floats = moved @ _weights(name, value, tension)
     return change
 
 
 def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, float]) -> str:
     """Return what a law says, in words and numbers."""
-    low, high = sorted(2.0 * float(weights_of(name, value, t).sum()) for t in tensions)
-    heights = _heights(value)
-    span = float(np.ptp(heights))
-    travel = np.geomspace(*_ends(value), 400)
+    travel = _travels(value)
     change = after_reversal(name, value, travel, float(np.mean(tensions)))
-    built_up = float(travel[np.searchsorted(change, BUILT_UP * change[-1])]) if high > 0.0 else 0.0
-    at_drive = name == "drive_law"
-    unit = "N" if at_drive else "mm"
+    heights = _heights(name, value)
+    if name == "tendon_law":
+        speeds = np.array([value[f"speed_{k}"] for k in range(1, 4)])
+        parts = _of_friction(travel, change, heights)
+        if np.ptp(speeds) > LEAST * max(np.ptp(heights), float(np.abs(change).max())):
+            ends = f"{value['slow_mm_per_s']:.2g} to {value['fast_mm_per_s']:.2g} mm/s"
+            parts.append(f"friction changes {_along(100.0 * speeds)} % from {ends}")
+        return f"In the sheath {'; '.join(parts)}."
+    low, high = sorted(2.0 * float(_weights(name, value, t).sum()) for t in tensions)
+    span = float(np.ptp(heights))
     parts = []
     if high > LEAST * span:
-        size = f"{low:.2g} to {high:.2g} {unit}" if high > 1.1 * low else f"{high:.2g} {unit}"
-        what = "friction changes f_in by" if at_drive else "motion is lost:"
-        grows = ", more at higher tension" if high > 1.1 * low else ""
-        parts.append(f"{what} {size} after each reversal{grows}, within {built_up:.2g} mm")
+        within = float(travel[np.searchsorted(change, BUILT_UP * change[-1])])
+        if name == "load_law":
+            parts.append(f"{high:.2g} mm of the motion are lost at each reversal")
+        elif high > 1.1 * low:
+            parts.append(
+                f"friction changes f_in by {low:.2g} N at low and {high:.2g} N at high tension "
+                "after each reversal"
+            )
+        else:
+            parts.append(f"friction changes f_in by {high:.2g} N after each reversal")
+        parts[-1] += f", within {within:.2g} mm"
     if span > LEAST * high:
-        what = "a force changes from" if at_drive else "x_out deviates from"
-        parts.append(
-            f"{what} {heights[0]:.2g} to {heights[-1]:.2g} {unit} along the stroke"
-            if _is_monotone(heights)
-            else f"{what} {heights.min():.2g} to {heights.max():.2g} {unit} with the place"
-        )
-    if not at_drive and value["compliance_mm_per_N"] > 0.0:
+        subject = "a force changes" if name == "drive_law" else "x_out deviates"
+        unit = "N" if name == "drive_law" else "mm"
+        parts.append(f"{subject} {_along(heights)} {unit} along the stroke")
+    if name == "load_law" and value["compliance_mm_per_N"] > 0.0:
         parts.append(f"x_out yields by {value['compliance_mm_per_N']:.2g} mm per N of f_out")
-    return f"At the {'drive' if at_drive else 'load'} {'; '.join(parts)}."
+    return f"At the {'drive' if name == 'drive_law' else 'load'} {'; '.join(parts)}."
 
 
-def _ends(value: Mapping[str, float]) -> tuple[float, float]:
-    """Return a travel below the smallest width, and that after which all elements yield [mm]."""
-    widths = widths_of(value["travel_mm"])
-    return 0.1 * float(widths[-1]), 2.0 * float(widths[0])
+def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
+    """Return the clauses on a friction that differs after a reversal and along the stroke."""
+    parts = []
+    largest = float(np.abs(share).max())
+    if largest > LEAST * np.ptp(heights):
+        size = 100.0 * share[int(np.argmax(np.abs(share)))]
+        over = float(travel[np.flatnonzero(np.abs(share) > (1.0 - BUILT_UP) * largest)[-1]])
+        parts.append(f"friction differs by {size:.2g} % after each reversal, over {over:.2g} mm")
+    if np.ptp(heights) > LEAST * largest:
+        parts.append(f"friction changes {_along(100.0 * heights)} % along the stroke")
+    return parts
 
 
-def _heights(value: Mapping[str, float]) -> Floats:
-    unit = "N" if "curve_1_N" in value else "mm"
-    return np.array([value[f"curve_{k}_{unit}"] for k in range(1, KNOTS + 1)])
-
-
-def _is_monotone(heights: Floats) -> bool:
+def _along(heights: Floats) -> str:
+    """Return the ends of a monotone curve, or the extremes of another one."""
     steps = np.diff(heights)
-    return bool((steps >= 0.0).all() or (steps <= 0.0).all())
+    monotone = (steps >= 0.0).all() or (steps <= 0.0).all()
+    first, last = (heights[0], heights[-1]) if monotone else (heights.min(), heights.max())
+    return (
+        f"{'from' if monotone else 'between'} {first:.2g} {'to' if monotone else 'and'} {last:.2g}"
+    )
+
+
+def _weights(name: str, value: Mapping[str, float], tension: float) -> Floats:
+    """Return the weight of each element at a tension, in the unit of the law's channel."""
+    numbers = range(1, ELEMENTS + 1)
+    if name == "load_law":
+        return np.array([value[f"lost_{k}_mm"] for k in numbers])
+    return np.array([value[f"friction_{k}_N"] + value[f"share_{k}"] * tension for k in numbers])
+
+
+def _travels(value: Mapping[str, float]) -> Floats:
+    """Return travels from below the smallest width to that after which all elements yield [mm]."""
+    widths = widths_of(value["travel_mm"])
+    return np.concatenate(([0.0], np.geomspace(0.1 * widths[-1], 2.0 * widths[0], POINTS)))
+
+
+def _heights(name: str, value: Mapping[str, float]) -> Floats:
+    return np.array([value[f"curve_{k}{WHAT[name][1]}"] for k in range(1, KNOTS + 1)])

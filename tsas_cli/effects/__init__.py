@@ -30,6 +30,7 @@ from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
 from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
 from tsas_cli.effects.laws.drive_law import DRIVE_LAW, DriveLaw
 from tsas_cli.effects.laws.load_law import LOAD_LAW, LoadLaw
+from tsas_cli.effects.laws.tendon_law import TENDON_LAW, TendonLaw
 from tsas_cli.effects.load_damping import LOAD_DAMPING, LoadDamping
 from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, LoadDependentFriction
 from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
@@ -97,7 +98,11 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     SENSOR_LAG,
 )
 
-LAWS: tuple[Effect, ...] = (DRIVE_LAW, LOAD_LAW)  # of unnamed origin: they describe, not explain
+LAWS: tuple[Effect, ...] = (
+    DRIVE_LAW,
+    TENDON_LAW,
+    LOAD_LAW,
+)  # of unnamed origin: they describe, not explain
 
 
 class Effects(NamedTuple):
@@ -142,6 +147,7 @@ class Effects(NamedTuple):
     channel_delay: ChannelDelay = ChannelDelay()
     sensor_lag: SensorLag = SensorLag()
     drive_law: DriveLaw = DriveLaw()
+    tendon_law: TendonLaw = TendonLaw()
     load_law: LoadLaw = LoadLaw()
 
 
@@ -189,6 +195,7 @@ __all__ = [
     "SensorLag",
     "SheathCompression",
     "StribeckFriction",
+    "TendonLaw",
     "UnevenFriction",
     "ViscousFriction",
 ]

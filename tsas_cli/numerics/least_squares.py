@@ -126,12 +126,13 @@ def _bounded_step(
     fixed = np.zeros(step.size, bool)
     at, toward = np.zeros(step.size), step
     while True:
-        beyond = (toward < bounds[0]) | (toward > bounds[1])
+        beyond = ((toward < bounds[0]) | (toward > bounds[1])) & ~fixed
         if not beyond.any():
             return toward
         end = np.clip(toward, *bounds)
-        way = np.full(step.size, np.inf)
-        way[beyond] = np.abs((end - at)[beyond] / (toward - at)[beyond])
+        room, wanted = np.abs(end - at), np.abs(toward - at)
+        way = np.divide(room, wanted, out=np.zeros(step.size), where=wanted > 0.0)
+        way[~beyond] = np.inf
         first = int(np.argmin(way))
         at = at + way[first] * (toward - at)
         at[first], fixed[first] = end[first], True

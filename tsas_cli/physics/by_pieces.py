@@ -46,12 +46,16 @@ STATIC = -1  # nodes of the lumped model
 
 
 class Start(NamedTuple):
-    """Start of a piece: states of solver and sensors, position [mm] and direction of the drive."""
+    """Start of a piece: states of solver and sensors, and of the drive.
+
+    Its position [mm], the direction of its last motion, and the travel since its last reversal.
+    """
 
     state: State
     memory: Floats  # of the sensors
     position: float
     direction: float
+    travel: float
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ def simulate_pieces(
     start: Start | None = None
     mesh = 0
     for piece in _overlapping(drives, _longest_delay(rig)):
-        ends = ends_of(rig, piece.drive, start and (start.position, start.direction))
+        ends = ends_of(rig, piece.drive, start and (start.position, start.direction, start.travel))
         if start is None:
             closed = is_closed(rig, piece.drive) and not on_mesh
             mesh = STATIC if dynamics == "static" else CLOSED if closed else nodes or NODES
@@ -111,8 +115,8 @@ def simulate_pieces(
         signals = _read(rig, piece, ends, outputs, slice(piece.begin, to), memory)
         if piece.handover is not None:
             at = piece.handover
-            position, direction = float(ends.drive[at]), float(ends.direction[at])
-            start = Start(deepcopy(state), memory.copy(), position, direction)
+            of_drive = (float(part[at]) for part in (ends.drive, ends.direction, ends.travel))
+            start = Start(deepcopy(state), memory.copy(), *of_drive)
             further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
             further = _read(rig, piece, ends, further, slice(to, piece.until), memory)
             signals = _concatenated(signals, further)

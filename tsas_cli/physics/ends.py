@@ -14,6 +14,7 @@ from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
+from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.viscous_friction import viscous_loss
@@ -23,6 +24,8 @@ from tsas_cli.physics.course import DRIVE, STEP, Losses
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
 from tsas_cli.support.arrays import Floats
+
+NO_TENDON_LAW = TendonLaw()
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,7 @@ class EndInputs:
     course: Floats  # with the rows of `course`
     boundary: Boundary
     direction: Floats  # of the last motion of the tendon's end at the drive, shape (n,)
+    travel: Floats  # of that end since its last reversal, infinite before the first one, shape (n,)
     motion_N: Floats  # force at the drive's sensor for the motion of that end, shape (n,)
 
     @property
@@ -64,8 +68,13 @@ class EndInputs:
     def part(self, first: int, end: int) -> "EndInputs":
         """Return the samples first … end−1."""
         course = np.ascontiguousarray(self.course[:, first:end])
-        direction, motion_N = self.direction[first:end], self.motion_N[first:end]
-        return replace(self, course=course, direction=direction, motion_N=motion_N)
+        return replace(
+            self,
+            course=course,
+            direction=self.direction[first:end],
+            travel=self.travel[first:end],
+            motion_N=self.motion_N[first:end],
+        )
 
     def after(self, before: list[float]) -> "EndInputs":
         """Return the inputs with positions of the drive prepended."""
@@ -73,20 +82,27 @@ class EndInputs:
         course = np.concatenate((np.repeat(self.course[:, :1], more, axis=1), self.course), axis=1)
         course[DRIVE, :more] = before
         course[STEP, : more + 1] = math.inf  # their speed is not known
-        direction = np.concatenate((np.zeros(more), self.direction))
-        motion_N = np.concatenate((np.zeros(more), self.motion_N))
-        return replace(self, course=course, direction=direction, motion_N=motion_N)
+        return replace(
+            self,
+            course=course,
+            direction=np.concatenate((np.zeros(more), self.direction)),
+            travel=np.concatenate((np.full(more, math.inf), self.travel)),
+            motion_N=np.concatenate((np.zeros(more), self.motion_N)),
+        )
 
     def first(self) -> "EndInputs":
         """Return the first sample alone."""
         return self.part(0, 1)
 
 
-def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = None) -> EndInputs:
+def ends_of(
+    rig: Rig, drive: DriveInput, start: tuple[float, float, float] | None = None
+) -> EndInputs:
     """Return the inputs of a rig's tendon for ends driven as measured.
 
-    `start` is the position of the tendon's end at the drive at the first sample and the direction
-    of its last motion, where the drive continues a run; None at the start of one.
+    `start` is the position of the tendon's end at the drive at the first sample, the direction of
+    its last motion and its travel since its last reversal, where the drive continues a run; None at
+    the start of one.
     """
     n = drive.values.size
     time_s = np.zeros(n) if drive.time_s is None else drive.time_s
@@ -108,10 +124,14 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     if drive.time_s is not None:
         step_s[1:] = np.diff(time_s)
     losses = losses_over(time_s, position, speed, drive.session_s, rig)
-    course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     direction = last_direction(at_drive, 0.0 if start is None else start[1])
+    travel = since_reversal(at_drive, direction, math.inf if start is None else start[2])
+    if rig.effects.tendon_law != NO_TENDON_LAW and drive.kind == "displacement":
+        rate = rate_of(at_drive, drive.time_s)
+        losses[:2] *= tendon_law_factor(rig.effects.tendon_law, at_drive, travel, rate)
+    course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     motion_N = force_of_motion(speed, drive.time_s, rig.effects)
-    return EndInputs(course, boundary_of(drive), direction, motion_N)
+    return EndInputs(course, boundary_of(drive), direction, travel, motion_N)
 
 
 def _follows_speed(effects: Effects) -> bool:
@@ -169,6 +189,20 @@ def last_direction(x: Floats, before: float = 0.0) -> Floats:
     out = np.full(x.size, before)
     for i in range(1, x.size):
         out[i] = np.sign(x[i] - x[i - 1]) if x[i] != x[i - 1] else out[i - 1]
+    return out
+
+
+@kernel
+def since_reversal(x: Floats, direction: Floats, before: float) -> Floats:
+    """Return the travel since the last reversal at each sample [mm]; `before` is that at the first.
+
+    The first motion of a run is no reversal.
+    """
+    out = np.full(x.size, before)
+    for i in range(1, x.size):
+        moved = abs(x[i] - x[i - 1])
+        turned = direction[i] * direction[i - 1] < 0.0
+        out[i] = moved if turned else out[i - 1] + moved
     return out
 
 

@@ -32,10 +32,10 @@ TOLERANCE = 2.5e-6  # error that a step of the dynamic chain may add, over a ten
 CLOSED = 0  # nodes of the closed form
 ELEMENTS = 60  # of the closed form's profiles along the tendon
 MOST_DOUBLINGS = 30  # of the drive's travel before a run
-ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
+ON_CHAIN = tuple(e.name for e in (*EFFECTS, *LAWS) if not e.closed_form)
 _effects_on_chain = attrgetter(*ON_CHAIN)
 _NEUTRAL_ON_CHAIN = _effects_on_chain(Effects())
-READ = tuple(e.name for e in (*EFFECTS, *LAWS) if e.acts_on == "sensor" or e in LAWS)
+READ = (*(e.name for e in EFFECTS if e.acts_on == "sensor"), "drive_law", "load_law")
 _NEUTRAL_READ = {name: getattr(Effects(), name) for name in READ}
 
 

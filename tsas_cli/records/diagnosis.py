@@ -62,8 +62,9 @@ class NamedCause(Record):
 class DescribedLaw(Record):
     """A law of unnamed origin; the errors are its channel's on held-out data.
 
-    `after_reversal` is the change of the channel over the travel since a reversal from full slip,
-    at the mean tension; `along_stroke` the curve at the places.
+    `rivals` are other laws that describe it as well. `after_reversal` is the change of `what` over
+    the travel since a reversal, from full slip and at the mean tension; `along_stroke` its curve at
+    the places.
     """
 
     law: str
@@ -71,10 +72,12 @@ class DescribedLaw(Record):
     equation: str
     sentence: str
     parameters: dict[str, Value]
+    rivals: tuple[str, ...] = ()
     channel: str
     unit: str
     rmse_before: NotNegative
     rmse_after: NotNegative
+    what: str = ""
     travel_mm: tuple[float, ...] = ()
     after_reversal: tuple[float, ...] = ()
     place_mm: tuple[float, ...] = ()

@@ -3,8 +3,9 @@
 A stand-in says what it does not prove.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from tsas_cli.records.base import Value
 from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause
 from tsas_cli.reporting.content import Section, Table, anchor
 from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
@@ -21,12 +22,13 @@ def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
             f"Not proven: {within(heading_of(cause))}" if cause.failed else heading_of(cause),
             tuple(text for text in (sentence_of(cause.effect), *_failed(cause)) if text),
             equations=tuple(equation.split(",  ")) if equation else (),
-            tables=(_parameters(cause),),
+            tables=(parameters_of(cause.effect, cause.parameters),),
             closing=(*_rivals(cause), *_gain(cause)),
         )
 
 
-def _parameters(cause: NamedCause) -> Table:
+def parameters_of(effect: str, parameters: Mapping[str, Value]) -> Table:
+    """Return the table of an effect's parameters, by name."""
     rows = tuple(
         (
             name,
@@ -34,10 +36,10 @@ def _parameters(cause: NamedCause) -> Table:
             p.unit or ABSENT,
             "yes" if p.at_bound else "no",
         )
-        for name, p in cause.parameters.items()
+        for name, p in parameters.items()
     )
     header = ("parameter", "value", "95 % interval", "unit", "at its bound")
-    return Table(f"Parameters of {cause.effect}", header, rows, numeric=frozenset({1, 2}))
+    return Table(f"Parameters of {effect}", header, rows, numeric=frozenset({1, 2}))
 
 
 def _failed(cause: NamedCause) -> Iterator[str]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.content import Section, missing
-from tsas_cli.reporting.diagnosis import candidates, causes, gains, maps, similarity
+from tsas_cli.reporting.diagnosis import candidates, causes, gains, laws, maps, similarity
 from tsas_cli.reporting.diagnosis.words import signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
@@ -25,6 +25,7 @@ def section(inputs: Inputs) -> Section:
         (_verdict(diagnosis),),
         parts=(
             *causes.parts(diagnosis),
+            *laws.parts(diagnosis),
             *(part for part in evidence if part is not None),
             *remainder(diagnosis),
         ),

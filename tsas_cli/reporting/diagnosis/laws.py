@@ -1,0 +1,49 @@
+"""The laws of unnamed origin: what each says, its curves, its parameters."""
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+from tsas_cli.records.diagnosis import DescribedLaw, DiagnosisFile
+from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.content import Section, anchor
+from tsas_cli.reporting.diagnosis.causes import parameters_of
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.numbers import plain
+from tsas_cli.support.wording import listed
+
+
+def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
+    """Yield one part for each law."""
+    for law in diagnosis.laws:
+        rivals = f" As good are: {listed(law.rivals)}." if law.rivals else ""
+        yield Section(
+            anchor("diagnosis", law.law),
+            law.title,
+            (law.sentence, f"It describes what no proven cause explains; it is no cause.{rivals}"),
+            equations=(law.equation,),
+            pictures=(
+                picture(
+                    partial(_draw, law=law),
+                    key=law.law,
+                    alt=law.sentence,
+                    caption="After a reversal, at the mean tension; and along the stroke.",
+                ),
+            ),
+            tables=(parameters_of(law.law, law.parameters),),
+            closing=(
+                (
+                    f"On held-out data the RMS of {law.channel} falls from "
+                    f"{plain(law.rmse_before, 3)} to {plain(law.rmse_after, 3)} {law.unit}."
+                ),
+            ),
+        )
+
+
+def _draw(figure: Any, law: DescribedLaw) -> None:
+    left, right = figure.subplots(1, 2)
+    left.plot(law.travel_mm, law.after_reversal, color=STAND_IN["after"])
+    left.set(xlabel="travel since reversal [mm]", ylabel=law.what)
+    left.set_xlim(0.0, max(law.travel_mm))
+    right.plot(law.place_mm, law.along_stroke, color=STAND_IN["after"], marker="o", markersize=3.0)
+    right.set_xlabel("displacement [mm]")
