@@ -34,6 +34,10 @@ REMEMBERED = {
     "sensor_lag.f_in_lag_s": 0.7,
     "sensor_lag.f_out_lag_s": 0.05,
     "sensor_lag.x_out_lag_s": 0.02,
+    "drive_law.friction_2_N": 1.5,
+    "drive_law.share_3": 0.1,
+    "load_law.lost_1_mm": 0.3,
+    "tendon_law.start_1": 0.4,
 }
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
@@ -27,6 +28,7 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 # The displacement that each law follows, and the channel that shows it.
 FOLLOWS = {"drive_law": "x_in_mm", "tendon_law": "x_in_mm", "load_law": "x_out_mm"}
 CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"}
+AT_NOISE = 1.1  # of the noise level, below which a channel's RMS needs no further law
 AS_WELL = 0.1  # share by which the squares of a set exceed those of the best one at most
 REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
 SETS: tuple[tuple[str, ...], ...] = (
@@ -63,9 +65,9 @@ def describe(
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
 
-    Laws at the ends are tried together and alone, since the nominal parameters trade with what a
-    missing law leaves; that of the tendon alone and with them. Of the sets that predict, the one
-    that reduces the squares most; one of fewer laws if that does as well.
+    Laws are tried alone and together, since the nominal parameters trade with what a missing law
+    leaves, until all channels are at the noise level. Of the sets that predict, the one that
+    reduces the squares most; one of fewer laws if that does as well.
     """
     ranges = ranges_of([run.run for run in bench.closed])
     bench = in_channel_units(bench, trial, ranges)
@@ -85,6 +87,8 @@ def describe(
         reduction = gain(before.squares, after.squares)
         if reduction.convincing and not _worse(before, after):
             found.append((names, fitted, after, reduction.part))
+            if all(after.rmse[n] < AT_NOISE * noise_floor(bench, n, 0.0) for n in after.rmse):
+                break
         step()
     if not found:
         return None

@@ -38,11 +38,14 @@ def tried(kind, conditions):
 def test_a_wrong_name_is_never_given_without_a_warning(case, tmp_path):
     said = diagnosed(case, tmp_path)
     named = {cause["effect"] for cause in said["named"]}
-    warned = said["verdict"] in ("partly", "stand_in", "unexplained")
+    warned = said["verdict"] in ("partly", "described", "stand_in", "unexplained")
     assert warned == said["remainder"]["unexplained"]
     right = RIGHT_KIND.get(case.hidden[0].cause if case.hidden else case.name.split(",")[0], set())
     assert warned or named <= right
-    assert (said["verdict"] == "stand_in") == (bool(said["stand_ins"]) and not named)
+    described = bool(said["laws"])
+    assert (said["verdict"] == "described") == (described and not named)
+    if not described:
+        assert (said["verdict"] == "stand_in") == (bool(said["stand_ins"]) and not named)
 
 
 @pytest.mark.parametrize("case", tried("nothing", "slow"))

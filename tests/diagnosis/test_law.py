@@ -1,0 +1,61 @@
+"""A law of unnamed origin for what the independent rig hides and no catalogue holds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
+from tsas_cli.diagnosis.law import describe
+from tsas_cli.diagnosis.law_words import records_of
+from tsas_cli.identification.extension import bench_of
+from tsas_cli.identification.joint_fit import solve_fit
+from tsas_cli.identification.model import stated_model
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.transducers import Transducer
+
+PLAY_MM, NOISE_MM = 0.15, 0.01
+RIG = Rig(cells=60)
+
+
+def described(folder, sensors):
+    """Return the law that describes three runs of other amplitudes."""
+    runs = [
+        Run(
+            name,
+            record(RIG, sine(amplitude, rate_Hz=200.0), sensors=sensors, seed=k),
+            conditions(RIG),
+        )
+        for k, (name, amplitude) in enumerate((("a", 6.0), ("b", 8.0), ("c", 10.0)))
+    ]
+    data = read_dataset(write_dataset(folder, runs))
+    prepared = [prepare(recording) for recording in data]
+    base = solve_fit(nominal_fit(data.manifest, stated_model(data.manifest, None), prepared))
+    bench = bench_of(base)
+    return describe(bench, bench.fit(), bench_folds(bench))
+
+
+def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
+    sensors = Sensors(rate_Hz=50.0)
+    sensors = replace(sensors, x_out_transducer=Transducer(play=PLAY_MM))
+    law = described(tmp_path / "dataset", sensors)
+    assert law.names == ("load_law",)
+    assert law.before.rmse["x_out_mm"] > 4.0 * NOISE_MM
+    assert law.after.rmse["x_out_mm"] < 1.3 * NOISE_MM  # on runs that no fit saw
+    assert law.after.rmse["f_in_N"] == pytest.approx(law.before.rmse["f_in_N"], rel=0.05)
+    (said,) = records_of(law)
+    value = {name: p.value for name, p in said.parameters.items()}
+    lost = 2.0 * sum(value[f"lost_{k}_mm"] for k in range(1, 7))
+    assert lost == pytest.approx(PLAY_MM, rel=0.15)
+    assert "motion are lost at each reversal" in said.sentence
+    within = np.array(said.travel_mm)[np.array(said.after_reversal) > 0.9 * lost][0]
+    assert within < 2.5 * PLAY_MM
+
+
+def test_a_sound_rig_has_no_law(tmp_path):
+    assert described(tmp_path / "dataset", Sensors(rate_Hz=50.0)) is None

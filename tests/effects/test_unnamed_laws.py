@@ -1,0 +1,92 @@
+"""The laws of unnamed origin in a simulated run, against what their equations say."""
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A
+from tsas_cli.effects import LAWS, Effects
+from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.response import simulate
+from tsas_cli.physics.rig import with_values
+
+TIME_S = np.linspace(0.0, 12.0, 1201)
+X_MM = 8.0 + 6.0 * np.sin(TIME_S)
+DRIVE = DriveInput(X_MM, time_s=TIME_S)
+SETTLED = TIME_S > 7.0  # all elements have yielded
+
+
+def run(drive=DRIVE, **values):
+    named = {name.replace("__", "."): value for name, value in values.items()}
+    return simulate(with_values(GROUP_A, named), drive)
+
+
+def test_no_law_acts_by_default():
+    """A range without a weight changes nothing, to the last bit."""
+    plain = run()
+    ranges = run(drive_law__travel_mm=3.0, load_law__high_mm=9.0)
+    for name in ("f_in_N", "f_out_N", "x_out_mm"):
+        assert (getattr(ranges, name) == getattr(plain, name)).all()
+    assert {law.name for law in LAWS} <= set(Effects._fields)
+
+
+def test_friction_at_the_drive_has_the_sign_of_its_motion_once_it_yields():
+    plain, law = run(), run(drive_law__travel_mm=0.4, drive_law__friction_1_N=1.5)
+    added = (law.f_in_N - plain.f_in_N)[SETTLED]
+    turned = np.abs(np.cos(TIME_S[SETTLED])) < 0.55  # within twice the width of a reversal
+    assert added[~turned] == pytest.approx(1.5 * np.sign(np.cos(TIME_S[SETTLED][~turned])))
+    assert np.abs(added).max() <= 1.5 + 1e-12
+    assert (law.f_out_N == plain.f_out_N).all()
+
+
+def test_a_share_grows_with_the_tension_of_the_tendon():
+    plain, law = run(), run(drive_law__travel_mm=0.01, drive_law__share_1=0.1)
+    moving = SETTLED & (np.abs(np.cos(TIME_S)) > 0.2)
+    expected = 0.1 * plain.f_in_N[moving] * np.sign(np.cos(TIME_S[moving]))
+    assert (law.f_in_N - plain.f_in_N)[moving] == pytest.approx(expected)
+
+
+def test_the_elements_follow_the_motor_where_it_was_recorded():
+    """A motor that turns back while the drive stands still is what changes the friction."""
+    still = np.full(TIME_S.size, 8.0)
+    drive = DriveInput(still, time_s=TIME_S, motor_mm=X_MM)
+    plain = run(drive)
+    law = run(drive, drive_law__travel_mm=0.01, drive_law__friction_1_N=2.0)
+    moving = (np.abs(np.cos(TIME_S)) > 0.1) & (TIME_S > 0.1)
+    added = (law.f_in_N - plain.f_in_N)[moving]
+    assert added == pytest.approx(2.0 * np.sign(np.cos(TIME_S[moving])))
+
+
+def test_motion_is_lost_at_the_load_and_the_forces_do_not_know():
+    plain = run()
+    law = run(load_law__travel_mm=0.05, load_law__lost_1_mm=0.2, load_law__compliance_mm_per_N=0.01)
+    deep = SETTLED & (np.abs(np.cos(TIME_S)) > 0.8)  # beyond the dead band
+    direction = np.sign(np.cos(TIME_S[deep]))
+    expected = plain.x_out_mm - 0.01 * plain.f_out_N
+    assert law.x_out_mm[deep] == pytest.approx(expected[deep] - 0.2 * direction)
+    assert (law.f_in_N == plain.f_in_N).all()
+
+
+def test_the_factor_of_the_friction_is_the_sum_of_its_parts():
+    law = TendonLaw(
+        travel_mm=4.0, low_mm=0.0, high_mm=4.0, slow_mm_per_s=1.0, fast_mm_per_s=100.0,
+        start_1=0.3, curve_2=0.2, speed_2=0.5,
+    )  # fmt: skip
+    x, travel, speed = (
+        np.array([1.0, 1.0, 4.0]),
+        np.array([0.0, 1.0, np.inf]),
+        np.array([1, -10, 0.1]),
+    )
+    expected = [1.0 + 0.2 + 0.3, 1.0 + 0.2 + 0.3 * np.exp(-1.0) + 0.5, 1.0]
+    assert tendon_law_factor(law, x, travel, speed) == pytest.approx(expected)
+    negative = law._replace(start_1=-3.0)
+    assert tendon_law_factor(negative, x, travel, speed)[0] == 0.0
+
+
+def test_a_constant_factor_is_another_friction_coefficient():
+    curve = {f"tendon_law__curve_{k}": 0.4 for k in range(1, 6)}
+    more = GROUP_A._replace(friction_coefficient=1.4 * GROUP_A.friction_coefficient)
+    on_chain = {"presliding__length_mm": 0.0}
+    law = run(**curve)
+    assert law.f_in_N == pytest.approx(simulate(more, DRIVE, on_mesh=True).f_in_N, rel=1e-9)
+    assert np.ptp(law.f_in_N - run(**on_chain).f_in_N) > 1.0
