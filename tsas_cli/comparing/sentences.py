@@ -63,7 +63,7 @@ def _effects(it: Comparison) -> Iterator[str]:
         if alone:
             yield f"{name} alone holds {', '.join(alone)}."
     for name, side in it.sides.items():
-        if side.verdict in ("undecided", "partly", "stand_in", "unexplained"):
+        if side.verdict in ("undecided", "partly", "described", "stand_in", "unexplained"):
             yield f"The verdict of diagnosis {name} is {side.verdict}: {side.reason}"
 
 
