@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
-from tsas_cli.diagnosis.evidence import gain
+from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.identification.estimate import Estimate
@@ -70,7 +70,7 @@ def describe(
     reduces the squares most; one of fewer laws if that does as well.
     """
     ranges = ranges_of([run.run for run in bench.closed])
-    bench = in_channel_units(bench, trial, ranges)
+    bench, start = in_channel_units(bench, trial, ranges), _without_slopes(trial)
     possible = {n for n in CHANGES if n in ranges and CHANGES[n] in bench.channels}
     sets = [names for names in SETS if possible.issuperset(names)]
     step.ahead(len(sets))
@@ -79,17 +79,21 @@ def describe(
     for names in sets:
         mesh = trial.on_mesh or bench.on_mesh(names)
         if mesh not in held_out:
-            without = bench.fit(sorted(trial.effects), near=trial, on_mesh=mesh)
+            without = bench.fit(sorted(trial.effects), near=start, on_mesh=mesh)
             held_out[mesh] = without, refitted(bench, without, folds)
         without, before = held_out[mesh]
         fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
+        step()
+        fewer = [f.mean_square * (1.0 - AS_WELL) for n, f, *_ in found if len(n) < len(names)]
+        least = min([without.mean_square * (1.0 - LEAST_REDUCTION), *fewer])
+        if fitted.mean_square > least:  # what fits no better predicts no better
+            continue
         after = refitted(bench, fitted, folds)
         reduction = gain(before.squares, after.squares)
         if reduction.convincing and not _worse(before, after):
             found.append((names, fitted, after, reduction.part))
             if all(after.rmse[n] < AT_NOISE * noise_floor(bench, n, 0.0) for n in after.rmse):
                 break
-        step()
     if not found:
         return None
     most = max(part for *_, part in found)
@@ -146,6 +150,12 @@ def in_channel_units(
         closed=tuple(_over_rms(run, rms) for run in bench.closed),
         meshed=tuple(_over_rms(run, rms) for run in bench.meshed),
     )
+
+
+def _without_slopes(trial: HypothesisFit) -> HypothesisFit:
+    """Return a trial as a start for fits with other weights: its values alone."""
+    unknown = np.full_like(trial.solution.jacobian, np.nan)
+    return replace(trial, solution=replace(trial.solution, jacobian=unknown))
 
 
 def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
