@@ -7,7 +7,7 @@ import pytest
 
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
-from tsas_cli.effects import EFFECTS, Effects
+from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import is_closed, simulate
@@ -196,6 +196,6 @@ print(json.dumps(["numba" in sys.modules, columns]))
 
 def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
-    assert len(plain) == 5 * len(LOADS) * len(Effects._fields)
+    assert len(plain) == 5 * len(LOADS) * len(EFFECTS)
     for ours, theirs in zip(plain, compiled, strict=True):
         assert ours == pytest.approx(theirs, rel=1e-8, abs=1e-8)

@@ -49,7 +49,7 @@ def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
     by_run = {key: _rms(parts) for key, parts in raw.items()}
     rmse = {
         name: _rms([part for (_, n), parts in raw.items() if n == name for part in parts])
-        for name in bench.channels
+        for name in sorted({name for _, name in raw})
     }
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
     return HeldOutFit(rmse, squares.astype(np.float64), by_run)

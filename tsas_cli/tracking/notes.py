@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tsas_cli.controllers.path import DrivePath
+from tsas_cli.effects import LAWS, Effects
 from tsas_cli.identification.dynamic_notes import unstable_sliding
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import DriveInput
@@ -28,6 +29,12 @@ def run_notes(
         notes.append(
             f"the reference asks for more than the motor's {limit:g} rpm in {beyond.sum()} samples,"
             f" up to {np.abs(feedforward(path, known.actuator)).max():.0f} rpm"
+        )
+    neutral, effects = Effects(), plant.rig.effects
+    laws = [law.name for law in LAWS if getattr(effects, law.name) != getattr(neutral, law.name)]
+    if laws:
+        notes.append(
+            f"{' and '.join(laws)} of the model describe recordings: the plant moves without them"
         )
     for result in results:
         at_limit = result.scores.at_limit_percent.mean or 0.0
