@@ -2,10 +2,10 @@ import json
 
 import pytest
 
-from tsas_cli.effects import EFFECTS
+from tsas_cli.effects import EFFECTS, LAWS
 
 
-@pytest.mark.parametrize("effect", EFFECTS[::7], ids=lambda effect: effect.name)
+@pytest.mark.parametrize("effect", [*EFFECTS[::7], *LAWS], ids=lambda effect: effect.name)
 def test_it_prints_all_that_a_person_needs(tsas, effect):
     done = tsas("explain", effect.name)
     assert (done.returncode, done.stderr) == (0, "")

@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
-from tsas_cli.effects import EFFECTS, Effect
+from tsas_cli.effects import EFFECTS, LAWS, Effect
 from tsas_cli.records.result import Result, Table
 from tsas_cli.support.errors import InputError, nearest
 
@@ -66,12 +66,12 @@ def catalogue() -> CatalogueResult:
 
 
 def explain(name: str) -> Explanation:
-    """Explain an effect: what one sees of it, its equation, its parameters, its experiment.
+    """Explain an effect or a law: what one sees of it, its equation, parameters, experiment.
 
     Parameters
     ----------
     name
-        The effect's name, as `catalogue` lists it.
+        The name of an effect, as `catalogue` lists it, or of a law of unnamed origin.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def explain(name: str) -> Explanation:
     InputError
         There is no such effect.
     """
-    effect = next((e for e in EFFECTS if e.name == name), None)
+    effect = next((e for e in (*EFFECTS, *LAWS) if e.name == name), None)
     if effect is None:
         remedy = f"{nearest(name, [e.name for e in EFFECTS])}; `tsas effects` lists them all"
         raise InputError(f"there is no effect {name!r}", remedy=remedy)
