@@ -39,6 +39,15 @@ def test_a_run_is_taken_as_it_is():
     assert run.noise_mm == pytest.approx(1e-3, rel=0.2)
 
 
+def test_without_a_speed_that_of_the_motors_angle_counts():
+    by_speed = checked()
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * STEP_S * (SPEED[1:] + SPEED[:-1]))))
+    run = checked(motor_speed_rpm=None, motor_angle_rad=2.0 + angle * np.pi / 30.0)
+    np.testing.assert_allclose(run.u.values[1:-1], SPEED[1:-1], atol=0.01)
+    np.testing.assert_allclose(run.u.integral, by_speed.u.integral, atol=0.01)
+    np.testing.assert_array_equal(checked(motor_angle_rad=0.0 * SPEED).u.values, SPEED)
+
+
 @pytest.mark.parametrize(("part", "at_rest"), [(0.0, True), (0.0099, True), (0.0101, False)])
 @pytest.mark.parametrize("largest", [0.5, 300.0])
 def test_a_run_begins_at_rest_below_a_hundredth_of_its_largest_speed(part, at_rest, largest):

@@ -43,7 +43,8 @@ class Bench:
         for i, name in enumerate(("locked", "installed", "stamp")):
             (folder / name).touch()
             os.utime(folder / name, (i, i))
-        self.settings = [f"TSAS={program}", f"PROGRAM={folder / 'stamp'}"]
+        (folder / "python").symlink_to(program)
+        self.settings = [f"TSAS={program}", f"BIN={folder}", f"PROGRAM={folder / 'stamp'}"]
         self.settings += [f"INSTALLED={folder / 'installed'}", f"LOCKED={folder / 'locked'}"]
 
     def run(

@@ -14,15 +14,8 @@ OUTPUTS = [
     ("close-loop", "CLOSE_LOOP_OUT"),
     ("drive", "DRIVE_OUT"),
     ("challenge", "CHALLENGE_OUT"),
-    ("friction-damper-dataset", "DAMPER"),
-    ("mis-tool-L_4", "MIS_TOOL_OUT"),
+    ("real", "REAL_OUT"),
 ]
-RECORDINGS = {
-    "mis-tool-L_4": "mis-tool/L_4",
-    "mis-tool-pitch": "mis-tool/pitch",
-    "friction-damper-dataset": "friction-damper",
-}
-FROM_THE_ISSUE = [f";id>{RAN};.csv", f"';id>{RAN};.csv'", "a|b.csv", "a\tb.csv", "a\nb.csv"]
 
 
 @pytest.fixture(scope="module")
@@ -79,22 +72,20 @@ def test_a_pipeline_takes_a_name_or_refuses_it(clone, setting, name, environment
 
 @settings(deadline=None, max_examples=20)
 @given(
-    target=st.sampled_from(sorted(RECORDINGS)),
+    setting=st.sampled_from(["TSAS_DATA", "REAL", "REAL_OUT"]),
     name=odd_names(),
-    files=st.sets(odd_names(), min_size=1, max_size=5),
     environment=st.booleans(),
 )
-def test_public_recordings_lie_where_a_name_says(clone, target, name, files, environment):
+def test_public_recordings_lie_where_a_name_says(clone, setting, name, environment):
     bench, home = clone()
-    words, variables, name = told("TSAS_DATA", name, environment=environment)
-    raw = home / (name or "data") / RECORDINGS[target]
-    raw.mkdir(parents=True)
-    for file in files:
-        (raw / file).touch()
-    done = bench.run(target, *words, cwd=home, **variables)
+    words, variables, name = told(setting, name, environment=environment)
+    names = {"TSAS_DATA": "data", "REAL": "a/b", "REAL_OUT": "out"} | {setting: name}
+    other = [f"{key}={value}" for key, value in names.items() if key != setting]
+    done = bench.run("real", *words, *other, cwd=home, **variables)
     if not refused(done, bench):
-        first, *_ = bench.calls()
-        assert first[:2] == ["ingest", f"{name}/{RECORDINGS[target]}"]
+        asked = [names["REAL"]] if names["REAL"].strip() else []
+        places = ["--data", names["TSAS_DATA"], "--out", names["REAL_OUT"]]
+        assert bench.calls() == [["-m", "benchmarks.real", *asked, *places]]
     assert nothing_ran(bench.folder)
 
 
@@ -104,47 +95,11 @@ def test_public_recordings_lie_where_a_name_says(clone, target, name, files, env
 @example(name=f"a$(shell >{RAN})", environment=False)
 def test_an_output_has_a_name_or_is_refused(clone, target, setting, name, environment):
     bench, home = clone()
-    for folder in RECORDINGS.values():
-        (home / "data" / folder).mkdir(parents=True)
     words, variables, name = told(setting, name, environment=environment)
     done = bench.run(target, *words, "TSAS_DATA=data", cwd=home, **variables)
     if not refused(done, bench):
         for call in bench.calls():
             assert (call[call.index("--out") + 1] + "/").startswith(f"{name}/")
-    assert nothing_ran(bench.folder)
-
-
-@pytest.mark.parametrize("name", FROM_THE_ISSUE)
-def test_public_recordings_may_have_any_name(clone, name):
-    bench, home = clone()
-    raw = home / "data" / "friction-damper"
-    raw.mkdir(parents=True)
-    (raw / name).touch()
-    words = ["friction-damper", "TSAS_DATA=data", "DAMPER=my <damper> (2)"]
-    assert sorted(set(bench.make(*words, cwd=home))) == [
-        "calibrate",
-        "diagnose",
-        "ingest",
-        "predict",
-        "report",
-    ]
-    assert bench.make(*words, cwd=home) == []
-    bench.age("clone/my <damper> (2)", "clone/data")
-    (raw / f"2{name}").touch()
-    assert bench.make(*words, cwd=home)[0] == "ingest"
-    assert nothing_ran(bench.folder)
-
-
-def test_models_of_public_recordings_may_have_any_name(clone):
-    bench, home = clone()
-    for folder in RECORDINGS.values():
-        (home / "data" / folder).mkdir(parents=True)
-    out = f"R&D (2) <`>{RAN}`>"
-    words = ["mis-tool-predict", "TSAS_DATA=data", f"MIS_TOOL_OUT={out}"]
-    made = bench.make(*words, cwd=home)
-    assert [made.count(s) for s in ("ingest", "calibrate", "predict")] == [2, 4, 3]
-    assert all(call[call.index("--out") + 1].startswith(f"{out}/") for call in bench.calls())
-    assert bench.make(*words, cwd=home) == []
     assert nothing_ran(bench.folder)
 
 

@@ -1,5 +1,6 @@
 """Recordings of a drive, checked: motor speed in, position of the tendon's end out."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,6 +22,7 @@ STRETCHES = (
 )
 AT_REST = 0.01  # of the largest speed
 MOVED = 5.0  # times the noise, that x_in has to travel
+RPM_PER_RAD_S = 30.0 / math.pi
 FOLLOWS = 0.5  # correlation of travel and turns below which x_in is not what the motor moves
 
 
@@ -70,8 +72,7 @@ def drive_runs(
 
 def _checked(recording: Recording, hold: Hold, copied: CopiedRows) -> DriveRun:
     where = recording.run.file
-    u, x = (_channel(recording, name) for name in ("motor_speed_rpm", "x_in_mm"))
-    time_s = recording.time_s
+    time_s, x = recording.time_s, _channel(recording, "x_in_mm")
     if time_s.size < FEWEST_SAMPLES:
         raise InputError(
             f"{time_s.size} samples are too few",
@@ -89,6 +90,7 @@ def _checked(recording: Recording, hold: Hold, copied: CopiedRows) -> DriveRun:
             expected="an even clock",
             remedy="cut the run there, or resample it before ingest",
         )
+    u = _speed(recording, step)
     if float(np.ptp(u)) == 0.0:
         still = u[0] == 0.0
         raise InputError(
@@ -117,13 +119,21 @@ def _checked(recording: Recording, hold: Hold, copied: CopiedRows) -> DriveRun:
     return run
 
 
+def _speed(recording: Recording, step_s: float) -> Floats:
+    """Return the motor's speed [rpm], where it was not recorded that of its angle."""
+    if "motor_speed_rpm" in recording.columns or "motor_angle_rad" not in recording.columns:
+        return _channel(recording, "motor_speed_rpm")
+    angle = _channel(recording, "motor_angle_rad")
+    return np.asarray(np.gradient(angle, step_s) * RPM_PER_RAD_S)
+
+
 def _channel(recording: Recording, name: str) -> Floats:
     values = recording.get(name)
     if values is None:
         raise InputError(
             f"column {name} is missing",
             where=recording.run.file,
-            expected="motor_speed_rpm and x_in_mm, as a recording of a drive has",
+            expected="motor_speed_rpm or motor_angle_rad, and x_in_mm, as a drive's recording has",
             remedy=f"there are: {', '.join(recording.columns)}; leave the run out with --runs",
         )
     gaps = np.flatnonzero(~np.isfinite(values))

@@ -27,6 +27,7 @@ METHOD = (
     "local polynomials of fourth degree between corners, window of least risk; "
     "monotone between reversals"
 )
+SHORTEST_BESIDE_CORNER = 4  # samples; to a line of fewer every acceleration is a corner
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
 REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
 REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
@@ -85,7 +86,8 @@ def smooth_out(
     whole = np.array([0, values.size], dtype=np.int64)
     # Corners spoil the blocks that they lie in; the smooth blocks give the window of the search.
     alone = best_half_windows(time_s, values, whole, noise, memory, degree=2, pooled=1)
-    cuts = corners(time_s, values, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
+    beside = max(SHORTEST_BESIDE_CORNER, int(np.percentile(alone, 75)))
+    cuts = corners(time_s, values, beside, noise * math.sqrt(memory))
     half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
     remove_overshoot(smooth, cuts)

@@ -55,7 +55,7 @@ def quadratic_fit(
 ) -> tuple[float, float, float, float]:
     """Return value and slope at sample i of the parabola through the samples first … last.
 
-    With their variances for noise of variance one. Few samples give a line or the mean.
+    With their variances for noise of variance one. Few samples give a line, two the value itself.
     """
     t1 = t2 = t3 = t4 = y0 = y1 = y2 = 0.0
     unit = (time_s[last] - time_s[first]) / max(last - first, 1)
@@ -72,7 +72,7 @@ def quadratic_fit(
         y2 += tt * y
     count = last - first + 1.0
     if count < 3.0:
-        return values[i] + y0 / count, 0.0, 1.0 / count, math.inf
+        return values[i], 0.0, 1.0, math.inf
     if count < 5.0:
         determinant = count * t2 - t1 * t1
         value, slope = (t2 * y0 - t1 * y1) / determinant, (count * y1 - t1 * y0) / determinant

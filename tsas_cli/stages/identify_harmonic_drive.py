@@ -94,7 +94,8 @@ def identify_harmonic_drive(
     Parameters
     ----------
     dataset
-        A dataset, or its folder, with `motor_speed_rpm` and `x_in_mm`.
+        A dataset, or its folder, with `x_in_mm` and `motor_speed_rpm` or `motor_angle_rad`, whose
+        central differences are the speed then.
     out
         Where to write `drive.toml`, `drive.json` and `runs/ID.parquet`; None writes nothing.
     speed

@@ -1,0 +1,1 @@
+"""Public recordings of others: what a model that learns from some of them predicts of the rest."""
