@@ -50,15 +50,19 @@ def learn(split: Split, data: Path, out: Path) -> Learned:
         extended = extended.with_name("model-extended.toml")
     it = tsas.predict([out / "calibrate", extended], predicted, out=out / "predict", force=True)
     columns = [[run.columns for run in dataset] for dataset in (learned, predicted)]
-    late = [run["time_s"] - run["time_s"][0] >= AFTER_S for run in columns[1]]
+    first, last = split.said.get("within_s", (AFTER_S, np.inf))
+    counted = [(run["time_s"] >= first) & (run["time_s"] <= last) for run in columns[1]]
     errors: dict[str, dict[str, list[float | None]]] = {}
     for name in (channel for channel in ROWS if channel in columns[0][0]):
         by = {
-            model: [one.errors[name][part] for one, part in zip(runs, late, strict=True)]
+            model: [one.errors[name] for one in runs]
             for model, runs in zip(("nominal", "extended"), it.predicted.runs.values(), strict=True)
         }
         by["ridge"] = ridge_errors(*columns, name, AFTER_S)
-        errors[name] = {model: [_rms(e, split) for e in of] for model, of in by.items()}
+        errors[name] = {
+            model: [_rms(e[rows], split) for e, rows in zip(of, counted, strict=True)]
+            for model, of in by.items()
+        }
         repeats = {row.run: row.repeatability for row in it.record.channels if row.channel == name}
         errors[name]["repeatability"] = list(repeats.values())
     return Learned(found.verdict, found.reason, errors)

@@ -20,25 +20,26 @@ Columns = Mapping[str, Floats]
 def ridge_errors(
     learned: Sequence[Columns], predicted: Sequence[Columns], channel: str, after_s: float
 ) -> list[Floats]:
-    """Return measured less predicted of a channel, run by run, from `after_s` [s] on."""
+    """Return measured less predicted of a channel, run by run; fits and means count `after_s`."""
     stroke = max(float(np.ptp(run["x_in_mm"])) for run in learned)
-    tables = [_table(run, channel, stroke, after_s) for run in (*learned, *predicted)]
-    known = np.concatenate(tables[: len(learned)])
+    known = np.concatenate([_table(run, channel, stroke, after_s)[1] for run in learned])
     scale = np.sqrt(np.mean(known**2, axis=0)) + np.finfo(float).tiny
     a, b = (known / scale)[:, :-1], known[:, -1]
     squares = a.T @ a + PENALTY * len(a) * np.eye(a.shape[1])
     weights = np.linalg.solve(squares, a.T @ b) / scale[:-1]
-    return [table[:, -1] - table[:, :-1] @ weights for table in tables[len(learned) :]]
+    tables = [_table(run, channel, stroke, after_s)[0] for run in predicted]
+    return [table[:, -1] - table[:, :-1] @ weights for table in tables]
 
 
-def _table(run: Columns, channel: str, stroke: float, after_s: float) -> Floats:
-    """Return the regressors and, last, the channel, less their means."""
+def _table(run: Columns, channel: str, stroke: float, after_s: float) -> tuple[Floats, Floats]:
+    """Return the regressors and, last, the channel, less their means; then the rows that count."""
     x_in = np.array(run["x_in_mm"])
     columns = [x_in, *(_lost(x_in, stroke * 0.5**k) for k in range(1, WIDTHS + 1))]
     if "f_out_N" in run:
         columns += [run["f_out_N"], *(column * run["f_out_N"] for column in columns)]
-    table = np.column_stack([*columns, run[channel]])[run["time_s"] - run["time_s"][0] >= after_s]
-    return np.asarray(table - table.mean(axis=0))
+    table, late = np.column_stack([*columns, run[channel]]), run["time_s"] >= after_s
+    table -= table[late].mean(axis=0)
+    return table, table[late]
 
 
 @kernel

@@ -101,6 +101,15 @@ def test_without_noise_nothing_changes():
     assert np.abs(cleaned.values - motion.x_in_mm).max() < 1e-6
 
 
+@pytest.mark.parametrize("vibration_Hz", [60.0, 100.0])
+def test_a_vibration_above_the_noise_is_no_corner(vibration_Hz):
+    """Of a motion of 150 mm/s a vibration of 1 µm, 200 times the noise, may be lost at most."""
+    t = 1e-3 * np.arange(8000)
+    x = 50.0 - 50.0 * np.cos(np.pi * t) + 1e-3 * np.sin(2.0 * np.pi * vibration_Hz * t)
+    cleaned = condition(t, noisy(x, 1, sd=5e-6))
+    assert np.abs(cleaned.values - x).max() < 1e-3
+
+
 def test_a_gap_is_bridged_by_a_straight_line():
     motion = triangle()
     x = noisy(motion.x_in_mm, 4)
