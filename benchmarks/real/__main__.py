@@ -28,22 +28,24 @@ def main() -> int:
     asked = [n for n in known if not call.names or {n, n.split("/")[0]} & set(call.names)]
     if not asked:
         parser.error(f"no split {' '.join(call.names)}; there are {', '.join(known)}")
-    try:
-        for name in asked:
-            split = known[name]
-            faults = split.faults(call.data)
-            if faults:
-                print(f"{name} is skipped: {faults[0]}; {len(faults)} in all", file=sys.stderr)
-                continue
+    failed = False
+    for name in asked:
+        split = known[name]
+        faults = split.faults(call.data)
+        if faults:
+            print(f"{name} is skipped: {faults[0]}; {len(faults)} in all", file=sys.stderr)
+            continue
+        try:
             lines = lines_of(split, learn(split, call.data, call.out / name))
-            print("\n".join(lines), flush=True)
-            page = with_lines(PAGE.read_text(encoding="utf-8"), name, lines, list(known))
-            with own_file(PAGE) as path:
-                path.write_text(page, encoding="utf-8")
-    except InputError as error:
-        print(f"benchmarks.real: {error.line()}", file=sys.stderr)
-        return 2
-    return 0
+        except InputError as error:
+            print(f"{name}: {error.line()}", file=sys.stderr)
+            failed = True
+            continue
+        print("\n".join(lines), flush=True)
+        page = with_lines(PAGE.read_text(encoding="utf-8"), name, lines, list(known))
+        with own_file(PAGE) as path:
+            path.write_text(page, encoding="utf-8")
+    return 2 if failed else 0
 
 
 if __name__ == "__main__":
