@@ -36,5 +36,9 @@ def with_lines(page: str, name: str, new: Sequence[str], order: Sequence[str]) -
 def _shown(values: Sequence[float | None]) -> str:
     known = [v for v in values if v is not None]
     if len(known) <= MOST_SHOWN:
-        return " / ".join(f"{v:.3g}" for v in known)
-    return f"{sum(known) / len(known):.3g} ({min(known):.3g} to {max(known):.3g})"
+        return " / ".join(map(_text, known))
+    return f"{_text(sum(known) / len(known))} ({_text(min(known))} to {_text(max(known))})"
+
+
+def _text(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}"  # 1510, not 1.51e+03

@@ -57,10 +57,10 @@ def test_a_regression_finds_a_play_under_a_load():
 def test_a_run_replaces_its_own_lines_of_the_page():
     page = f"before\n{BEGIN}\n{END}\nafter\n"
     split = Split("a/b", (), (), {"published": {"f_in_N": "0.5"}})
-    errors = {"nominal": [1.0, 2.0], "extended": [0.5] * 5, "repeatability": [None, 0.25]}
+    errors = {"nominal": [1.0, 2345.6], "extended": [0.5] * 5, "repeatability": [None, 0.25]}
     lines = lines_of(split, Learned("named", "It lacks play.", {"f_in_N": errors}))
     assert lines == [
-        "| a/b | f_in_N | 1 / 2 | 0.5 (0.5 to 0.5) |  | 0.5 | 0.25 |",
+        "| a/b | f_in_N | 1 / 2350 | 0.5 (0.5 to 0.5) |  | 0.5 | 0.25 |",
         "- a/b: `named`. It lacks play.",
     ]
     order = ["a", "a/b", "c"]
