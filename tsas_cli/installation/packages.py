@@ -13,6 +13,7 @@ PROJECT = "tsas"
 MODULES = {"rerun-sdk": "rerun"}  # modules that are named differently
 PURPOSES = {
     "mat": "MATLAB v7.3 files",
+    "hdf5": "HDF5 files",
     "mdf": "MDF4 files",
     "challenge": "the sparse-regression baseline of tsas challenge",
     "dask": "tsas sweep --cluster",

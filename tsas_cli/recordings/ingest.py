@@ -12,7 +12,7 @@ from tsas_cli.recordings.conditions import run_conditions
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
-from tsas_cli.recordings.readers import SUFFIXES, batches
+from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
 from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
@@ -117,7 +117,7 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     return sorted(
         path
         for path in folder.rglob("*")
-        if path.suffix.lower() in SUFFIXES
+        if is_known(path)
         and fnmatch(path.name, pattern)
         and not path.name.startswith(".")
         and path.is_file()

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.guards.damaged import EncryptedError
-from tsas_cli.recordings.readers import names, read, tables
+from tsas_cli.recordings.readers import names, read, tables, text_of
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
-_TEXT = (".csv", ".tsv", ".txt", ".dat", ".asc")
 _PREAMBLE = 60  # lines above a table that are tried
 
 
@@ -45,8 +44,11 @@ def open_file(path: Path) -> Opened:
     InputError
         The format is unknown, or the file is damaged or does not hold exactly one table.
     """
-    required = dict(_encoding(path)) | dict(_table(path))
-    required |= _preamble(path, required)
+    required = dict(_table(path))
+    text = text_of(path, _options(required))
+    if text is not None:
+        required |= dict(_encoding(text))
+        required |= _preamble(path, required)
     options = _options(required)
     listed = names(path, options)
     sources = {_source(listed, i): name for i, name in enumerate(listed)}
@@ -76,8 +78,6 @@ def _source(listed: tuple[str, ...], i: int) -> ColumnSource:
 
 
 def _encoding(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
-    if path.suffix.lower() not in _TEXT or not path.is_file():
-        return
     with path.open("rb") as stream:
         head = stream.read(1 << 16)
     if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
@@ -110,7 +110,7 @@ def _table(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
 
 def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
     """Return the lines to skip above a text table, if it cannot be read with them."""
-    if path.suffix.lower() not in _TEXT or _columns_in(path, required) > 1:
+    if _columns_in(path, required) > 1:
         return {}
     for skip in range(1, _PREAMBLE):
         key = {"skip_lines": (skip, f"the table begins with line {skip + 1}")}

@@ -15,7 +15,7 @@ from tsas_cli.recordings.guess.looks import correlation
 from tsas_cli.recordings.guess.opening import Opened, open_file
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
-from tsas_cli.recordings.readers import names
+from tsas_cli.recordings.readers import names, stem
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -143,7 +143,8 @@ def _name(path: Path) -> str:
 
 
 def _id(paths: Sequence[Path]) -> dict[str, tuple[Any, str]]:
-    duplicates = [stem for stem, count in Counter(path.stem for path in paths).items() if count > 1]
+    counted = Counter(stem(path) for path in paths)
+    duplicates = [name for name, count in counted.items() if count > 1]
     why = f"two files have the name {duplicates[0]}" if duplicates else ""
     return {"id": ("{folder}_{stem}", why)} if duplicates else {}
 
