@@ -160,3 +160,29 @@ def test_what_is_written_is_read_back_to_the_last_bit(tmp_path_factory, rows, ma
     path.write_text("\n".join([delimiter.join(["t", "f"])] * names + lines) + "\n")
     table = read(path, ReadOptions(), [1, 2])
     assert [*zip(table.columns[1], table.columns[2], strict=True)] == rows
+
+
+@pytest.mark.parametrize(
+    ("cells", "seconds"),
+    [
+        (["2026-03-03T10:00:00", "2026-03-03T10:00:00.25", "2026-03-03T10:00:01"], [0, 0.25, 1]),
+        (
+            ["2026-03-03 10:00:00,5", "2026-03-03 10:00:01", "2026-03-04 10:00:00,5"],
+            [0, 0.5, 86400],
+        ),
+        (["2026-03-29T01:59:59+01:00", "2026-03-29T03:00:00+02:00", "NaN"], [0, 1, np.nan]),
+        (["2026/03/03 10:00:00 UTC", "", "2026/03/03 10:00:02 UTC"], [0, np.nan, 2]),
+        (["10:00:00", "10:00:00.125", "10:00:01"], [36000, 36000.125, 36001]),
+        (["23:59:59.5", "00:00:00", "0:00:01"], [86399.5, 86400, 86401]),
+    ],
+)
+def test_dates_and_times_of_day_become_seconds(ask, cells, seconds):
+    rows = "\n".join(f"{cell};{i}" for i, cell in enumerate(cells))
+    _, table = ask(f"when;f\n{rows}\n", "when", "f")
+    np.testing.assert_allclose(table.columns["when"], seconds, rtol=0, atol=1e-9)
+    assert (table.units, table.typed) == ({"when": "s"}, {"when"})
+
+
+def test_a_cell_that_is_no_time_is_named(ask):
+    with pytest.raises(InputError, match="row 3: column when holds 'soon'"):
+        ask("when;f\n10:00:00;1\nsoon;2\n", "when")

@@ -63,7 +63,10 @@ class MapProposal:
             for key, sentence in channel.questions.items()
         }
         return questions | {
-            f"run.{k}": why for k, (value, why) in self.run.items() if value == QUESTION
+            f"{table}.{key}": why
+            for table, keys in (("read", self.read), ("run", self.run))
+            for key, (value, why) in keys.items()
+            if value == QUESTION
         }
 
     @property
@@ -98,7 +101,9 @@ def propose(files: Sequence[Path]) -> MapProposal:
         opened,
         tuple(matching),
         different,
-        opened.read | _pattern([opened.path, *matching], different),
+        opened.read
+        | {key: (QUESTION, question) for key, question in opened.asked.items()}
+        | _pattern([opened.path, *matching], different),
         found,
         _not_taken(columns, found),
         _load(columns, found) | _id([opened.path, *matching]),

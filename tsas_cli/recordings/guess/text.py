@@ -93,7 +93,7 @@ def _rig() -> Table:
 def _read(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     for key, (value, why) in proposal.read.items():
-        _add(table, key, value, why)
+        _add(table, key, value, _asked(why) if value == QUESTION else why)
     if proposal.not_taken:
         _comment(table, "These columns have no channel; extra would keep them unchanged:")
         for source, reason in proposal.not_taken.items():

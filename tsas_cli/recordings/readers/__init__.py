@@ -33,6 +33,7 @@ _READERS = {
     ".npz": "numpy_file",
     ".h5": "hdf5",
     ".hdf5": "hdf5",
+    ".tdms": "tdms",
 }
 _ISOLATED = {  # their libraries crash on damaged files
     "matlab": "a MATLAB file",
@@ -40,8 +41,9 @@ _ISOLATED = {  # their libraries crash on damaged files
     "feather": "Feather",
     "numpy_file": "a NumPy file",
     "hdf5": "HDF5",
+    "tdms": "TDMS",
 }
-_OFFERED = ("json_table", "feather", "numpy_file", "hdf5")  # with a function `offered`
+_OFFERED = ("json_table", "feather", "numpy_file", "hdf5", "tdms")  # with a function `offered`
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = (*_READERS, *converted.SUFFIXES)
@@ -86,8 +88,10 @@ def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the valid values of `table` in a map: the nested tables of a JSON or MATLAB file."""
-    with _checked(path, ReadOptions()) as (module, file):
+    """Return the valid values of `table` in a map: sheets, or tables in a JSON or MATLAB file."""
+    with _checked(path, ReadOptions(), but=converted.SHEETS) as (module, file):
+        if module == "spreadsheet":
+            return converted.tables(file)
         return list(_call(module, "tables", file)) if module in _WITH_TABLES else []
 
 
@@ -123,20 +127,23 @@ def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
 
 
 @contextmanager
-def _checked(path: Path, options: ReadOptions) -> Iterator[tuple[str, Path]]:
+def _checked(
+    path: Path, options: ReadOptions, *, but: Sequence[str] = ()
+) -> Iterator[tuple[str, Path]]:
     """Yield the name of the reader's module, and the file for it, which may be a converted one.
 
-    Errors of the system become `InputError`; all name `path`.
+    Files of a suffix among `but` are not converted. Errors of the system become `InputError`; all
+    name `path`.
     """
     file = path
     try:
-        while _suffix(file) not in _READERS:
+        while _suffix(file) not in (*_READERS, *but):
             if not is_known(file) and _suffix(file) != ".zip":
                 raise _unknown(file)
             _check(file)
             file = converted.converted(file, options, frozenset(_READERS))
         _check(file)
-        yield _READERS[_suffix(file)], file
+        yield _READERS.get(_suffix(file), "spreadsheet"), file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))

@@ -12,15 +12,24 @@ from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.files import state_of
 
+SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _PACKED = (".gz", ".bz2", ".xz", ".zip")
 _CONVERTERS = dict.fromkeys(_PACKED, "packed") | {
     ".jsonl": "json_lines",
     ".ndjson": "json_lines",
+    ".lvm": "labview",
+    **dict.fromkeys(SHEETS, "spreadsheet"),
 }
-_ISOLATED: dict[str, str] = {}
+_ISOLATED = {"spreadsheet": "a spreadsheet"}
 SUFFIXES = tuple(_CONVERTERS)
 _KEPT = 3  # a file is asked for names and tables first, and may be converted twice
 _made: dict[Any, Path] = {}
+
+
+def tables(path: Path) -> list[str]:
+    """Return the sheets of numbers in a spreadsheet, the longest first."""
+    name = f"{__package__}.spreadsheet"
+    return list(in_another_process(name, "tables", path, kind=_ISOLATED["spreadsheet"]))
 
 
 def is_packed(path: Path) -> bool:
@@ -38,7 +47,7 @@ def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     OSError
         A file cannot be read or written.
     """
-    key = (path.absolute(), state_of(path), options.table)
+    key = (path.absolute(), state_of(path), options.table, options.encoding)
     if key not in _made:
         while len(_made) >= _KEPT:
             rmtree(_made.pop(next(iter(_made))).parent, ignore_errors=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from tsas_cli.recordings.readers.stamps import is_stamp
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
@@ -21,7 +22,10 @@ _BELOW_THOUSAND = re.compile(r"[+-]?\d{1,3}")
 
 @dataclass(frozen=True)
 class Layout:
-    """The first line of numbers (from 1), the format, and the lines above it."""
+    """The first line of numbers (from 1), the format, and the lines above it.
+
+    `stamps` holds the indices of the columns of dates or times of day.
+    """
 
     delimiter: str
     decimal: str
@@ -29,6 +33,7 @@ class Layout:
     units: tuple[str, ...]
     header: tuple[str, ...]
     first_line: int
+    stamps: frozenset[int] = frozenset()
 
 
 def detect(path: Path, options: ReadOptions) -> Layout:
@@ -64,7 +69,11 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     names = _fitted(names, rows[0], path, first_line)
     units = [cell.strip("[]()") for cell in units] or [_unit_in(name) for name in names]
     units += [""] * (len(names) - len(units))
-    return Layout(delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line)
+    stamps = frozenset(i for i, cell in enumerate(rows[0]) if is_stamp(cell))
+    units = ["s" if i in stamps else unit for i, unit in enumerate(units)]
+    return Layout(
+        delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line, stamps
+    )
 
 
 def fields(text: str, delimiter: str) -> list[str]:

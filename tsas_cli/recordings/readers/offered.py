@@ -1,6 +1,6 @@
 """What most readers give: the columns that a file offers, each loaded when it is requested."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -101,11 +101,27 @@ def read(
                 times[source] = column.times()
         clocks = [source for source, i in at.items() if i == len(offered.columns)]
         if times or clocks:
-            series = {source: (times[source], columns[source]) for source in columns}
+            series = {s: (_clock_of(s, times, columns, path), columns[s]) for s in columns}
             columns = on_one_clock(series, path, clock_sources=clocks, resample=options.resample)
         units = {s: column.unit for s, column in found.items() if column.unit}
         units |= dict.fromkeys([*typed, *clocks], "s")
         return ColumnTable(columns, units, offered.header, typed=frozenset(typed))
+
+
+def _clock_of(
+    source: ColumnSource,
+    times: Mapping[ColumnSource, Floats],
+    columns: Mapping[ColumnSource, Floats],
+    path: Path,
+) -> Floats:
+    """Return the clock of a column, or one of as many samples for a column without one."""
+    found = [times[source]] if source in times else list(times.values())
+    fitting = [clock for clock in found if clock.size == columns[source].size]
+    if not fitting:
+        raise InputError(
+            f"{source} has {columns[source].size} samples and no clock of that length", where=path
+        )
+    return fitting[0]
 
 
 def _numbers(values: Any, source: ColumnSource, path: Path) -> tuple[Floats, bool]:
