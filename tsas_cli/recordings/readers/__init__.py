@@ -34,6 +34,9 @@ _READERS = {
     ".h5": "hdf5",
     ".hdf5": "hdf5",
     ".tdms": "tdms",
+    ".mcap": "mcap_file",
+    ".bag": "ros1_bag",
+    ".db3": "ros2_bag",
 }
 _ISOLATED = {  # their libraries crash on damaged files
     "matlab": "a MATLAB file",
@@ -42,8 +45,11 @@ _ISOLATED = {  # their libraries crash on damaged files
     "numpy_file": "a NumPy file",
     "hdf5": "HDF5",
     "tdms": "TDMS",
+    "mcap_file": "MCAP",
+    "ros1_bag": "a bag of ROS 1",
+    "ros2_bag": "a bag of ROS 2",
 }
-_OFFERED = ("json_table", "feather", "numpy_file", "hdf5", "tdms")  # with a function `offered`
+_WITHOUT_OFFERED = ("delimited", "parquet", "matlab", "mdf")  # they have `read` and `names`
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = (*_READERS, *converted.SUFFIXES)
@@ -119,7 +125,7 @@ def _suffix(path: Path) -> str:
 def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
     name, kind = f"{__name__}.{module}", _ISOLATED.get(module)
-    if module in _OFFERED and function != "tables":
+    if module not in _WITHOUT_OFFERED and function != "tables":
         name, rest = offered.__name__, (name, kind or "JSON", *rest)
     if kind is not None:
         return in_another_process(name, function, path, *rest, kind=kind)
