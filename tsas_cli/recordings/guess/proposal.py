@@ -9,7 +9,7 @@ from typing import Any
 
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
-from tsas_cli.recordings.guess.clock import clock, like_a_clock
+from tsas_cli.recordings.guess.clock import clock, like_a_clock, repeats
 from tsas_cli.recordings.guess.columns import FileColumn, columns_of, with_trusted_names
 from tsas_cli.recordings.guess.looks import correlation
 from tsas_cli.recordings.guess.opening import Opened, open_file
@@ -103,6 +103,7 @@ def propose(files: Sequence[Path]) -> MapProposal:
         different,
         opened.read
         | {key: (QUESTION, question) for key, question in opened.asked.items()}
+        | _repeated(columns, time)
         | _pattern([opened.path, *matching], different),
         found,
         _not_taken(columns, found),
@@ -133,6 +134,17 @@ def _difference(path: Path, opened: Opened) -> str:
         if found == names(opened.path, options)
         else "its columns have other names, or another order"
     )
+
+
+def _repeated(columns: Sequence[FileColumn], time: Proposed) -> dict[str, tuple[Any, str]]:
+    """Return the question for the rows that repeat a time."""
+    clocks = [column for column in columns if column.source == time.entry.get("source")]
+    repeated = repeats(clocks[0].values) if clocks else 0
+    if not repeated:
+        return {}
+    rows = clocks[0].values.size
+    why = f'{repeated} of {rows} rows repeat the time before: is it "first", "last" or "mean" '
+    return {"repeated_times": (QUESTION, f"{why}of each channel that stays?")}
 
 
 def _pattern(good: Sequence[Path], different: dict[Path, str]) -> dict[str, tuple[Any, str]]:
