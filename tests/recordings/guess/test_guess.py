@@ -482,3 +482,16 @@ def test_a_column_that_looks_like_a_missing_channel_is_asked_about(tmp_path):
     assert '"handle_in", "motor_deg"? An angle needs' in asked["columns.x_in_mm.source"]
     assert '"handle_in"' in asked["columns.x_out_mm.source"]
     assert "No question is open" not in map_text(proposal)
+
+
+def test_thousands_are_asked_about_and_no_column_is_left_out(tmp_path):
+    columns = [(n, run()[n] * (1000 if n == "f_in_N" else 1)) for n in CHANNELS]
+    path = write_csv(tmp_path / "a.csv", columns, delimiter=";")
+    name, *rows = path.read_text().splitlines()
+    cells = [row.split(";") for row in rows]
+    rows = [";".join([*c[:3], f"{float(c[3]):,.2f}", *c[4:]]) for c in cells]
+    path.write_text("\n".join([name, *rows]))
+    proposal = propose([path])
+    assert "are thousands separated in it?" in proposal.questions["read.decimal"]
+    assert "f_in_N" in {c.name for c in proposal.channels}
+    assert not proposal.looked_at.left_out

@@ -186,3 +186,25 @@ def test_dates_and_times_of_day_become_seconds(ask, cells, seconds):
 def test_a_cell_that_is_no_time_is_named(ask):
     with pytest.raises(InputError, match="row 3: column when holds 'soon'"):
         ask("when;f\n10:00:00;1\nsoon;2\n", "when")
+
+
+@pytest.mark.parametrize(
+    ("cells", "decimal", "values"),
+    [
+        (["1,234.5", "-12,345,678"], ".", [1234.5, -12345678]),
+        (["1.234,5", "7,25"], ",", [1234.5, 7.25]),
+        (["1'234.5", "1 234"], ".", [1234.5, 1234]),
+        (["1\u202f234,5", "0,5"], ",", [1234.5, 0.5]),
+    ],
+)
+def test_thousands_are_read_once_the_decimal_mark_is_said(ask, cells, decimal, values):
+    text = "t;f\n" + "".join(f"{i};{cell}\n" for i, cell in enumerate(cells))
+    with pytest.raises(InputError, match=r"are thousands separated in it.*set decimal"):
+        ask(text, "f")
+    assert ask(text, "f", decimal=decimal)[0]["f"] == values
+
+
+@pytest.mark.parametrize("cell", ["1,23", "0,125", "1,234,5", "12 345 6", "1,234 567"])
+def test_other_groups_are_no_thousands(ask, cell):
+    with pytest.raises(InputError, match="column f holds"):
+        ask(f"t;f\n0;1.5\n1;{cell}\n", "f", decimal=".")

@@ -7,6 +7,7 @@ from typing import Any
 
 from tsas_cli.recordings.guards.damaged import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables, text_of
+from tsas_cli.recordings.readers.layout import DoubtfulMarkError
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -49,6 +50,17 @@ def open_file(path: Path) -> Opened:
         The format is unknown, or the file is damaged or does not hold exactly one table.
     """
     required, asked = _table(path)
+    try:
+        return _opened(path, dict(required), asked)
+    except DoubtfulMarkError as error:
+        decimal = {"decimal": (error.decimal, "")}
+        question = (
+            f'{error.what} "." or "," is the decimal mark; the other one separates thousands.'
+        )
+        return _opened(path, required | decimal, asked | {"decimal": question})
+
+
+def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, str]) -> Opened:
     text = text_of(path, _options(required))
     if text is not None:
         required |= dict(_encoding(text))
@@ -129,6 +141,8 @@ def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
     """
     try:
         found = names(path, _options(required))
+    except DoubtfulMarkError:
+        raise
     except InputError:
         return -1.0
     return sum(map(bool, found)) / len(found) if len(found) > 1 else -1.0
@@ -137,6 +151,8 @@ def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
 def _reads(path: Path, options: ReadOptions) -> bool:
     try:
         read(path, options, list(range(1, len(names(path, options)) + 1)))
+    except DoubtfulMarkError:
+        raise
     except InputError:
         return False
     return True
@@ -151,12 +167,16 @@ def _all_or_each(
     """
     try:
         return read(path, options, sources), {}
+    except DoubtfulMarkError:
+        raise
     except InputError:
         tables: dict[ColumnSource, ColumnTable] = {}
         left_out: dict[str, str] = {}
         for source in sources:
             try:
                 tables[source] = read(path, options, [source])
+            except DoubtfulMarkError:
+                raise
             except EncryptedError as error:
                 raise InputError(
                     f"column {source} is encrypted",

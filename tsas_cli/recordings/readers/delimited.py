@@ -10,7 +10,15 @@ import pyarrow as pa
 from pyarrow import csv
 
 from tsas_cli.recordings.arrow_columns import floats_from
-from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fields, number
+from tsas_cli.recordings.readers.layout import (
+    DoubtfulMarkError,
+    Layout,
+    comment_text,
+    detect,
+    fields,
+    grouped,
+    number,
+)
 from tsas_cli.recordings.readers.stamps import Seconds, is_stamp
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
@@ -116,7 +124,12 @@ def _line_by_line(
                     where=f"{path}, row {row}",
                     expected=f"{len(layout.names)}, as in the rows above",
                 )
-            yield [_cell(cells[i], i, source, layout, path, row) for source, i in at.items()]
+            yield [
+                _cell(cells[i], source, options, layout, path, row)
+                if i not in layout.stamps
+                else cells[i]
+                for source, i in at.items()
+            ]
 
 
 def _stamps(column: Any, convert: Seconds, source: ColumnSource, path: Path, first: int) -> Floats:
@@ -142,14 +155,17 @@ def _is_blank(line: str, layout: Layout) -> bool:
 
 
 def _cell(
-    text: str, index: int, source: ColumnSource, layout: Layout, path: Path, row: int
-) -> float | str:
-    """Return a cell of column number `index` (from 0): a number, or the text of a stamp."""
-    if index in layout.stamps:
-        return text
+    text: str, source: ColumnSource, options: ReadOptions, layout: Layout, path: Path, row: int
+) -> float:
     if text in _NULLS:
         return float("nan")
     try:
         return number(text, layout.decimal)
     except ValueError:
-        raise not_a_number(text, source, path, row) from None
+        value = grouped(text, layout.decimal)
+    if value is None:
+        raise not_a_number(text, source, path, row)
+    if options.decimal is None:
+        question = f"column {source} holds {text!r}: are thousands separated in it?"
+        raise DoubtfulMarkError(question, path, layout.decimal, row)
+    return value

@@ -17,7 +17,25 @@ _LONG = 4 * limits.LINE  # characters of them, if lines are long
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # or three decimals
+_GROUPED = {  # numbers with separators between thousands, by their decimal mark
+    ".": re.compile(r"[+-]?[1-9]\d{0,2}(?:([,' \u00a0\u202f])\d{3})(?:\1\d{3})*(\.\d*)?"),
+    ",": re.compile(r"[+-]?[1-9]\d{0,2}(?:([.' \u00a0\u202f])\d{3})(?:\1\d{3})*(,\d*)?"),
+}
 _BELOW_THOUSAND = re.compile(r"[+-]?\d{1,3}")
+
+
+class DoubtfulMarkError(InputError):
+    """A mark in a number is the decimal one or separates thousands; `decimal` is one answer."""
+
+    def __init__(self, question: str, path: Path, decimal: str, row: int | None = None) -> None:
+        where = path if row is None else f"{path}, row {row}"
+        super().__init__(question, where=where, remedy=_ANSWER)
+        self.decimal = decimal
+
+
+_ANSWER = (
+    'set decimal = "," or "." under [read] of the map: the other mark then separates thousands'
+)
 
 
 @dataclass(frozen=True)
@@ -102,6 +120,12 @@ def number(text: str, decimal: str) -> float:
     return float(plain)
 
 
+def grouped(text: str, decimal: str) -> float | None:
+    """Return a cell with separators between thousands as a number; None for another one."""
+    found = _GROUPED[decimal].fullmatch(text)
+    return number(text.replace(found[1], ""), decimal) if found else None
+
+
 def may_be_thousands(text: str) -> bool:
     """Return whether the comma of a number may be a thousands separator or a decimal mark."""
     return _THOUSANDS.fullmatch(text) is not None
@@ -169,11 +193,11 @@ def _decimal(
             elif _BELOW_THOUSAND.fullmatch(cell):
                 without[i] = cell
     for i in with_comma.keys() & without.keys():
-        raise InputError(
+        raise DoubtfulMarkError(
             f"column {i + 1} holds {without[i]} and {with_comma[i]}: "
             "is the comma a decimal mark or a thousands separator?",
-            where=path,
-            remedy='set decimal = "," under [read] of the map, or remove the commas from the file',
+            path,
+            ",",
         )
     return ","
 
@@ -183,7 +207,8 @@ def _has_number(row: Sequence[str], decimal: str) -> bool:
         try:
             number(cell, decimal)
         except ValueError:
-            continue
+            if grouped(cell, decimal) is None:
+                continue
         return True
     return False
 
