@@ -8,6 +8,7 @@ import pytest
 from tests.recordings.readers.bags import FORCES, JOINTS, save_mcap, save_ros1, save_ros2
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers.messages import Topic, columns_of
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -63,7 +64,7 @@ def test_a_bag_without_definitions_is_read_by_those_of_ros(tmp_path):
     assert names(path, ReadOptions()) == (BOTH[0], "time")
     with sqlite3.connect(path) as file:
         file.execute("DELETE FROM topics WHERE type LIKE 'sensor%'")
-    with pytest.raises(InputError, match=r"/force \(own/msg/Force\).*storage_id mcap"):
+    with pytest.raises(InputError, match=r"/force \(own/msg/Force\).*storage_id: mcap"):
         names(path, ReadOptions())
 
 
@@ -80,3 +81,19 @@ def test_damage_is_one_line(tmp_path, name):
     (tmp_path / name).write_bytes(b"nothing that a reader knows")
     with pytest.raises(InputError, match="cannot be read as"):
         names(tmp_path / name, ReadOptions())
+
+
+@pytest.mark.parametrize(
+    ("kind", "field", "unit"),
+    [
+        ("geometry_msgs/msg/WrenchStamped", "wrench.force.x", "N"),
+        ("geometry_msgs/msg/Wrench", "torque.z", "N m"),
+        ("geometry_msgs/msg/Pose", "position.x", ""),
+        ("own/msg/Wrench", "force.x", ""),
+    ],
+)
+def test_forces_and_torques_of_ros_have_units(kind, field, unit):
+    first, second = field.split(".", 1)
+    message = {first: {second: 1.0}}
+    topic = Topic("/t", kind, lambda: iter([(0, message)]))
+    assert [(c.name, c.unit) for c in columns_of([topic])] == [(f"/t.{field}", unit)]

@@ -29,11 +29,11 @@ class DoubtfulMarkError(InputError):
 
     def __init__(self, question: str, path: Path, decimal: str, row: int | None = None) -> None:
         where = path if row is None else f"{path}, row {row}"
-        super().__init__(question, where=where, remedy=_ANSWER)
+        super().__init__(question, where=where, remedy=_REMEDY)
         self.decimal = decimal
 
 
-_ANSWER = (
+_REMEDY = (
     'set decimal = "," or "." under [read] of the map: the other mark then separates thousands'
 )
 

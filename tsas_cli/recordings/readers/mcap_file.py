@@ -35,7 +35,9 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
             except UnknownTypeError as error:
                 unknown.append(f"{channel.topic} ({error})")
             else:
-                topics.append(Topic(channel.topic, partial(_messages, file, channel, decode)))
+                kind = summary.schemas[channel.schema_id].name if channel.schema_id else ""
+                messages = partial(_messages, file, channel, decode)
+                topics.append(Topic(channel.topic, kind, messages))
         if not topics:
             raise InputError(
                 "holds no messages that can be decoded" + "".join(f": {u}" for u in unknown[:3]),
@@ -58,4 +60,4 @@ def _decode(channel: Any, schema: Any) -> Decode:
 def _messages(file: Any, channel: Any, decode: Decode) -> Iterator[Message]:
     for _, found, message in file.iter_messages(topics=[channel.topic]):
         if found.id == channel.id:
-            yield message.log_time, decode(message.data)
+            yield message.publish_time, decode(message.data)

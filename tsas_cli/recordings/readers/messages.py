@@ -11,8 +11,9 @@ from tsas_cli.recordings.readers.offered import Column
 from tsas_cli.recordings.readers.records import flat
 from tsas_cli.support.arrays import Floats
 
+_UNITS = {"force": "N", "torque": "N m"}
 _STAMP = "header.stamp."
-Message = tuple[int, Mapping[str, Any]]  # when it was logged [ns], and its fields
+Message = tuple[int, Mapping[str, Any]]  # when it was published or logged [ns], and its fields
 
 
 @dataclass(frozen=True)
@@ -23,11 +24,14 @@ class Topic:
     ----------
     name
         As in the file, `/joint_states`.
+    kind
+        Their type, `geometry_msgs/msg/WrenchStamped`; those of ROS have SI units.
     messages
         Yields its messages in order, each time from the first.
     """
 
     name: str
+    kind: str
     messages: Callable[[], Iterator[Message]]
 
     @cached_property
@@ -37,7 +41,7 @@ class Topic:
 
     @cached_property
     def all(self) -> tuple[list[int], list[dict[str, Any]]]:
-        """When the messages were sent, or logged [ns], and their fields by their paths."""
+        """When the messages were sent [ns], and their fields by their paths."""
         logged, fields = [], []
         for time_ns, message in self.messages():
             logged.append(time_ns)
@@ -49,8 +53,8 @@ class Topic:
 def columns_of(topics: Sequence[Topic]) -> list[Column]:
     """Return the columns of numbers, `/topic.field.field`.
 
-    The clock of a topic is the stamp in the header of its messages, else when they were logged;
-    it counts from the first message of the file.
+    The clock of a topic is the stamp in the header of its messages, else when they were published
+    or logged; it counts from the first message of the file.
     """
     used = [topic for topic in topics if topic.first]
     zero_ns = min((next(topic.messages())[0] for topic in used), default=0)
@@ -58,12 +62,20 @@ def columns_of(topics: Sequence[Topic]) -> list[Column]:
         Column(
             f"{topic.name}.{field}",
             partial(_values, topic, field),
+            _unit(topic, field),
             times=partial(_times, topic, zero_ns),
         )
         for topic in used
         for field, value in topic.first.items()
         if isinstance(value, int | float | np.number) and not field.startswith("header.")
     ]
+
+
+def _unit(topic: Topic, field: str) -> str:
+    """Return the unit of a force or a torque in a message of ROS; a joint may turn or slide."""
+    if not topic.kind.startswith("geometry_msgs/"):
+        return ""
+    return next((unit for of, unit in _UNITS.items() if f".{of}." in f".{field}"), "")
 
 
 def _sent_ns(fields: Mapping[str, Any]) -> int:

@@ -18,13 +18,10 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     del options
     rosbag = optional("rosbags.rosbag1", extra="robots")
     with rosbag.Reader(path) as bag:
-        topics = [
-            Topic(
-                one.topic,
-                partial(_messages, bag, one, decoder(one.msgtype, one.msgdef.data, ros1=True)),
-            )
-            for one in bag.connections
-        ]
+        topics = []
+        for one in bag.connections:
+            decode = decoder(one.msgtype, one.msgdef.data, ros1=True)
+            topics.append(Topic(one.topic, one.msgtype, partial(_messages, bag, one, decode)))
         yield Offered(columns_of(topics))
 
 

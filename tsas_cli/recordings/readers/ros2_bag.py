@@ -44,7 +44,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
             except UnknownTypeError as error:
                 unknown.append(f"{name} ({error})")
             else:
-                topics.append(Topic(name, partial(_messages, file, number, decode)))
+                topics.append(Topic(name, kind, partial(_messages, file, number, decode)))
         if not topics:
             raise InputError(
                 "holds no messages that can be decoded" + "".join(f": {u}" for u in unknown[:3]),
