@@ -59,6 +59,11 @@ def _head(proposal: MapProposal) -> Iterable[str]:
         yield from _wrapped(proposal.doubt)
     for path, reason in proposal.different.items():
         yield from _wrapped(f"{path.name} does not match: {reason}.")
+    if proposal.different:
+        yield from _wrapped(
+            "A file of another device that belongs to the same run is joined by a list (.join, "
+            "docs/ingest.md)."
+        )
     asked = len(proposal.questions)
     if asked:
         yield from _wrapped(
@@ -222,5 +227,8 @@ def tables(proposal: MapProposal, out: object) -> Iterator[tuple[str, tuple[str,
         for channel in proposal.channels
     ]
     yield f"map {out}", ("channel", "source", "certainty"), rows
+    if proposal.different:
+        others = [(path.name, reason) for path, reason in proposal.different.items()]
+        yield "files that do not match", ("file", "reason"), others
     if proposal.questions:
         yield "open questions", ("key", "question"), list(proposal.questions.items())

@@ -37,6 +37,7 @@ _READERS = {
     ".mcap": "mcap_file",
     ".bag": "ros1_bag",
     ".db3": "ros2_bag",
+    ".join": "joined",
 }
 _ISOLATED = {  # their libraries crash on damaged files
     "matlab": "a MATLAB file",
@@ -126,7 +127,7 @@ def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
     name, kind = f"{__name__}.{module}", _ISOLATED.get(module)
     if module not in _WITHOUT_OFFERED and function != "tables":
-        name, rest = offered.__name__, (name, kind or "JSON", *rest)
+        name, rest = offered.__name__, (name, kind or "a table", *rest)
     if kind is not None:
         return in_another_process(name, function, path, *rest, kind=kind)
     return getattr(import_module(name), function)(path, *rest)
