@@ -29,7 +29,5 @@ def seeds() -> Iterable[bytes]:
     """Two files, with an offset and options for reading."""
     first = b'[a]\nfile = "a.csv"\ntime = "t"\nunit = "s"\n'
     yield first
-    yield (
-        first
-        + b'[b]\nfile = "b.csv"\ntime = 1\nunit = "ms"\noffset_s = -0.1\nread.skip_lines = 0\n'
-    )
+    second = b'[b]\nfile = "b.csv"\ntime = 1\nunit = "ms"\noffset_s = -0.1\n'
+    yield first + second + b"read.skip_lines = 0\n"

@@ -217,6 +217,6 @@ def optional(module: str, *, extra: str) -> ModuleType:
         return import_module(module)
     except ImportError as error:
         raise InputError(
-            f"this file format needs the package {module.split('.')[0]}",
+            f"this file format needs the package {module.partition('.')[0]}",
             remedy=f"python -m pip install 'tsas[{extra}]'",
         ) from error
