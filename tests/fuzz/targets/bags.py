@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers.bags import save_mcap, save_ros1, save_ros2
+from tsas_cli.recordings.readers import mcap_file, ros1_bag, ros2_bag  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 FORMATS = (("mcap_file", ".mcap"), ("ros1_bag", ".bag"), ("ros2_bag", ".db3"))

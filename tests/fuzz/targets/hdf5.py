@@ -9,6 +9,7 @@ import numpy as np
 
 from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch
+from tsas_cli.recordings.readers import hdf5 as _reader  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 16000

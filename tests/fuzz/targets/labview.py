@@ -8,7 +8,7 @@ from nptdms import ChannelObject, TdmsWriter
 
 from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch, answer
-from tsas_cli.recordings.readers import labview, names, read  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import labview, names, read, tdms  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 0.3

@@ -7,6 +7,7 @@ import numpy as np
 
 from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch
+from tsas_cli.recordings.readers import numpy_file as _reader  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 6000

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 
 from tests.fuzz.rules import Scratch, answer
 from tests.recordings.readers.workbooks import DATE, save_xlsx
-from tsas_cli.recordings.readers import names, read, tables
+from tsas_cli.recordings.readers import names, read, spreadsheet, tables  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 SUFFIXES = (".xlsx", ".xls", ".xlsb", ".ods")

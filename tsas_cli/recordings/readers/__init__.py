@@ -50,7 +50,7 @@ _ISOLATED = {  # their libraries crash on damaged files
     "ros1_bag": "a bag of ROS 1",
     "ros2_bag": "a bag of ROS 2",
 }
-_WITHOUT_OFFERED = ("delimited", "parquet", "matlab", "mdf")  # they have `read` and `names`
+_WITHOUT_OFFERED = ("delimited", "parquet", "mdf")  # they have `read` and `names`
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = (*_READERS, *converted.SUFFIXES)
