@@ -17,7 +17,7 @@ PERMISSIVE = frozenset({
     "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause",
     "CC0-1.0", "ISC", "MIT", "MIT-0", "MIT-CMU", "PSF-2.0", "Zlib",
 })  # fmt: skip
-WEAK = frozenset({"LGPL-2.1-only", "LGPL-3.0-or-later", "MPL-2.0"})
+WEAK = frozenset({"LGPL-2.1-only", "LGPL-3.0-only", "LGPL-3.0-or-later", "MPL-2.0"})
 ALLOWED = {RUN: PERMISSIVE, EXTRA: PERMISSIVE | WEAK, DEVELOPMENT: PERMISSIVE | WEAK}
 # What older packages write in place of an SPDX expression; "BSD" alone is the one of three clauses.
 SPELLINGS = {
@@ -36,6 +36,7 @@ SPELLINGS = {
 }
 # Those whose metadata say nothing or too little, by the text that comes with them.
 READ = {
+    "apsw": "Zlib",
     "atheris": "Apache-2.0",
     "axe-playwright-python": "MIT",
     "canmatrix": "BSD-2-Clause",

@@ -39,7 +39,8 @@ def test_here_all_is_there_that_tsas_needs(tsas):
     found = {p["name"]: p for p in summary["packages"]}
     assert {"Python", "numpy", "rerun-sdk", "packaging"} <= found.keys()
     assert {p["problem"] for p in summary["packages"]} == {""}
-    extras = {"mat", "mdf", "challenge", "dask", "catalogue", "s3", "gs", "bench", "all"}
+    formats = {"mat", "hdf5", "mdf", "excel", "tdms", "robots"}
+    extras = formats | {"challenge", "dask", "catalogue", "s3", "gs", "bench", "all"}
     assert {e["name"] for e in summary["extras"]} == extras
     names = ["compiled code", "threads", "viewer", "drawing", "screen", "Chromium"]
     assert [a["name"] for a in summary["machine"]] == names

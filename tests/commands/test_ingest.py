@@ -121,7 +121,7 @@ def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, ingest):
         ("b.csv", b"", "is empty"),
         ("b.mat", b"", "is empty"),
         ("b.parquet", b"PAR1", "cannot be read as Parquet"),
-        ("b.xlsx", b"PK", "unknown file format .xlsx"),
+        ("b.docx", b"PK", "unknown file format .docx"),
         ("b\x1b[31m.csv", CSV.encode(), "usable as a file name"),
         ("none.csv", None, "does not exist"),
         ("empty", "folder", "holds no file"),

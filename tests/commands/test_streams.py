@@ -34,6 +34,7 @@ import time
 from tsas_cli.commands.progress import progress
 with progress("fit", quiet={quiet}) as step:
     step.ahead(2)
+    step.say("f_in is not recorded")
     for k in range(4):
         time.sleep(0.4)
         if k == 1:
@@ -150,6 +151,7 @@ def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
     assert ("1", "2") in counts  # two pieces were known to come …
     assert ("4", "4") in counts  # … and then two more
     assert "fit" in output
+    assert "f_in is not recorded" in output
     assert re.search(r"about 0:00:0\d left", output)
 
 

@@ -1,20 +1,44 @@
 """A reader whose library may crash: asked in its own process first, and then here as well."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from types import ModuleType
+from typing import Protocol
 
 import numpy as np
 
 from tests.fuzz.rules import Broken, answer
-from tsas_cli.recordings.readers import names, read, tables
-from tsas_cli.recordings.readers.table import ColumnTable, ReadOptions
+from tsas_cli.recordings.readers import names, offered, read, tables
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
 _MOST_COLUMNS = 12
 here_too = False  # only where coverage is measured: the library may take this process along
 
 
-def ask(reader: ModuleType, path: Path, options: ReadOptions) -> None:
+class Reader(Protocol):
+    """What reads a format in this process: a module, or `Offering`."""
+
+    def names(self, path: Path, options: ReadOptions) -> Sequence[str]: ...
+
+    def read(
+        self, path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
+    ) -> ColumnTable: ...
+
+
+class Offering:
+    """The reader of a format whose module has a function `offered`."""
+
+    def __init__(self, module: str) -> None:
+        self.of = (f"{offered.__package__}.{module}", "a file")
+
+    def names(self, path: Path, options: ReadOptions) -> Sequence[str]:
+        return offered.names(path, *self.of, options)
+
+    def read(self, path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
+        return offered.read(path, *self.of, options, wanted)
+
+
+def ask(reader: Reader, path: Path, options: ReadOptions) -> None:
     """Read all columns; where the library takes the file, what comes back is what is read here."""
     answer(tables, path)
     try:

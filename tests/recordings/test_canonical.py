@@ -76,9 +76,12 @@ def test_extra_columns_travel_along_untouched():
 
 def test_rows_that_repeat_go_only_when_the_map_says_so():
     twice = {"t": [0, 1, 1, 2], "x": [1, 2, 2, 3], "f": [4, np.nan, np.nan, 6]}
-    with pytest.raises(InputError, match=r"a.csv, row 12: .*drop_repeated_rows"):
+    with pytest.raises(InputError, match=r"a.csv, row 12: .*repeated_times = .first."):
         ask(twice)
     np.testing.assert_allclose(ask(twice, drop_repeated_rows=True)["x_in_mm"], [25.4, 50.8, 76.2])
+    twice["t"][-1] = 0.5
+    with pytest.raises(InputError, match=r"a.csv, row 13: .*correct the file"):  # as in the file
+        ask(twice, drop_repeated_rows=True)
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
+from tsas_cli.support.errors import printable
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 if TYPE_CHECKING:
@@ -28,6 +29,10 @@ class Bar(Steps):
         """Count one completed step."""
         self.done += 1
         self._show()
+
+    def say(self, sentence: str) -> None:
+        """Print a sentence above the bar."""
+        self.shown.console.print(printable(sentence), markup=False, highlight=False)
 
     def _show(self) -> None:
         """Draw the bar, with the remaining time at the pace so far."""

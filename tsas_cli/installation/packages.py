@@ -13,7 +13,11 @@ PROJECT = "tsas"
 MODULES = {"rerun-sdk": "rerun"}  # modules that are named differently
 PURPOSES = {
     "mat": "MATLAB v7.3 files",
+    "hdf5": "HDF5 files",
     "mdf": "MDF4 files",
+    "excel": "Excel and OpenDocument spreadsheets",
+    "tdms": "TDMS files of LabVIEW",
+    "robots": "MCAP files and ROS bags",
     "challenge": "the sparse-regression baseline of tsas challenge",
     "dask": "tsas sweep --cluster",
     "catalogue": "queries over many datasets with tsas runs",

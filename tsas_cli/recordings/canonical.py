@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.ingest_map import ColumnMap, IngestMap
@@ -63,12 +64,13 @@ def canonical_columns(
         if name in columns or not name.isprintable():
             raise InputError(f"extra column {name!r} cannot keep this name", where=path)
         columns[name] = table.columns[source]
+    numbers = table.row_numbers
     last = {name: float(values[-1]) for name, values in columns.items()}
     if mapping.read.drop_repeated_rows:
         kept = _differs_from_row_before(columns, before.last)
         columns = {name: values[kept] for name, values in columns.items()}
-    first_row = table.first_row - before.read + before.kept
-    _check_values(columns, before.last.get(TIME), first_row, path)
+        numbers = numbers[kept]
+    _check_values(columns, before.last.get(TIME), numbers, path)
     kept_rows = before.kept + columns[TIME].size
     return columns, PrecedingRows(before.read + rows, kept_rows, offsets, last)
 
@@ -136,25 +138,30 @@ def _differ(values: Floats, others: Floats) -> Mask:
 
 
 def _check_values(
-    columns: Mapping[str, Floats], last_s: float | None, first_row: int, path: Path
+    columns: Mapping[str, Floats], last_s: float | None, numbers: npt.NDArray[np.int64], path: Path
 ) -> None:
+    """Refuse infinite values and times that do not increase; `numbers` are those of the rows."""
     for name, values in columns.items():
         if name in BY_NAME and np.isinf(values).any():
-            row = first_row + int(np.isinf(values).argmax())
+            row = numbers[int(np.isinf(values).argmax())]
             raise InputError(f"{name} is infinite", where=f"{path}, row {row}", expected="a number")
     time_s = columns[TIME]
     if np.isnan(time_s).any():
-        row = first_row + int(np.isnan(time_s).argmax())
+        row = numbers[int(np.isnan(time_s).argmax())]
         raise InputError("the time is empty", where=f"{path}, row {row}", expected="a time")
-    if last_s is not None:
-        time_s, first_row = np.concatenate(([last_s], time_s)), first_row - 1
-    not_increasing = np.diff(time_s) <= 0
-    if not_increasing.any():
-        i = int(not_increasing.argmax())
+    if last_s is None:
+        numbers = numbers[1:]
+    else:
+        time_s = np.concatenate(([last_s], time_s))
+    steps = np.diff(time_s)
+    if (steps <= 0.0).any():
+        i = int((steps <= 0.0).argmax())
+        repeated = steps[i] == 0.0
         raise InputError(
             f"the time does not increase ({time_s[i]:.9g} s, then {time_s[i + 1]:.9g} s)",
-            where=f"{path}, row {first_row + i + 1}",
+            where=f"{path}, row {numbers[i]}",
             expected="strictly increasing time",
-            remedy="correct the file; drop_repeated_rows = true under [read] of the map removes "
-            "repeated rows",
+            remedy='set repeated_times = "first", "last" or "mean" under [read] of the map'
+            if repeated
+            else "correct the file",
         )

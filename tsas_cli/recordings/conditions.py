@@ -9,6 +9,7 @@ from pathlib import Path
 from types import FrameType
 
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
+from tsas_cli.recordings.readers import stem
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.errors import InputError, nearest
@@ -43,7 +44,7 @@ def run_conditions(
                 where=path,
                 remedy='set decimal = "," under [read] of the map, or the value itself under [run]',
             )
-    name = _filled(run_map.id, {"stem": path.stem, "folder": folder} | groups)
+    name = _filled(run_map.id, {"stem": stem(path), "folder": folder} | groups)
     converted = {
         condition: _converted(condition, rule, groups, path)
         for condition, rule in run_map.conditions.items()

@@ -12,8 +12,9 @@ from tsas_cli.recordings.conditions import run_conditions
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
-from tsas_cli.recordings.readers import SUFFIXES, batches
+from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
 from tsas_cli.recordings.readers.table import ColumnTable
+from tsas_cli.recordings.repeated_times import merged
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
 from tsas_cli.support.errors import InputError
@@ -84,7 +85,7 @@ def ingest_files(
     step.ahead(2 * len(files))
     states = {path: state_of(path) for path in files}
     for path in files:
-        parts = batches(path, mapping.read, mapping.sources())
+        parts = _parts(path, mapping)
         first = next(parts)
         step()
         run = _run(path, first, mapping)
@@ -117,11 +118,18 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     return sorted(
         path
         for path in folder.rglob("*")
-        if path.suffix.lower() in SUFFIXES
+        if is_known(path)
         and fnmatch(path.name, pattern)
         and not path.name.startswith(".")
         and path.is_file()
     )
+
+
+def _parts(path: Path, mapping: IngestMap) -> Iterator[ColumnTable]:
+    """Return the columns of a file in parts, with rows of one time merged if the map says so."""
+    parts = batches(path, mapping.read, mapping.sources())
+    how, time = mapping.read.repeated_times, mapping.columns[TIME]
+    return merged(parts, time.source, how) if how and time.rate_Hz is None else parts
 
 
 def _run(path: Path, table: ColumnTable, mapping: IngestMap) -> Run:

@@ -27,6 +27,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import CopiedRows
+from tsas_cli.recordings.unrecorded import unrecorded
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
@@ -109,6 +110,8 @@ def calibrate(
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
         accepted = accepted_errors(data, despite, step)
+        for sentence in unrecorded(data):
+            step.say(sentence)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
         prepared = []

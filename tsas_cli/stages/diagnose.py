@@ -19,6 +19,7 @@ from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.unrecorded import unrecorded
 from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
@@ -125,6 +126,8 @@ def diagnose(
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
         accepted = accepted_errors(data, despite, step)
+        for sentence in unrecorded(data):
+            step.say(sentence)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = []

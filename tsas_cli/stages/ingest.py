@@ -49,7 +49,7 @@ def ingest(
     Parameters
     ----------
     sources
-        Files (CSV, TSV, MATLAB, MDF4, JSON, Parquet), or folders to search; one or several.
+        Files (docs/ingest.md lists the formats), or folders to search; one or several.
     map
         The file that says which column is what, in which unit (docs/ingest.md).
     out

@@ -29,5 +29,8 @@ class Steps:
     def __call__(self) -> None:
         """Count one completed step."""
 
+    def say(self, sentence: str) -> None:
+        """Take what a person should know before the stage is done."""
+
 
 NO_PROGRESS = Steps()

@@ -28,7 +28,7 @@ def one(data: bytes) -> None:
     if not all(line.isprintable() for line in text.split("\n")):
         raise Broken(f"a map that cannot be printed: {text!r}")
     mapping = answer(read_map, _scratch.file("map.toml", text.encode()))
-    if (mapping is not None) != ("ingest takes this map as it is" in text):
+    if (mapping is not None) != ("No question is open: the map is ready" in text):
         raise Broken("a map says that it is taken, and is refused, or the other way round")
 
 

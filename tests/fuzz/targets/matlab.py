@@ -10,10 +10,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from scipy.io import savemat
 
-from tests.fuzz.foreign import ask
+from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers.matlab_files import controldesk
-from tsas_cli.recordings.readers import matlab
+from tsas_cli.recordings.readers import matlab as _reader  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 0.12
@@ -24,7 +24,7 @@ _scratch = Scratch()
 
 def one(data: bytes) -> None:
     """All of it is the file."""
-    ask(matlab, _scratch.file("a.mat", data), ReadOptions())
+    ask(Offering("matlab"), _scratch.file("a.mat", data), ReadOptions())
 
 
 def mutate(data: bytes, most: int, seed: int) -> bytes:

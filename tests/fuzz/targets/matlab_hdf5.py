@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from tests.fuzz.foreign import ask
+from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers import matlab_files as made
 from tsas_cli.recordings.readers import matlab, matlab_hdf5  # noqa: F401 # instrumented
@@ -20,7 +20,7 @@ _scratch = Scratch()
 
 def one(data: bytes) -> None:
     """All of it is the file."""
-    ask(matlab, _scratch.file("a.mat", data), ReadOptions())
+    ask(Offering("matlab"), _scratch.file("a.mat", data), ReadOptions())
 
 
 def seeds() -> Iterable[bytes]:

@@ -443,3 +443,55 @@ def test_of_public_recordings_nothing_is_guessed_wrong(name, at_least):
             assert entry["source"] == truth[channel].source
             assert entry.get("sign", 1) in ("?", truth[channel].sign)
             assert channel != "time_s" or entry["unit"] in ("?", truth[channel].unit)
+
+
+@pytest.mark.parametrize(
+    ("step", "first", "unit"),
+    [
+        (1_000_000, 0, "ns"),  # 1 kHz; in microseconds it were 1 Hz
+        (10_000_000, 1_772_532_000_000_000_000, "ns"),  # since 1970
+        (50_000, 1_772_532_000_000_000, "us"),  # 20 Hz; as nanoseconds it were 20 kHz, in 1970
+        (10, 1_772_532_000_000, "ms"),
+        (50_000, 0, "?"),
+    ],
+)
+def test_the_unit_of_a_clock_follows_from_its_steps_and_its_date(tmp_path, step, first, unit):
+    stamps = [str(first + i * step) for i in range(run()["time_s"].size)]
+    rows = zip(stamps, run()["x_in_mm"], run()["f_in_N"], strict=True)
+    lines = [f"{t},{x:.7g},{f:.7g}" for t, x, f in rows]
+    (tmp_path / "a.csv").write_text("\n".join(["stamp,x_in [mm],f_in [N]", *lines]))
+    time = propose([tmp_path / "a.csv"]).channels[0]
+    assert time.entry["unit"] == unit
+
+
+def test_title_lines_padded_with_delimiters_are_skipped(tmp_path):
+    path = write_csv(tmp_path / "a.csv", [(n, run()[n]) for n in CHANNELS], delimiter=";")
+    path.write_text("Bench 42;;;\n;;;\nrecorded by;M;;\n" + path.read_text())
+    proposal = propose([path])
+    assert proposal.read["skip_lines"][0] == 3
+    assert {c.name for c in proposal.channels} >= {"time_s", "x_in_mm", "f_in_N"}
+
+
+def test_a_column_that_looks_like_a_missing_channel_is_asked_about(tmp_path):
+    r = run()
+    angle = np.degrees(r["x_in_mm"] / 27.1)
+    columns = [("t_s", r["time_s"]), ("motor_deg", angle), ("handle_in", r["x_out_mm"] / 25.4)]
+    path = write_csv(tmp_path / "a.csv", [*columns, ("loadcell_motor_lbf", r["f_in_N"] / 4.448)])
+    proposal = propose([path])
+    asked = proposal.questions
+    assert '"handle_in", "motor_deg"? An angle needs' in asked["columns.x_in_mm.source"]
+    assert '"handle_in"' in asked["columns.x_out_mm.source"]
+    assert "No question is open" not in map_text(proposal)
+
+
+def test_thousands_are_asked_about_and_no_column_is_left_out(tmp_path):
+    columns = [(n, run()[n] * (1000 if n == "f_in_N" else 1)) for n in CHANNELS]
+    path = write_csv(tmp_path / "a.csv", columns, delimiter=";")
+    name, *rows = path.read_text().splitlines()
+    cells = [row.split(";") for row in rows]
+    rows = [";".join([*c[:3], f"{float(c[3]):,.2f}", *c[4:]]) for c in cells]
+    path.write_text("\n".join([name, *rows]))
+    proposal = propose([path])
+    assert "are thousands separated in it?" in proposal.questions["read.decimal"]
+    assert "f_in_N" in {c.name for c in proposal.channels}
+    assert not proposal.looked_at.left_out

@@ -160,3 +160,51 @@ def test_what_is_written_is_read_back_to_the_last_bit(tmp_path_factory, rows, ma
     path.write_text("\n".join([delimiter.join(["t", "f"])] * names + lines) + "\n")
     table = read(path, ReadOptions(), [1, 2])
     assert [*zip(table.columns[1], table.columns[2], strict=True)] == rows
+
+
+@pytest.mark.parametrize(
+    ("cells", "seconds"),
+    [
+        (["2026-03-03T10:00:00", "2026-03-03T10:00:00.25", "2026-03-03T10:00:01"], [0, 0.25, 1]),
+        (
+            ["2026-03-03 10:00:00,5", "2026-03-03 10:00:01", "2026-03-04 10:00:00,5"],
+            [0, 0.5, 86400],
+        ),
+        (["2026-03-29T01:59:59+01:00", "2026-03-29T03:00:00+02:00", "NaN"], [0, 1, np.nan]),
+        (["2026/03/03 10:00:00 UTC", "", "2026/03/03 10:00:02 UTC"], [0, np.nan, 2]),
+        (["10:00:00", "10:00:00.125", "10:00:01"], [36000, 36000.125, 36001]),
+        (["23:59:59.5", "00:00:00", "0:00:01"], [86399.5, 86400, 86401]),
+    ],
+)
+def test_dates_and_times_of_day_become_seconds(ask, cells, seconds):
+    rows = "\n".join(f"{cell};{i}" for i, cell in enumerate(cells))
+    _, table = ask(f"when;f\n{rows}\n", "when", "f")
+    np.testing.assert_allclose(table.columns["when"], seconds, rtol=0, atol=1e-9)
+    assert (table.units, table.typed) == ({"when": "s"}, {"when"})
+
+
+def test_a_cell_that_is_no_time_is_named(ask):
+    with pytest.raises(InputError, match="row 3: column when holds 'soon'"):
+        ask("when;f\n10:00:00;1\nsoon;2\n", "when")
+
+
+@pytest.mark.parametrize(
+    ("cells", "decimal", "values"),
+    [
+        (["1,234.5", "-12,345,678"], ".", [1234.5, -12345678]),
+        (["1.234,5", "7,25"], ",", [1234.5, 7.25]),
+        (["1'234.5", "1 234"], ".", [1234.5, 1234]),
+        (["1\u202f234,5", "0,5"], ",", [1234.5, 0.5]),
+    ],
+)
+def test_thousands_are_read_once_the_decimal_mark_is_said(ask, cells, decimal, values):
+    text = "t;f\n" + "".join(f"{i};{cell}\n" for i, cell in enumerate(cells))
+    with pytest.raises(InputError, match=r"are thousands separated in it.*set decimal"):
+        ask(text, "f")
+    assert ask(text, "f", decimal=decimal)[0]["f"] == values
+
+
+@pytest.mark.parametrize("cell", ["1,23", "0,125", "1,234,5", "12 345 6", "1,234 567"])
+def test_other_groups_are_no_thousands(ask, cell):
+    with pytest.raises(InputError, match="column f holds"):
+        ask(f"t;f\n0;1.5\n1;{cell}\n", "f", decimal=".")

@@ -10,7 +10,7 @@ from tests.recordings.readers.matlab_files import (
     struct_array,
     text,
 )
-from tsas_cli.recordings.readers import matlab, read
+from tsas_cli.recordings.readers import matlab, offered, read
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -157,8 +157,8 @@ def test_text_in_a_cell_is_no_column(path):
 def test_the_missing_package_is_named(path, monkeypatch):
     plain_73(path)
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
-    with pytest.raises(InputError, match=r"install tsas\[mat\]"):
-        matlab.read(path, ReadOptions(), ["t"])
+    with pytest.raises(InputError, match=r"-m pip install 'tsas\[mat\]'"):
+        offered.names(path, matlab.__name__, "a MATLAB file", ReadOptions())
 
 
 def test_complex_data_of_a_capture_are_refused(path):

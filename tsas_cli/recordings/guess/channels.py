@@ -1,6 +1,6 @@
 """The channels of a map, assigned from the columns of a file."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
 from tsas_cli.recordings.guess.columns import FileColumn
@@ -25,10 +25,7 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     tensions = [c for c in free if c.quantity in FORCES and not _of_motor(c)]
     ends = assign(displacements, tensions)
     found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
-    if not has_input_and_output(frozenset(n for n, p in found.items() if p.certainty != "open")):
-        unknown = [c for c in free if c.quantity is None]
-        missing = [n for n in _MECHANICAL if n not in found]
-        found |= _unknown(unknown, missing, ends) if unknown else {}
+    found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
     return [found[name] for name in NAMES if name in found]
 
 
@@ -127,18 +124,42 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
     return found
 
 
-def _unknown(
-    columns: Sequence[FileColumn], names: Sequence[str], ends: Assignment
+def _missing(
+    found: Mapping[str, Proposed],
+    free: Sequence[FileColumn],
+    motor: Sequence[FileColumn],
+    ends: Assignment,
 ) -> dict[str, Proposed]:
-    """Return a question for each missing channel while columns are unassigned."""
+    """Return a question for each missing channel that an unassigned column may be.
+
+    Any column may be a missing x_in or f_in, and the motor's angle may be x_in; at the distal end
+    one with a word for an end or a fitting unit, or any, while ingest would refuse the map.
+    """
+    used = {c.source for c in ends.assigned.values()}
+    used |= {source for channel in found.values() for source in channel.candidates}
+    left = [c for c in free if c.source not in used and c.quantity in (None, *LENGTHS, *FORCES)]
+    whole = has_input_and_output(frozenset(n for n, p in found.items() if p.certainty != "open"))
+    asked = {}
+    for name in (n for n in _MECHANICAL if n not in found):
+        fitting = LENGTHS if name in ("x_in_mm", "x_out_mm") else FORCES
+        candidates = [c for c in left if c.quantity is None or c.quantity in fitting]
+        if whole and name in ("x_out_mm", "f_out_N"):
+            candidates = [c for c in candidates if c.quantity or c.end]
+        if name == "x_in_mm":
+            candidates += [c for c in motor if c.kind != "label"]
+        if candidates:
+            asked[name] = candidates
+    return {name: _asked(name, candidates, ends) for name, candidates in asked.items()}
+
+
+def _asked(name: str, columns: Sequence[FileColumn], ends: Assignment) -> Proposed:
     shown = ", ".join(c.shown for c in columns)
     free = assign((), columns) if len(columns) > 1 else ends
-    why = (
-        "neither names nor units identify these columns",
-        *_orders(columns, free),
-    )
+    why = ("neither names nor units say which column this is", *_orders(columns, free))
     questions = {"source": f"which column is this, if any: {shown}?"}
-    return {name: _open(name, columns, why, questions) for name in names}
+    if name == "x_in_mm" and any(c.end == "motor" for c in columns):
+        questions["source"] += " An angle needs pulley_radius_mm beside it."
+    return _open(name, columns, why, questions)
 
 
 def _open(

@@ -1,6 +1,7 @@
 """The clock among the columns of a file, and its unit."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,11 +12,13 @@ from tsas_cli.recordings.guess.looks import increases, is_even
 from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.units import conversion
+from tsas_cli.support.arrays import Floats
 
 _USUAL_S = (2.5e-5, 0.2)  # usual sample intervals of a rig
 _FASTEST_S = 5e-6
 _STROKE_S = (0.02, 500.0)  # plausible strokes of a rig
-_UNITS = ("s", "ms", "us")
+_UNITS = ("s", "ms", "us", "ns")
+_EPOCH_S = (9.4e8, 4.1e9)  # 2000 to 2099, since 1970
 
 
 def clock(columns: Sequence[FileColumn]) -> Proposed:
@@ -52,6 +55,13 @@ def interval(column: FileColumn) -> float:
     return float(np.median(np.diff(column.values)))
 
 
+def repeats(values: Floats) -> int:
+    """Return how many rows of a clock that never decreases repeat the time before."""
+    steps = np.diff(values)
+    rises = bool(np.isfinite(values).all() and (steps >= 0.0).all() and (steps > 0.0).any())
+    return int((steps == 0.0).sum()) if rises else 0
+
+
 def like_a_clock(column: FileColumn) -> bool:
     """Return whether a column increases evenly, and its unit does not exclude a time."""
     may_be = column.kind in (None, "label", "time") and column.quantity != "counter"
@@ -67,6 +77,9 @@ def _which(found: Sequence[FileColumn], why: str) -> Proposed:
 
 def _with_unit(column: FileColumn, columns: Sequence[FileColumn], *, named: bool) -> Proposed:
     why = column.reasons
+    if repeats(column.values):
+        why.append("it repeats in some rows")
+        column = replace(column, values=np.unique(column.values))
     if not increases(column.values):
         why.append("it stops or decreases somewhere; ingest will refuse it and name the row")
         entry, questions = with_unit(column, TIME)
@@ -101,6 +114,8 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
         stated += f"{seconds * column.values.size:.3g} s in total"
         return QUESTION, f"{stated}; {_listed(step)}", ()
     likely = [unit for unit in _UNITS if _usual(step, unit)]
+    since_1970 = [unit for unit in _UNITS if _is_date(float(column.values[0]), unit)]
+    likely = [unit for unit in likely if unit in since_1970] or likely
     counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
     if len(likely) != 1 or counts:
         or_count = "; if it counts samples, rate_Hz in place of source and unit" if counts else ""
@@ -117,6 +132,10 @@ def _implausible(interval_s: float, rows: float) -> bool:
 
 def _usual(step: float, unit: str) -> bool:
     return _USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1]
+
+
+def _is_date(value: float, unit: str) -> bool:
+    return _EPOCH_S[0] <= _seconds(value, unit) <= _EPOCH_S[1]
 
 
 def _seconds(step: float, unit: str) -> float:

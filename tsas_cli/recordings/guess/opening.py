@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.guards.damaged import EncryptedError
-from tsas_cli.recordings.readers import names, read, tables
+from tsas_cli.recordings.readers import names, read, tables, text_of
+from tsas_cli.recordings.readers.layout import DoubtfulMarkError
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
-_TEXT = (".csv", ".tsv", ".txt", ".dat", ".asc")
 _PREAMBLE = 60  # lines above a table that are tried
 
 
@@ -28,6 +28,9 @@ class Opened:
         Their names; empty text for a column without one.
     left_out
         The other columns, and the reason for each.
+    asked
+        The keys of `read` that are open questions; the values are those that the file was opened
+        with.
     """
 
     path: Path
@@ -35,6 +38,7 @@ class Opened:
     table: ColumnTable
     names: dict[ColumnSource, str]
     left_out: dict[str, str] = field(default_factory=dict)
+    asked: dict[str, str] = field(default_factory=dict)
 
 
 def open_file(path: Path) -> Opened:
@@ -45,8 +49,22 @@ def open_file(path: Path) -> Opened:
     InputError
         The format is unknown, or the file is damaged or does not hold exactly one table.
     """
-    required = dict(_encoding(path)) | dict(_table(path))
-    required |= _preamble(path, required)
+    required, asked = _table(path)
+    try:
+        return _opened(path, dict(required), asked)
+    except DoubtfulMarkError as error:
+        decimal = {"decimal": (error.decimal, "")}
+        question = (
+            f'{error.what} "." or "," is the decimal mark; the other one separates thousands.'
+        )
+        return _opened(path, required | decimal, asked | {"decimal": question})
+
+
+def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, str]) -> Opened:
+    text = text_of(path, _options(required))
+    if text is not None:
+        required |= dict(_encoding(text))
+        required |= _preamble(path, required)
     options = _options(required)
     listed = names(path, options)
     sources = {_source(listed, i): name for i, name in enumerate(listed)}
@@ -62,7 +80,7 @@ def open_file(path: Path) -> Opened:
         raise InputError("holds one row", where=path, expected="at least two samples")
     found = replace(table, columns=columns)
     found_names = {source: sources[source] for source in columns}
-    return Opened(path, required, found, found_names, left_out | short)
+    return Opened(path, required, found, found_names, left_out | short, asked)
 
 
 def _options(required: dict[str, tuple[Any, str]]) -> ReadOptions:
@@ -76,8 +94,6 @@ def _source(listed: tuple[str, ...], i: int) -> ColumnSource:
 
 
 def _encoding(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
-    if path.suffix.lower() not in _TEXT or not path.is_file():
-        return
     with path.open("rb") as stream:
         head = stream.read(1 << 16)
     if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
@@ -94,36 +110,52 @@ def _is_utf_8(head: bytes) -> bool:
     return True
 
 
-def _table(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
-    """Yield the key `table` if the numbers are nested in a JSON or MATLAB file."""
+def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
+    """Return the key `table` if the numbers are in one of a file's tables, and the question."""
     found = tables(path)
-    if len(found) > 1:
-        raise InputError(
-            f"holds {len(found)} tables: {', '.join(found)}",
-            where=path,
-            expected="one",
-            remedy='write a map by hand, with table = "…" under [read] (docs/ingest.md)',
-        )
-    if found:
-        yield "table", (found[0], "the only table in the file is there")
+    if not found:
+        return {}, {}
+    if len(found) == 1:
+        return {"table": (found[0], "the only table in the file is there")}, {}
+    question = f"which table: {', '.join(found)}? The channels below are those of {found[0]}."
+    return {"table": (found[0], "")}, {"table": question}
 
 
 def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
-    """Return the lines to skip above a text table, if it cannot be read with them."""
-    if path.suffix.lower() not in _TEXT or _columns_in(path, required) > 1:
-        return {}
+    """Return the lines to skip above a text table, if columns are without names with them."""
+    best, skipped = _named(path, required), 0
+    if best > 0.5 or (best == 0.0 and _reads(path, _options(required))):
+        return {}  # a table without names is one, too
     for skip in range(1, _PREAMBLE):
-        key = {"skip_lines": (skip, f"the table begins with line {skip + 1}")}
-        if _columns_in(path, required | key) > 1:
-            return key
-    return {}
+        found = _named(path, required | {"skip_lines": (skip, "")})
+        if found > best:
+            best, skipped = found, skip
+    why = f"the table begins with line {skipped + 1}"
+    return {"skip_lines": (skipped, why)} if skipped else {}
 
 
-def _columns_in(path: Path, required: dict[str, tuple[Any, str]]) -> int:
+def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
+    """Return the share of columns with names, −1 if there is no table.
+
+    A title with delimiters behind it, "Bench 42;;;", names few columns.
+    """
     try:
-        return len(names(path, _options(required)))
+        found = names(path, _options(required))
+    except DoubtfulMarkError:
+        raise
     except InputError:
-        return 0
+        return -1.0
+    return sum(map(bool, found)) / len(found) if len(found) > 1 else -1.0
+
+
+def _reads(path: Path, options: ReadOptions) -> bool:
+    try:
+        read(path, options, list(range(1, len(names(path, options)) + 1)))
+    except DoubtfulMarkError:
+        raise
+    except InputError:
+        return False
+    return True
 
 
 def _all_or_each(
@@ -135,12 +167,16 @@ def _all_or_each(
     """
     try:
         return read(path, options, sources), {}
+    except DoubtfulMarkError:
+        raise
     except InputError:
         tables: dict[ColumnSource, ColumnTable] = {}
         left_out: dict[str, str] = {}
         for source in sources:
             try:
                 tables[source] = read(path, options, [source])
+            except DoubtfulMarkError:
+                raise
             except EncryptedError as error:
                 raise InputError(
                     f"column {source} is encrypted",

@@ -9,13 +9,13 @@ from typing import Any
 
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
-from tsas_cli.recordings.guess.clock import clock, like_a_clock
+from tsas_cli.recordings.guess.clock import clock, like_a_clock, repeats
 from tsas_cli.recordings.guess.columns import FileColumn, columns_of, with_trusted_names
 from tsas_cli.recordings.guess.looks import correlation
 from tsas_cli.recordings.guess.opening import Opened, open_file
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
-from tsas_cli.recordings.readers import names
+from tsas_cli.recordings.readers import names, stem
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -63,7 +63,10 @@ class MapProposal:
             for key, sentence in channel.questions.items()
         }
         return questions | {
-            f"run.{k}": why for k, (value, why) in self.run.items() if value == QUESTION
+            f"{table}.{key}": why
+            for table, keys in (("read", self.read), ("run", self.run))
+            for key, (value, why) in keys.items()
+            if value == QUESTION
         }
 
     @property
@@ -98,7 +101,10 @@ def propose(files: Sequence[Path]) -> MapProposal:
         opened,
         tuple(matching),
         different,
-        opened.read | _pattern([opened.path, *matching], different),
+        opened.read
+        | {key: (QUESTION, question) for key, question in opened.asked.items()}
+        | _repeated(columns, time)
+        | _pattern([opened.path, *matching], different),
         found,
         _not_taken(columns, found),
         _load(columns, found) | _id([opened.path, *matching]),
@@ -130,6 +136,17 @@ def _difference(path: Path, opened: Opened) -> str:
     )
 
 
+def _repeated(columns: Sequence[FileColumn], time: Proposed) -> dict[str, tuple[Any, str]]:
+    """Return the question for the rows that repeat a time."""
+    clocks = [column for column in columns if column.source == time.entry.get("source")]
+    repeated = repeats(clocks[0].values) if clocks else 0
+    if not repeated:
+        return {}
+    rows = clocks[0].values.size
+    why = f'{repeated} of {rows} rows repeat the time before: is it "first", "last" or "mean" '
+    return {"repeated_times": (QUESTION, f"{why}of each channel that stays?")}
+
+
 def _pattern(good: Sequence[Path], different: dict[Path, str]) -> dict[str, tuple[Any, str]]:
     """Return the glob for the matching files of a folder, if their suffix distinguishes them."""
     suffixes = {path.suffix for path in good}
@@ -143,7 +160,8 @@ def _name(path: Path) -> str:
 
 
 def _id(paths: Sequence[Path]) -> dict[str, tuple[Any, str]]:
-    duplicates = [stem for stem, count in Counter(path.stem for path in paths).items() if count > 1]
+    counted = Counter(stem(path) for path in paths)
+    duplicates = [name for name, count in counted.items() if count > 1]
     why = f"two files have the name {duplicates[0]}" if duplicates else ""
     return {"id": ("{folder}_{stem}", why)} if duplicates else {}
 

@@ -59,6 +59,11 @@ def _head(proposal: MapProposal) -> Iterable[str]:
         yield from _wrapped(proposal.doubt)
     for path, reason in proposal.different.items():
         yield from _wrapped(f"{path.name} does not match: {reason}.")
+    if proposal.different:
+        yield from _wrapped(
+            "A file of another device that belongs to the same run is joined by a list (.join, "
+            "docs/ingest.md)."
+        )
     asked = len(proposal.questions)
     if asked:
         yield from _wrapped(
@@ -93,7 +98,7 @@ def _rig() -> Table:
 def _read(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     for key, (value, why) in proposal.read.items():
-        _add(table, key, value, why)
+        _add(table, key, value, _asked(why) if value == QUESTION else why)
     if proposal.not_taken:
         _comment(table, "These columns have no channel; extra would keep them unchanged:")
         for source, reason in proposal.not_taken.items():
@@ -222,5 +227,8 @@ def tables(proposal: MapProposal, out: object) -> Iterator[tuple[str, tuple[str,
         for channel in proposal.channels
     ]
     yield f"map {out}", ("channel", "source", "certainty"), rows
+    if proposal.different:
+        others = [(path.name, reason) for path, reason in proposal.different.items()]
+        yield "files that do not match", ("file", "reason"), others
     if proposal.questions:
         yield "open questions", ("key", "question"), list(proposal.questions.items())

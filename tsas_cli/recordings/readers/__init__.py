@@ -1,4 +1,7 @@
-"""One reader per file format, selected by the suffix of the file name."""
+"""One reader per file format, selected by the suffix of the file name.
+
+Packed files and those of spreadsheets are first converted to a file of another known format.
+"""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -7,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.guards.process import in_another_process
+from tsas_cli.recordings.readers import converted, offered
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions, whole
+from tsas_cli.recordings.readers.unread import way_to_convert
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
@@ -22,11 +27,33 @@ _READERS = {
     ".mdf": "mdf",
     ".json": "json_table",
     ".parquet": "parquet",
+    ".feather": "feather",
+    ".arrow": "feather",
+    ".npy": "numpy_file",
+    ".npz": "numpy_file",
+    ".h5": "hdf5",
+    ".hdf5": "hdf5",
+    ".tdms": "tdms",
+    ".mcap": "mcap_file",
+    ".bag": "ros1_bag",
+    ".db3": "ros2_bag",
+    ".join": "joined",
 }
-_ISOLATED = {"matlab": "a MATLAB file", "mdf": "MDF"}  # their libraries crash on damaged files
+_ISOLATED = {  # their libraries crash on damaged files
+    "matlab": "a MATLAB file",
+    "mdf": "MDF",
+    "feather": "Feather",
+    "numpy_file": "a NumPy file",
+    "hdf5": "HDF5",
+    "tdms": "TDMS",
+    "mcap_file": "MCAP",
+    "ros1_bag": "a bag of ROS 1",
+    "ros2_bag": "a bag of ROS 2",
+}
+_WITHOUT_OFFERED = ("delimited", "parquet", "mdf")  # they have `read` and `names`
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
-SUFFIXES = tuple(_READERS)
+SUFFIXES = (*_READERS, *converted.SUFFIXES)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -51,54 +78,100 @@ def batches(
     InputError
         As from `read`; a fault in a later part is raised with that part.
     """
-    if _module(path) in _IN_PARTS:
-        with _checked(path) as name:
-            yield from import_module(name).batches(path, options, wanted)
-    else:
-        yield _call("read", path, options, wanted)
+    with _checked(path, options) as (module, file):
+        if module in _IN_PARTS:
+            reader = import_module(f"{__name__}.{module}")
+            yield from reader.batches(file, options, wanted)
+        else:
+            yield _call(module, "read", file, options, wanted)
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
     """Return the names of a file's columns by number; empty text for a column without a name."""
-    found = tuple(_call("names", path, options))
+    with _checked(path, options) as (module, file):
+        found = tuple(_call(module, "names", file, options))
     limits.columns(found, path)
     return found
 
 
 def tables(path: Path) -> list[str]:
-    """Return the valid values of `table` in a map: the nested tables of a JSON or MATLAB file."""
-    return list(_call("tables", path)) if _module(path) in _WITH_TABLES else []
+    """Return the valid values of `table` in a map: sheets, or tables in a JSON or MATLAB file."""
+    with _checked(path, ReadOptions(), but=converted.SHEETS) as (module, file):
+        if module == "spreadsheet":
+            return converted.tables(file)
+        return list(_call(module, "tables", file)) if module in _WITH_TABLES else []
 
 
-def _module(path: Path) -> str:
-    """Return the module that reads a file."""
-    module = _READERS.get(path.suffix.lower())
-    if module is None:
-        raise InputError(
-            f"unknown file format {path.suffix or '(no suffix)'}",
-            where=path,
-            expected=f"one of {', '.join(SUFFIXES)}",
-        )
-    return module
+def text_of(path: Path, options: ReadOptions) -> Path | None:
+    """Return the text table in a file: the file itself, or what it is converted to; else None."""
+    with _checked(path, options) as (module, file):
+        return file if module == "delimited" else None
 
 
-def _call(function: str, path: Path, *rest: Any) -> Any:
+def is_known(path: Path) -> bool:
+    """Return whether the name of a file says that it can be read."""
+    inside = path.with_suffix("") if converted.is_packed(path) else path
+    return _suffix(inside) in SUFFIXES and not converted.is_packed(inside)
+
+
+def stem(path: Path) -> str:
+    """Return the name of a file without its suffixes: `a` for `a.csv` and `a.csv.gz`."""
+    return Path(path.stem).stem if converted.is_packed(path) else path.stem
+
+
+def _suffix(path: Path) -> str:
+    return path.suffix.lower()
+
+
+def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    with _checked(path) as name:
-        kind = _ISOLATED.get(_module(path))
-        if kind is not None:
-            return in_another_process(name, function, path, *rest, kind=kind)
-        return getattr(import_module(name), function)(path, *rest)
+    name, kind = f"{__name__}.{module}", _ISOLATED.get(module)
+    if module not in _WITHOUT_OFFERED and function != "tables":
+        name, rest = offered.__name__, (name, kind or "a table", *rest)
+    if kind is not None:
+        return in_another_process(name, function, path, *rest, kind=kind)
+    return getattr(import_module(name), function)(path, *rest)
 
 
 @contextmanager
-def _checked(path: Path) -> Iterator[str]:
-    """Yield the name of the reader's module; errors of the system become `InputError`."""
-    module = _module(path)
+def _checked(
+    path: Path, options: ReadOptions, *, but: Sequence[str] = ()
+) -> Iterator[tuple[str, Path]]:
+    """Yield the name of the reader's module, and the file for it, which may be a converted one.
+
+    Files of a suffix among `but` are not converted. Errors of the system become `InputError`; all
+    name `path`.
+    """
+    file = path
     try:
-        limits.regular(path)
-        if path.stat().st_size == 0:
-            raise InputError("is empty", where=path, expected="a recording")
-        yield f"{__name__}.{module}"
+        while _suffix(file) not in (*_READERS, *but):
+            if not is_known(file) and _suffix(file) != ".zip":
+                raise _unknown(file)
+            _check(file)
+            file = converted.converted(file, options, frozenset(_READERS))
+        _check(file)
+        yield _READERS.get(_suffix(file), "spreadsheet"), file
+    except InputError as error:
+        if file != path:
+            error.where = error.where.replace(str(file), str(path))
+            error.args = (error.line(),)
+        raise
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error
+
+
+def _check(file: Path) -> None:
+    limits.regular(file)
+    if file.stat().st_size == 0:
+        raise InputError("is empty", where=file, expected="a recording")
+
+
+def _unknown(path: Path) -> InputError:
+    packed = converted.is_packed(path)
+    suffix = (path.with_suffix("") if packed else path).suffix or "(no suffix)"
+    return InputError(
+        f"unknown file format {suffix}{' inside' if packed else ''}",
+        where=path,
+        expected=f"one of {', '.join(SUFFIXES)}",
+        remedy=way_to_convert(path),
+    )

@@ -1,19 +1,15 @@
 """dSPACE ControlDesk exports: a struct with the clocks in X and the channels in Y."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.readers.table import (
-    ColumnSource,
-    ColumnTable,
-    ReadOptions,
-    floats,
-    resolve,
-)
-from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.recordings.readers.offered import Column, Offered
+from tsas_cli.recordings.readers.table import floats
+from tsas_cli.recordings.readers.timebase import TIME
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
@@ -44,40 +40,26 @@ def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     return {name: value for name, value in content.items() if _is_capture(value)}
 
 
-def channel_names(capture: Mapping[str, Any]) -> list[str]:
-    """Return the names of a capture's channels, and of its clock."""
-    return [*_names(_records(capture["Y"])), TIME]
-
-
-def read_capture(
-    capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[ColumnSource], path: Path
-) -> ColumnTable:
-    """Return the requested channels of a capture; its clock is `time`, in s.
+def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
+    """Return the channels of a capture, with their clocks in s.
 
     Raises
     ------
     InputError
-        A channel is missing, not numeric, or differs in length from its clock; or the channels'
-        clocks differ and the map does not set `resample = true`.
+        A channel, when it is loaded, differs in length from its clock.
     """
-    channels = _records(capture["Y"])
-    at = resolve(wanted, [*_names(channels), TIME], path)
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
-    clock_sources = [source for source, i in at.items() if i == len(channels)]
-    selected = {source: channels[i] for source, i in at.items() if i < len(channels)}
-    series = {s: _series(channel, clocks, s, path) for s, channel in selected.items()}
-    units = dict.fromkeys(clock_sources, "s")
-    units |= {s: unit for s, channel in selected.items() if (unit := str(channel.get("Unit", "")))}
+    channels = [
+        Column(
+            str(channel.get("Name", "")).strip('"'),
+            partial(np.ravel, channel["Data"]),
+            str(channel.get("Unit", "")),
+            partial(_clock, channel, clocks, path),
+        )
+        for channel in _records(capture["Y"])
+    ]
     description = str(capture.get("Description", ""))
-    return ColumnTable(
-        on_one_clock(series, path, clock_sources=clock_sources, resample=options.resample),
-        units,
-        (description,) if description else (),
-    )
-
-
-def _names(channels: list[Any]) -> list[str]:
-    return [str(channel.get("Name", "")).strip('"') for channel in channels]
+    return Offered(channels, (description,) if description else ())
 
 
 def _is_capture(value: Any) -> bool:
@@ -92,14 +74,13 @@ def _records(value: Any) -> list[Any]:
     return list(value) if isinstance(value, list | np.ndarray) else [value]
 
 
-def _series(
-    channel: Mapping[str, Any], clocks: list[Floats], source: ColumnSource, path: Path
-) -> tuple[Floats, Floats]:
-    values = floats(np.ravel(channel["Data"]), source, path)
+def _clock(channel: Mapping[str, Any], clocks: list[Floats], path: Path) -> Floats:
+    size = np.size(channel["Data"])
     number = channel.get("XIndex", 1)  # number of the clock, from 1
     clock = clocks[int(number) - 1] if np.ndim(number) == 0 and 1 <= number <= len(clocks) else None
-    if clock is None or clock.size != values.size:
+    if clock is None or clock.size != size:
         raise InputError(
-            f"channel {source} has {values.size} samples and no clock of that length", where=path
+            f"channel {channel.get('Name', '')} has {size} samples and no clock of that length",
+            where=path,
         )
-    return clock, values
+    return clock

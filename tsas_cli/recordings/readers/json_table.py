@@ -1,43 +1,35 @@
 """JSON tables: rows, records or columns, at the top level or under a key."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.table import (
-    ColumnSource,
-    ColumnTable,
-    ReadOptions,
-    floats,
-    resolve,
-)
+from tsas_cli.recordings.readers.offered import Column, Offered
+from tsas_cli.recordings.readers.records import flat
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
-    """Return the requested columns of a JSON table.
+@contextmanager
+def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+    """Yield the columns of a JSON table.
 
     It is a list of rows, a list of records, or an object of columns, under the key `table` of the
     map (nested with dots). A key `columns` beside the rows names their columns; else they are
-    numbered.
+    numbered. Records in records are named by their paths.
 
     Raises
     ------
     InputError
-        It is no such table, a column is missing, or a value is not numeric.
+        It is no such table.
     """
     above, content = _descend(read_json(path), options.table, path)
     names, column = _columns(content, above.get("columns"), path)
-    at = resolve(wanted, names, path)
     header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
-    return ColumnTable({s: floats(column(i), s, path) for s, i in at.items()}, header=header)
-
-
-def names(path: Path, options: ReadOptions) -> Sequence[str]:
-    """Return the names of the columns."""
-    above, content = _descend(read_json(path), options.table, path)
-    return _columns(content, above.get("columns"), path)[0]
+    yield Offered([Column(name, partial(column, i)) for i, name in enumerate(names)], header)
 
 
 def tables(path: Path) -> list[str]:
@@ -77,8 +69,9 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
     if isinstance(content, dict) and all(isinstance(c, list) for c in content.values()):
         return list(content), list(content.values()).__getitem__
     if isinstance(content, list) and content and all(isinstance(r, dict) for r in content):
-        names = list(dict.fromkeys(key for record in content for key in record))
-        return names, lambda i: [record.get(names[i]) for record in content]
+        records = [dict(flat(record)) for record in content]
+        names = list(dict.fromkeys(key for record in records for key in record))
+        return names, lambda i: [record.get(names[i]) for record in records]
     if isinstance(content, list) and content and all(isinstance(r, list) for r in content):
         names = [str(n) for n in names] if isinstance(names, list) else [""] * len(content[0])
         for row, cells in enumerate(content, start=1):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from tsas_cli.recordings.readers.stamps import is_stamp
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
@@ -16,12 +17,33 @@ _LONG = 4 * limits.LINE  # characters of them, if lines are long
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # or three decimals
+_GROUPED = {  # numbers with separators between thousands, by their decimal mark
+    ".": re.compile(r"[+-]?[1-9]\d{0,2}(?:([,' \u00a0\u202f])\d{3})(?:\1\d{3})*(\.\d*)?"),
+    ",": re.compile(r"[+-]?[1-9]\d{0,2}(?:([.' \u00a0\u202f])\d{3})(?:\1\d{3})*(,\d*)?"),
+}
 _BELOW_THOUSAND = re.compile(r"[+-]?\d{1,3}")
+
+
+class DoubtfulMarkError(InputError):
+    """A mark in a number is the decimal one or separates thousands; `decimal` is one answer."""
+
+    def __init__(self, question: str, path: Path, decimal: str, row: int | None = None) -> None:
+        where = path if row is None else f"{path}, row {row}"
+        super().__init__(question, where=where, remedy=_REMEDY)
+        self.decimal = decimal
+
+
+_REMEDY = (
+    'set decimal = "," or "." under [read] of the map: the other mark then separates thousands'
+)
 
 
 @dataclass(frozen=True)
 class Layout:
-    """The first line of numbers (from 1), the format, and the lines above it."""
+    """The first line of numbers (from 1), the format, and the lines above it.
+
+    `stamps` holds the indices of the columns of dates or times of day.
+    """
 
     delimiter: str
     decimal: str
@@ -29,6 +51,7 @@ class Layout:
     units: tuple[str, ...]
     header: tuple[str, ...]
     first_line: int
+    stamps: frozenset[int] = frozenset()
 
 
 def detect(path: Path, options: ReadOptions) -> Layout:
@@ -64,7 +87,11 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     names = _fitted(names, rows[0], path, first_line)
     units = [cell.strip("[]()") for cell in units] or [_unit_in(name) for name in names]
     units += [""] * (len(names) - len(units))
-    return Layout(delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line)
+    stamps = frozenset(i for i, cell in enumerate(rows[0]) if is_stamp(cell))
+    units = ["s" if i in stamps else unit for i, unit in enumerate(units)]
+    return Layout(
+        delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line, stamps
+    )
 
 
 def fields(text: str, delimiter: str) -> list[str]:
@@ -91,6 +118,12 @@ def number(text: str, decimal: str) -> float:
     if "_" in plain:  # Python reads 1_2 as 12
         raise ValueError(text)
     return float(plain)
+
+
+def grouped(text: str, decimal: str) -> float | None:
+    """Return a cell with separators between thousands as a number; None for another one."""
+    found = _GROUPED[decimal].fullmatch(text)
+    return number(text.replace(found[1], ""), decimal) if found else None
 
 
 def may_be_thousands(text: str) -> bool:
@@ -160,11 +193,11 @@ def _decimal(
             elif _BELOW_THOUSAND.fullmatch(cell):
                 without[i] = cell
     for i in with_comma.keys() & without.keys():
-        raise InputError(
+        raise DoubtfulMarkError(
             f"column {i + 1} holds {without[i]} and {with_comma[i]}: "
             "is the comma a decimal mark or a thousands separator?",
-            where=path,
-            remedy='set decimal = "," under [read] of the map, or remove the commas from the file',
+            path,
+            ",",
         )
     return ","
 
@@ -174,7 +207,8 @@ def _has_number(row: Sequence[str], decimal: str) -> bool:
         try:
             number(cell, decimal)
         except ValueError:
-            continue
+            if grouped(cell, decimal) is None:
+                continue
         return True
     return False
 

@@ -1,7 +1,9 @@
 """MATLAB files: version 5 and earlier, and the HDF5 of version 7.3."""
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +13,9 @@ from scipy.io.matlab import MatReadWarning
 
 from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.matlab_packed import check_unpacked
-from tsas_cli.recordings.readers.controldesk import (
-    captures,
-    channel_names,
-    find_capture,
-    read_capture,
-)
-from tsas_cli.recordings.readers.table import (
-    ColumnSource,
-    ColumnTable,
-    ReadOptions,
-    floats,
-    resolve,
-)
+from tsas_cli.recordings.readers.controldesk import captures, channels_of, find_capture
+from tsas_cli.recordings.readers.offered import Column, Offered
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
@@ -32,8 +24,9 @@ from tsas_cli.support.memory import out_of_memory
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
-    """Return the requested columns of a MATLAB file.
+@contextmanager
+def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+    """Yield the columns of a MATLAB file.
 
     A vector is a column with its name, column j of a matrix is `name(:,j)`, and a member of a
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
@@ -42,25 +35,16 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Co
     Raises
     ------
     InputError
-        The file is damaged, or a column is missing or not numeric.
+        The file is damaged, or there are several captures.
     """
     content = _inside(_content(path), options.table, path)
     capture = find_capture(content, path)
     if capture is not None:
-        return read_capture(capture, options, wanted, path)
-    vectors = dict(_vectors(content))
-    names = list(vectors)
-    at = resolve(wanted, names, path)
-    columns = {source: floats(vectors[names[i]], source, path) for source, i in at.items()}
+        yield channels_of(capture, path)
+        return
+    columns = [Column(name, partial(np.asarray, v)) for name, v in dict(_vectors(content)).items()]
     header = tuple(f"{k} = {v}" for k, v in content.items() if isinstance(v, str | int | float))
-    return ColumnTable(columns, header=header)
-
-
-def names(path: Path, options: ReadOptions) -> Sequence[str]:
-    """Return the names of the columns; with a capture, its clock is the last."""
-    content = _inside(_content(path), options.table, path)
-    capture = find_capture(content, path)
-    return list(dict(_vectors(content))) if capture is None else channel_names(capture)
+    yield Offered(columns, header)
 
 
 def tables(path: Path) -> list[str]:

@@ -9,6 +9,8 @@ import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
+from tsas_cli.recordings.readers.feather import to_numpy
+from tsas_cli.recordings.readers.stamps import Seconds
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
@@ -18,7 +20,6 @@ from tsas_cli.recordings.readers.table import (
     in_batches,
     resolve,
 )
-from tsas_cli.support.arrays import Floats
 
 
 def batches(
@@ -47,7 +48,7 @@ def batches(
         check_size(file, path, names, whole=False)
         # A duplicate name is read twice: `order` is the number among columns of that name.
         order = {s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()}
-        zeros: dict[ColumnSource, Any] = {}
+        seconds = {source: Seconds() for source in fields}
         first = 1
         for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
             values = {
@@ -55,7 +56,7 @@ def batches(
                 for source, field in fields.items()
             }
             typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
-            values |= {source: _seconds(values[source], zeros, source) for source in typed}
+            values |= {source: seconds[source](values[source]) for source in typed}
             columns = {s: floats(found, s, path, first=first) for s, found in values.items()}
             yield ColumnTable(columns, units | dict.fromkeys(typed, "s"), (), first, typed)
             first += table.num_rows
@@ -72,23 +73,4 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 def _values(table: pa.Table, name: str, order: int) -> npt.NDArray[Any]:
     """Return column number `order` (from 0) among those of its name."""
-    column = table.column(table.schema.get_all_field_indices(name)[order])
-    if pa.types.is_dictionary(column.type):  # else a null becomes a value of the dictionary
-        column = column.cast(column.type.value_type)
-    values: npt.NDArray[Any] = column.to_numpy()
-    return values
-
-
-def _seconds(
-    values: npt.NDArray[Any], zeros: dict[ColumnSource, Any], source: ColumnSource
-) -> Floats:
-    """Return durations, or dates since the first one of the file, in seconds; null is NaN.
-
-    `zeros` holds the first date of each source, for all parts of a file. Seconds since 1970 would
-    be exact to a quarter of a microsecond only.
-    """
-    if values.dtype.kind == "M":
-        dates = values[~np.isnat(values)]
-        values = values - (zeros.setdefault(source, dates[0]) if dates.size else values)
-    seconds: Floats = values / np.timedelta64(1, "s")
-    return seconds
+    return to_numpy(table.column(table.schema.get_all_field_indices(name)[order]))

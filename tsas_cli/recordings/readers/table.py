@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Annotated, Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
@@ -32,6 +33,7 @@ class ReadOptions(BaseModel):
     files: str = "*"  # of a folder, the files whose names match
     extra: tuple[ColumnSource, ...] = ()  # source columns that are kept unchanged
     drop_repeated_rows: bool = False
+    repeated_times: Literal["first", "last", "mean"] | None = None  # what stays of their rows
     resample: bool = False  # interpolate channels with different times onto the fastest
     table: str | None = None  # the JSON key or the MATLAB variable that holds the table
     encoding: str = "utf-8-sig"
@@ -58,6 +60,8 @@ class ColumnTable:
         The number of the first row in the file, from 1.
     typed
         The columns whose unit follows from their data type, so that a map cannot set another.
+    numbers
+        The numbers of the rows in the file, shape (n,), if some of its rows were left out.
     """
 
     columns: Mapping[ColumnSource, Floats]
@@ -65,6 +69,15 @@ class ColumnTable:
     header: tuple[str, ...] = ()
     first_row: int = 1
     typed: frozenset[ColumnSource] = frozenset()
+    numbers: npt.NDArray[np.int64] | None = None
+
+    @property
+    def row_numbers(self) -> npt.NDArray[np.int64]:
+        """The numbers of the rows in the file, shape (n,)."""
+        if self.numbers is not None:
+            return self.numbers
+        rows = max((values.size for values in self.columns.values()), default=0)
+        return np.arange(self.first_row, self.first_row + rows)
 
 
 def resolve(
@@ -204,5 +217,6 @@ def optional(module: str, *, extra: str) -> ModuleType:
         return import_module(module)
     except ImportError as error:
         raise InputError(
-            f"this file format needs the package {module}", remedy=f"install tsas[{extra}]"
+            f"this file format needs the package {module.partition('.')[0]}",
+            remedy=f"python -m pip install 'tsas[{extra}]'",
         ) from error

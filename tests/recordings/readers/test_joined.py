@@ -1,0 +1,83 @@
+"""One run from files with clocks of their own."""
+
+import numpy as np
+import pytest
+
+from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.support.errors import InputError
+
+LIST = """
+[drive]
+file = "drive.csv"
+time = "t [ms]"
+[load]
+file = "load.csv"
+time = 1
+unit = "s"
+offset_s = -0.5
+"""
+
+
+@pytest.fixture
+def bench(tmp_path):
+    drive = [f"{100 * i},{i},a" for i in range(11)]
+    load = [f"{0.5 + 0.25 * i};{5 * i}" for i in range(5)]
+    (tmp_path / "drive.csv").write_text("\n".join(["t [ms],x [mm],note", *drive]))
+    (tmp_path / "load.csv").write_text("\n".join(load))
+
+    def write(text=LIST):
+        (tmp_path / "run.join").write_text(text)
+        return tmp_path / "run.join"
+
+    return write
+
+
+def test_columns_are_named_by_their_part(bench):
+    assert names(bench(), ReadOptions()) == ("drive.x [mm]", "load.2", "time")
+
+
+def test_all_come_onto_the_clock_with_the_most_samples(bench):
+    wanted = ["time", "drive.x [mm]", "load.2"]
+    with pytest.raises(InputError, match="the channels have different times"):
+        read(bench(), ReadOptions(), wanted)
+    table = read(bench(), ReadOptions(resample=True), wanted)
+    np.testing.assert_allclose(table.columns["time"], np.arange(11) / 10)
+    np.testing.assert_allclose(table.columns["drive.x [mm]"], np.arange(11))
+    np.testing.assert_allclose(table.columns["load.2"], 2 * np.arange(11))  # 20 a second
+    assert table.units == {"time": "s", "drive.x [mm]": "mm"}
+
+
+def test_an_offset_moves_one_clock(bench):
+    table = read(bench(LIST.replace("-0.5", "-0.3")), ReadOptions(resample=True), ["time", 2, 1])
+    np.testing.assert_allclose(table.columns["time"], np.arange(2, 11) / 10)
+    np.testing.assert_allclose(table.columns[2], 20 * (np.arange(2, 11) / 10 - 0.2), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"drive.csv"', '"../drive.csv"', "is another folder's file"),
+        ('"drive.csv"', '"run.join"', "or a list"),
+        ('"drive.csv"', '"other.csv"', "No such file"),
+        ('"t [ms]"', '"t"', "column t is missing"),
+        ('unit = "s"', "", "the clock 1 states no unit"),
+        ('unit = "s"', 'unit = "mm"', "mm"),
+        ("offset_s", "offset", "offset"),
+        ("-0.5", "50.0", "never overlap"),
+        (LIST, "a = 1", "a"),
+    ],
+)
+def test_what_is_wrong_with_a_list_is_one_line(bench, old, new, message):
+    path = bench(LIST.replace(old, new))
+    with pytest.raises(InputError, match=message):
+        read(path, ReadOptions(resample=True), ["drive.x [mm]", "load.2"])
+
+
+def test_a_clock_of_dates_needs_an_offset(bench, tmp_path):
+    rows = [f"2026-03-03 10:00:0{i},{i}" for i in range(5)]
+    (tmp_path / "load.csv").write_text("\n".join(rows))
+    text = LIST.replace('unit = "s"\noffset_s = -0.5', "")
+    with pytest.raises(InputError, match="counts from the first date of its own file"):
+        names(bench(text), ReadOptions())
+    assert len(names(bench(f"{text}\noffset_s = 0.0"), ReadOptions())) == 3

@@ -1,0 +1,114 @@
+"""Formats whose readers offer named arrays: known numbers come back, whatever holds them."""
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pytest
+from pyarrow import feather
+
+from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.support.errors import InputError
+
+TIME = np.arange(5) / 8
+FORCE = np.array([1.5, np.nan, -3e300, 4.0, 5.0])
+START = np.datetime64("2026-03-03T10:00:00.5")
+DATES = START + (1000 * TIME).astype("timedelta64[ms]")
+
+
+def hdf5(path):
+    with h5py.File(path, "w") as file:
+        file.attrs["operator"] = "M"
+        group = file.create_group("bench")
+        group["t"] = TIME
+        group["t"].attrs["unit"] = "s"
+        group.create_dataset("f", data=FORCE, compression="gzip", chunks=True)
+        group["f"].attrs["units"] = b"N"
+        file["m"] = np.c_[TIME, FORCE]
+        file["across"] = np.array([TIME, FORCE])
+        file["rows"] = np.array(list(zip(TIME, FORCE, strict=True)), [("t", "f8"), ("f", "f8")])
+        file["word"] = "a"
+        file["link"] = h5py.SoftLink("/bench/t")
+        file["elsewhere"] = h5py.ExternalLink("other.h5", "/t")
+
+
+def npz(path):
+    np.savez(path, t=TIME, f=FORCE, m=np.c_[TIME, FORCE], objects=np.array([{}, 1], dtype=object))
+
+
+def as_feather(path):
+    table = pa.table(
+        {"t": TIME, "f": pa.array(FORCE, from_pandas=True), "when": DATES, "w": ["a"] * 5}
+    )
+    field = table.schema.field("f").with_metadata({"unit": "N"})
+    feather.write_feather(table.set_column(1, field, table.column(1)), path)
+
+
+@pytest.mark.parametrize(
+    ("name", "write", "time", "force"),
+    [
+        ("a.h5", hdf5, "bench/t", "bench/f"),
+        ("a.hdf5", hdf5, "m(:,1)", "m(:,2)"),
+        ("a.h5", hdf5, "across(:,1)", "across(:,2)"),
+        ("a.h5", hdf5, "rows.t", "rows.f"),
+        ("a.npz", npz, "t", "f"),
+        ("a.npz", npz, "m(:,1)", "m(:,2)"),
+        ("a.npy", lambda path: np.save(path, np.c_[TIME, FORCE]), 1, 2),
+        ("a.npy", lambda path: np.save(path, np.array([TIME, FORCE])), 1, 2),
+        ("a.feather", as_feather, "t", "f"),
+        ("a.arrow", as_feather, "when", "f"),
+    ],
+)  # fmt: skip
+def test_numbers_come_back(tmp_path, name, write, time, force):
+    write(tmp_path / name)
+    table = read(tmp_path / name, ReadOptions(), [time, force])
+    np.testing.assert_array_equal(table.columns[time], TIME)
+    np.testing.assert_array_equal(table.columns[force], FORCE)
+    if name.endswith((".feather", ".arrow")) or str(force).startswith("bench"):
+        assert table.units[force] == "N"
+
+
+def test_dates_have_a_unit_of_their_own(tmp_path):
+    as_feather(tmp_path / "a.feather")
+    table = read(tmp_path / "a.feather", ReadOptions(), ["when"])
+    assert table.units == {"when": "s"}
+    assert table.typed == {"when"}
+
+
+def test_text_of_hdf5_is_the_header(tmp_path):
+    hdf5(tmp_path / "a.h5")
+    assert read(tmp_path / "a.h5", ReadOptions(), ["bench/t"]).header == ("operator = M",)
+
+
+def test_links_and_objects_are_no_columns(tmp_path):
+    hdf5(tmp_path / "a.h5")
+    npz(tmp_path / "a.npz")
+    assert not {"link", "elsewhere", "word"} & set(names(tmp_path / "a.h5", ReadOptions()))
+    assert "objects" not in names(tmp_path / "a.npz", ReadOptions())
+
+
+def test_data_in_another_file_are_refused(tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("x", (5,), "f8", external=[(str(tmp_path / "passwords"), 0, 40)])
+    with pytest.raises(InputError, match="data of x are in another file"):
+        read(tmp_path / "a.h5", ReadOptions(), ["x"])
+
+
+def test_text_among_the_numbers_is_named(tmp_path):
+    as_feather(tmp_path / "a.feather")
+    with pytest.raises(InputError, match="column w holds 'a'"):
+        read(tmp_path / "a.feather", ReadOptions(), ["w"])
+
+
+@pytest.mark.parametrize("name", ["a.h5", "a.npz", "a.npy", "a.feather"])
+def test_damage_is_one_line(tmp_path, name):
+    (tmp_path / name).write_bytes(b"nothing that a reader knows")
+    with pytest.raises(InputError, match="cannot be read as"):
+        names(tmp_path / name, ReadOptions())
+
+
+def test_zeros_that_fill_the_memory_are_refused(tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("x", (1 << 40,), "f8", compression="gzip")
+    with pytest.raises(InputError, match="at most 500 times its size"):
+        read(tmp_path / "a.h5", ReadOptions(), ["x"])

@@ -1,0 +1,82 @@
+"""One run from several files, each with a clock of its own: a `.join` file lists them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path, PurePath
+
+from pydantic import Field
+
+from tsas_cli.recordings import readers
+from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.readers.offered import Column, Offered
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
+from tsas_cli.recordings.units import conversion
+from tsas_cli.support.arrays import Floats
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.strict_table import StrictTable
+
+
+class Part(StrictTable):
+    """One of the files: `offset_s` plus its column `time` in s is the clock of the run."""
+
+    file: str = Field(min_length=1)
+    time: ColumnSource
+    unit: str | None = None
+    offset_s: float | None = None
+    read: ReadOptions = ReadOptions()
+
+
+@contextmanager
+def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+    """Yield the columns of numbers of all files as `part.column`, with the clock of their file.
+
+    Raises
+    ------
+    InputError
+        The list or a file is wrong, a file is not in the list's folder, or its clock states no unit
+        or counts from its own first date and the list no offset.
+    """
+    del options
+    parts = {name: parse(Part, one, f"{path}, {name}") for name, one in read_toml(path).items()}
+    yield Offered([column for name in parts for column in _columns(path, name, parts[name])])
+
+
+def _columns(path: Path, name: str, part: Part) -> Iterator[Column]:
+    """Yield the columns of one file besides its clock; those of text are none."""
+    file = path.parent / part.file
+    if PurePath(part.file).name != part.file or file.suffix.lower() == path.suffix.lower():
+        raise InputError(
+            f"{part.file[:80]!r} is another folder's file, or a list",
+            where=f"{path}, {name}",
+            expected="the name of a recording beside the list",
+        )
+    clock = readers.read(file, part.read, [part.time])
+    times = _seconds(clock, part, f"{path}, {name}")
+    for number, column in enumerate(readers.names(file, part.read), start=1):
+        if part.time in (column, number):
+            continue
+        try:
+            table = readers.read(file, part.read, [number])
+        except InputError:
+            continue
+        values, unit = partial(_loaded, table.columns[number]), table.units.get(number, "")
+        yield Column(f"{name}.{column or number}", values, unit, partial(_loaded, times))
+
+
+def _loaded(values: Floats) -> Floats:
+    return values
+
+
+def _seconds(table: ColumnTable, part: Part, where: str) -> Floats:
+    unit = part.unit or table.units.get(part.time)
+    if unit is None:
+        raise InputError(f"the clock {part.time} states no unit", where=where, remedy='unit = "ms"')
+    if part.time in table.typed and part.offset_s is None:
+        raise InputError(
+            f"the clock {part.time} counts from the first date of its own file",
+            where=where,
+            remedy="offset_s = the seconds from the first file's beginning to this one's",
+        )
+    slope, intercept = conversion(unit, "s", where=where)
+    return table.columns[part.time] * slope + (intercept + (part.offset_s or 0.0))

@@ -1,0 +1,38 @@
+"""NumPy's own files, without objects: `.npy` and `.npz`."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.readers.offered import Column, Offered
+from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.recordings.readers.vectors import columns_in
+
+
+@contextmanager
+def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+    """Yield the vectors of a file by name; those of a matrix as in `columns_in`."""
+    del options
+    content = np.load(path, allow_pickle=False)
+    if isinstance(content, np.ndarray):
+        yield Offered(columns_in("", content))
+        return
+    with content:
+        expanded = Expanded.of(path)
+        for member in content.zip.infolist():
+            expanded.add(member.file_size, what=member.filename)
+        expanded.fits()
+        yield Offered([c for name in content.files for c in _columns(name, content)])
+
+
+def _columns(name: str, content: Any) -> list[Column]:
+    try:
+        return columns_in(name, content[name])
+    except ValueError as error:
+        if "allow_pickle" in str(error):  # objects would be unpickled: no column
+            return []
+        raise

@@ -1,0 +1,79 @@
+"""Packed files (gzip, bzip2, xz, zip), unpacked into a temporary folder."""
+
+import bz2
+import gzip
+import lzma
+import shlex
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath
+from typing import IO, Any
+
+from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.memory import out_of_memory
+
+_OPEN: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
+_PART = 1 << 20  # bytes at a time
+
+
+def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+    """Unpack the file of a `known` suffix inside `path` into a folder; return its path.
+
+    Raises
+    ------
+    InputError
+        It is damaged, encrypted, holds no or several known files, or unpacks to more than a
+        recording can hold.
+    """
+    del options
+    packing = path.suffix.lower()
+    try:
+        if packing == ".zip":
+            with zipfile.ZipFile(path) as archive:
+                name = _member(archive, path, known)
+                with archive.open(name) as stream:
+                    return _written(stream, folder, name, path)
+        with _OPEN[packing](path, "rb") as stream:
+            return _written(stream, folder, path.stem, path)
+    except MemoryError as error:
+        raise out_of_memory(path) from error
+    except (OSError, EOFError, ValueError, RuntimeError, NotImplementedError, zipfile.BadZipFile,
+            lzma.LZMAError, zlib.error) as error:  # fmt: skip
+        if isinstance(error, OSError) and error.errno is not None:  # not of the content
+            raise
+        raise damaged(path, f"a {packing} file", error) from error
+
+
+def _member(archive: zipfile.ZipFile, path: Path, known: frozenset[str]) -> str:
+    names = [item.filename for item in archive.infolist() if _is_known(item.filename, known)]
+    if len(names) == 1:
+        return names[0]
+    if not names:
+        raise InputError("holds no file that can be read", where=path, expected="one")
+    made = path.with_suffix("")
+    raise InputError(
+        f"holds {len(names)} files that can be read",
+        where=path,
+        expected="one",
+        remedy="unpack it and ingest the folder: "
+        f"unzip {shlex.quote(str(path))} -d {shlex.quote(str(made))}",
+    )
+
+
+def _is_known(name: str, known: frozenset[str]) -> bool:
+    inside = PurePosixPath(name)
+    hidden = any(part.startswith((".", "__MACOSX")) for part in inside.parts)
+    return inside.suffix.lower() in known and not hidden
+
+
+def _written(stream: IO[bytes], folder: Path, name: str, path: Path) -> Path:
+    expanded = Expanded.of(path)
+    target = folder / f"unpacked{PurePosixPath(name).suffix.lower()}"  # no other part of the name
+    with target.open("wb") as file:
+        while part := stream.read(_PART):
+            expanded.grow(len(part), what="unpacked")
+            file.write(part)
+    return target

@@ -1,0 +1,32 @@
+"""What a dataset cannot show, since a channel is in none or in some of its runs only."""
+
+from collections.abc import Iterator
+
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.run_files import open_run
+
+_SHOWN_BY = {
+    "x_in_mm": "the stiffness of the tendon, motion lost at the drive and errors of the proximal "
+    "position sensor cannot be judged",
+    "x_out_mm": "motion lost at the load and errors of the distal position sensor cannot be judged",
+    "f_in_N": "the level of friction rests on the stiffness of the tendon, and errors of the "
+    "proximal force sensor cannot be judged",
+    "f_out_N": "the tension at the load rests on its stiffness, and errors of the distal force "
+    "sensor cannot be judged",
+}
+
+
+def unrecorded(dataset: Dataset) -> Iterator[str]:
+    """Yield a sentence for each missing displacement or tension: what cannot be judged without it.
+
+    Raises
+    ------
+    InputError
+        The file of a run is missing or damaged.
+    """
+    columns = [set(open_run(dataset.folder, run).names) for run in dataset.runs]
+    for name, cannot in _SHOWN_BY.items():
+        without = sum(name not in names for names in columns)
+        if without:
+            where = "" if without == len(columns) else f" in {without} of {len(columns)} runs"
+            yield f"{name.rpartition('_')[0]} is not recorded{where}: without it, {cannot}."
