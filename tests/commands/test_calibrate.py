@@ -179,7 +179,7 @@ def test_effects_of_a_model_stay(strict, tmp_path):
         encoding="utf-8",
     )
     shipped = Path(__file__).parents[2] / "datasets" / "paper-groups"
-    call = ("calibrate", shipped, "--runs", "a", "--model", tmp_path / "m.toml", "--json")
+    call = ("calibrate", shipped, "--runs", "a,c", "--model", tmp_path / "m.toml", "--json")
     done = strict(*call, "--dynamics", "lugre", "--out", tmp_path / "c")
     assert (done.returncode, done.stderr) == (0, "")
     summary = json.loads(done.stdout)

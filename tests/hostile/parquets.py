@@ -268,7 +268,7 @@ CASES = (
     Case("forces that are long texts", text_force, "at most 5000 times its size"),
     Case("a time that is long texts", text_time, "column time_s holds binary"),
     Case(
-        "more than ten thousand columns",
+        "too many columns",
         many_columns,
         "holds 10503 columns; expected at most 10000",
     ),

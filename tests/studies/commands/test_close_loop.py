@@ -19,9 +19,7 @@ def rmse(row, model):
 def slow(tmp_path):
     """Settings of a loop that is quickly simulated."""
     path = tmp_path / "slow.toml"
-    path.write_text(
-        "[sensor]\nrate_Hz = 500.0\n[loop]\nnodes = 10\n[reference]\nduration_s = 13.0\n"
-    )
+    path.write_text("[sensor]\nrate_Hz = 500.0\n[loop]\nnodes = 10\n")
     return path
 
 
