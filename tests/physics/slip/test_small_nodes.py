@@ -14,6 +14,7 @@ from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.physics.boundary import unloaded_position
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.ends import update_ends
 from tsas_cli.physics.slip.nodes import (
     breakaway,
     set_friction,
@@ -124,6 +125,14 @@ def test_a_node_is_pulled_loose_outside_of_the_capstan_ratio(chain):
     ):
         row(chain, TENSION)[1:3] = before, behind
         assert breakaway(2, 2.0 * half, chain) == expected
+
+
+def test_a_load_without_a_guide_is_asked_to_balance(chain):
+    """To a billionth of the tensions there, which a tangent that is not straight may miss."""
+    row(chain, POSITION)[N + 1] = 2.0
+    for off, wrong in ((0.0, False), (4e-8, False), (6e-8, True), (-6e-8, True)):
+        row(chain, TENSION)[N] = F0 - 2.0 + KL * 2.0 + off
+        assert update_ends(chain, NOW, at(laws(), LOADED_BY_SPRING, 0.01)) == wrong
 
 
 def test_a_spring_without_pull_is_where_its_force_is_zero():
