@@ -1,4 +1,4 @@
-"""A program run here, with kernels compiled, and in a process of its own, where they are not."""
+"""A program run with kernels compiled and without: one way here, the other in a new process."""
 
 import io
 import json
@@ -7,18 +7,20 @@ import subprocess
 import sys
 from contextlib import redirect_stdout
 
+SWITCH = "TSAS_PLAIN_PYTHON"
+
 
 def answers(program, *, plain):
     """Return the columns of a program that prints [numba was loaded, columns] as JSON."""
-    if plain:
-        environment = os.environ | {"TSAS_PLAIN_PYTHON": "1"}
+    if plain == (os.environ.get(SWITCH) == "1"):
+        with redirect_stdout(io.StringIO()) as stream:
+            exec(program, {})  # noqa: S102 # a test's own
+        printed = stream.getvalue()
+    else:
         call = [sys.executable, "-W", "error", "-c", program]
+        environment = os.environ | {SWITCH: "1" if plain else "0"}
         done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
         printed = done.stdout
-    else:
-        with redirect_stdout(io.StringIO()) as stream:
-            exec(program, {"__name__": "__main__"})  # noqa: S102 # a test's own
-        printed = stream.getvalue()
     compiled, columns = json.loads(printed)
     assert compiled != plain
     return columns
