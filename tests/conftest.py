@@ -31,17 +31,18 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Begun first: at the end a module of minutes would keep one process busy and the others waiting.
 LONGEST = (
-    *("whole_job/test_whole_job", "metamorphic/test_relations", "studies/challenge/test_found"),
-    *("identification/test_dynamic_fit", "studies/challenge/test_same_numbers"),
-    *("diagnosis/test_plan", "hostile/test_hostile_files", "studies/commands/test_close_loop"),
-    *("identification/test_odd_recordings", "studies/challenge/test_run"),
-    *("commands/test_calibrate", "reporting/test_in_browser", "diagnosis/test_counted_once"),
-    *("identification/test_long_runs", "sweeping/test_cluster", "identification/test_calibration"),
-    *("numerics/test_conditioning", "stages/test_identify_harmonic_drive", "docs/test_examples"),
-    *("commands/test_live", "fuzz/test_replay", "studies/challenge/test_names_hold"),
-    *("effects/test_contract", "identification/test_phases", "comparing/test_compare"),
-    *("project/test_start", "commands/test_view", "numerics/test_compiled"),
-    *("studies/challenge/rig/test_tendon", "torture/test_torture", "fuzz/test_search"),
+    *("whole_job/test_whole_job", "hostile/test_hostile_files", "commands/test_live"),
+    *("sweeping/test_cluster", "identification/test_odd_recordings", "commands/test_calibrate"),
+    *("reporting/test_in_browser", "metamorphic/test_relations", "studies/challenge/test_found"),
+    *("studies/commands/test_challenge", "studies/commands/test_close_loop"),
+    *("diagnosis/test_counted_once", "identification/test_long_runs", "fuzz/test_replay"),
+    *("studies/challenge/test_run", "project/test_names", "commands/test_view"),
+    *("studies/challenge/rig/test_hidden", "stages/test_python_page", "diagnosis/test_plan"),
+    *("stages/test_identify_harmonic_drive", "numerics/test_compiled", "stages/test_api"),
+    *("identification/test_calibration", "studies/challenge/test_make", "docs/test_examples"),
+    *("identification/test_phases", "studies/challenge/test_same_numbers"),
+    *("numerics/test_conditioning_pieces", "commands/test_sweep", "fuzz/test_search"),
+    *("pipelines/test_pipelines", "storage/test_wrong"),
 )
 
 

@@ -29,7 +29,3 @@ def test_json_holds_the_whole_records(tsas):
     (play,) = backlash["parameters"]
     assert (play["name"], play["unit"], play["neutral"]) == ("play_mm", "mm", 0.0)
     assert (play["lower"], play["upper"]) == (0.0, 20.0)
-
-
-def test_quiet_prints_nothing(tsas):
-    assert tsas("effects", "--quiet").stdout == ""

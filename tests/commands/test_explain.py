@@ -40,10 +40,6 @@ def test_json_is_the_record(tsas):
     assert velocity["starts"] == [1.0, 4.0, 15.0]
 
 
-def test_quiet_prints_nothing(tsas):
-    assert tsas("explain", "backlash", "--quiet").stdout == ""
-
-
 @pytest.mark.parametrize(
     ("name", "hint"), [("drive_friktion", "did you mean drive_friction?"), ("?", "channel_delay")]
 )

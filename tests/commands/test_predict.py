@@ -50,16 +50,6 @@ def test_out_holds_all_that_json_prints_and_the_keys_are_documented(run, tmp_pat
     assert set(content) <= documented("predict.json")
 
 
-def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
-    text = (root / "calibrated-1" / "model.toml").read_text()
-    model = tmp_path / "m.toml"
-    model.write_text(text.replace('load = ["spring"]', r'load = ["\u001b[2Jhung"]'))
-    code, out, _ = run(model, "new", "--runs", "slow")
-    assert code == 0
-    assert r"load spring, fitted to \x1b[2Jhung" in out
-    assert "\x1b" not in out
-
-
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -57,7 +57,7 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_call_goes_on(rigs, tmp_path, tsa
     plan = tmp_path / "plan.toml"
     plan.write_text(
         'stage = "simulate"\ndatasets = "rigs/a"\n[vary]\n'
-        "friction_coefficient = { from = 0.1, to = 0.2, steps = 30 }\n"
+        "friction_coefficient = { from = 0.1, to = 0.2, steps = 12 }\n"
     )
     call = [*CALL, str(plan), "--out", str(out), "--workers", "1"]
     process = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -72,12 +72,12 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_call_goes_on(rigs, tmp_path, tsa
     assert (process.returncode, streams) == (130, (b"", b""))
     before = len(journal.read_text().splitlines())
     kept = [path for path in (out / "tasks").iterdir() if not path.name.startswith(".")]
-    assert 1 <= before <= len(kept) < 30
+    assert 1 <= before <= len(kept) < 12
     assert not (out / "sweep.json").exists()
     done = tsas("sweep", plan, "--out", out, "--workers", "1")
     assert done.returncode == 0
     assert f"{len(kept)} of them were completed before." in done.stdout
-    assert len(journal.read_text().splitlines()) == before + 30 - len(kept)
+    assert len(journal.read_text().splitlines()) == before + 12 - len(kept)
     assert not [path for path in (out / "tasks").iterdir() if path.name.startswith(".")]
 
 

@@ -11,6 +11,7 @@ from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 NOMINAL = Rig(cells=60)
 ROUGH = replace(NOMINAL, friction_coefficient=0.15)
+SENSORS = Sensors(rate_Hz=200.0)
 PACES = {"slow": 1.0, "fast": 2.0}  # rad/s
 
 
@@ -22,7 +23,7 @@ def clean(rig, omega):
 def recorded(folder, rig, *, seed, name="bench"):
     """Write a dataset of two runs; the seed is of their noise."""
     runs = [
-        Run(run, measure(clean(rig, omega), Sensors(), seed=10 * seed + k), conditions(rig))
+        Run(run, measure(clean(rig, omega), SENSORS, seed=10 * seed + k), conditions(rig))
         for k, (run, omega) in enumerate(PACES.items())
     ]
     return write_dataset(folder, runs, name=name)

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from tests.both_ways import answers
@@ -66,4 +67,4 @@ def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
     assert len(plain) == 4 * 11
     for ours, theirs in zip(plain, compiled, strict=True):
-        assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-6)
+        np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-6)

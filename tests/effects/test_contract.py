@@ -198,4 +198,4 @@ def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
     assert len(plain) == 5 * len(LOADS) * len(EFFECTS)
     for ours, theirs in zip(plain, compiled, strict=True):
-        assert ours == pytest.approx(theirs, rel=1e-8, abs=1e-8)
+        np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-8)

@@ -169,11 +169,6 @@ CASES = (
         file("../outside.parquet"),
         "must stay inside the dataset's folder",
     ),
-    Case("an absolute file", file("/etc/passwd"), "must stay inside the dataset's folder"),
-    Case("a Windows path", file("C:\\secret.parquet"), "must stay inside the dataset's folder"),
-    Case(
-        "a network path", file("\\\\server\\share.parquet"), "must stay inside the dataset's folder"
-    ),
     Case("a file with NUL", file("runs/0.parquet\0"), "the run's file is missing"),
     Case("the manifest as a run", file("dataset.toml"), "the checksum differs"),
     Case("a file of 10,000 letters", file("a" * 10_000), "is too long for a file's name"),
@@ -247,19 +242,8 @@ CASES = (
         "is a pipe or a device",
     ),
     Case("a run called ../x", run_id("../x"), "must be usable as a file name"),
-    Case("a run called ..", run_id(".."), "must be usable as a file name"),
-    Case("a run called con", run_id("con"), "is a device on Windows"),
-    Case("a run called COM1.csv", run_id("COM1.csv"), "is a device on Windows"),
-    Case("a run that ends with a blank", run_id("a "), "must be usable as a file name"),
-    Case("a run that is a formula", run_id("=cmd|' /C calc'!A0"), "must be usable as a file name"),
-    Case("a run that is blank", run_id(" "), "must be usable as a file name"),
     Case("a run without a name", run_id(""), "at least 1 character"),
-    Case("a run of 10,000 letters", run_id("x" * 10_000), "must be usable as a file name"),
     Case("a run with an escape", run_id("\x1b[2Jx"), "must be usable as a file name (no slash"),
-    Case(
-        "a run that turns the text round", run_id("a\u202egnp.exe"), "must be usable as a file name"
-    ),
-    Case("a run with a NUL", run_id("a\0b"), "must be usable as a file name"),
     Case("a run with script", run_id("<script>alert(1)<script>")),
     Case(
         "runs that differ in case only",

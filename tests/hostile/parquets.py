@@ -195,7 +195,7 @@ def text_time(folder: Path) -> list[object]:
 
 
 def many_columns(folder: Path) -> list[object]:
-    names = [*CANONICAL, *(f"c{i}" for i in range(30_000))]
+    names = [*CANONICAL, *(f"c{i}" for i in range(10_500))]
     return check(folder, parquet(folder / "a.parquet", names, rows=3))
 
 
@@ -267,7 +267,11 @@ CASES = (
     Case("an extra column of long texts", text_note),
     Case("forces that are long texts", text_force, "at most 5000 times its size"),
     Case("a time that is long texts", text_time, "column time_s holds binary"),
-    Case("thirty thousand columns", many_columns, "holds 30003 columns; expected at most 10000"),
+    Case(
+        "too many columns",
+        many_columns,
+        "holds 10503 columns; expected at most 10000",
+    ),
     Case("lists in lists", nested, "cannot be read as Parquet"),
     Case("groups in groups, 200,000 deep", nested_deep, "cannot be read as Parquet"),
     Case("a pickled type", with_pickle),

@@ -98,7 +98,7 @@ CASES = (
         csv(lambda: "t," * 99_999 + "t\n" + "1," * 99_999 + "1\n"),
         "holds 100000 columns; expected at most 10000",
     ),
-    Case("a million comments", csv(lambda: "# no\n" * 1_000_000 + "t,x,f\n" + ROWS)),
+    Case("two hundred thousand comments", csv(lambda: "# no\n" * 200_000 + "t,x,f\n" + ROWS)),
     Case("NULs in rows", csv("t,x,f\n" + ROWS + "1\0,2,3\n"), "row 52: column t holds '1\\x00'"),
     Case("NULs in names", csv("t\0,x,f\n" + ROWS), "did you mean t\\x00?"),
     Case(

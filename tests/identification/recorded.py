@@ -15,6 +15,7 @@ from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 ALL = ("f_in_N", "f_out_N", "x_out_mm")
 CELLS = 60  # 0.013 N off a rig of 200 at the most, where it turns; sensors have noise of 0.08 N
+RATE_HZ = 250.0  # of the rig; 0.01 N off one of 1000 Hz at a reversal
 
 
 @cache
@@ -23,9 +24,15 @@ def _simulated(rig: Rig, time_s: bytes, x_in_mm: bytes):
 
 
 def clean(rig: Rig, motion=None):
-    """Return the rig's run without sensor errors; the same one for equal motions."""
+    """Return the rig's run without sensor errors, straight between the samples of the rig."""
     moved = motion or sine()
-    return _simulated(replace(rig, cells=CELLS), moved.time_s.tobytes(), moved.x_in_mm.tobytes())
+    every = max(round(1.0 / (RATE_HZ * moved.time_s[1])), 1)
+    at = np.unique(np.append(np.arange(0, moved.time_s.size, every), moved.time_s.size - 1))
+    run = _simulated(
+        replace(rig, cells=CELLS), moved.time_s[at].tobytes(), moved.x_in_mm[at].tobytes()
+    )
+    columns = {n: np.interp(moved.time_s, run.time_s, v) for n, v in run.columns.items()}
+    return replace(run, columns=columns)
 
 
 def prepared(rig: Rig, motion=None, *, seed=0, channels=ALL, run_id="a", sensors=None, **said):

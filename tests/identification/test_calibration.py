@@ -72,7 +72,7 @@ def test_what_cannot_be_told_is_said():
 
 
 def test_without_a_bend_friction_stands_for_the_product():
-    run = prepared(TRUE, total_bend_rad=None)
+    run = recorded(TRUE, total_bend_rad=None)
     result = calibrate_runs(manifest(run), [run])
     friction = found(result)["friction_coefficient", None]
     assert friction.value == pytest.approx(0.135 * math.pi, rel=2e-3)
@@ -138,7 +138,7 @@ def test_a_measured_load_takes_the_place_of_the_spring():
 
 
 def test_tension_transfer_is_the_capstan_s():
-    run = prepared(TRUE)
+    run = recorded(TRUE)
     transfer = {e.name: e for e in calibrate_runs(manifest(run), [run]).transfer}
     a = 0.135 * math.pi
     assert transfer["ratio_contraction"].value == pytest.approx(math.exp(a), rel=2e-3)

@@ -31,7 +31,7 @@ def entry(**told):
 
 @cache
 def prepared(rig, amplitude_mm, omega_rad_s, seed):
-    columns = measure(clean(rig, amplitude_mm, omega_rad_s), Sensors(), seed=seed)
+    columns = measure(clean(rig, amplitude_mm, omega_rad_s), Sensors(rate_Hz=100.0), seed=seed)
     return prepare(Recording(entry(), columns))
 
 

@@ -56,24 +56,6 @@ def test_strokes_go_from_turn_to_turn_and_cover_the_run():
     np.testing.assert_allclose(second.channels["f_out_N"], expected)
 
 
-def test_long_strokes_are_thinned_by_means():
-    n = 1300
-    x = np.arange(float(n))
-    conditioned = SimpleNamespace(values=x, sd=np.full(n, 0.01), reversals=np.array([0, n - 1]))
-    run = SimpleNamespace(
-        conditioned={"x_in_mm": conditioned},
-        measured={"f_out_N": 2.0 * x},
-        noise={"f_out_N": 0.5},
-        time_s=x,
-        drive_column="x_in_mm",
-    )
-    (whole,) = p._strokes(run)
-    assert set(np.diff(whole.at)) == {3}  # 1300 // 400
-    np.testing.assert_allclose(whole.channels["f_out_N"][:3], [4.0, 16.0, 28.0])
-    (unknown,) = p.segment(SimpleNamespace(drive_column="f_in_N", time_s=x))
-    assert (unknown.first, unknown.end, unknown.phase) == (0, n, "unknown")
-
-
 def test_segments_in_a_file_end_where_the_next_one_begins():
     segments = [p.Segment(0, 50, "dead_band_up"), p.Segment(50, 140, "contraction")]
     told = p.segment_records(resting(), segments)

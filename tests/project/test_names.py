@@ -124,7 +124,7 @@ def test_a_file_that_comes_or_goes_is_noticed_under_any_name(folder, first, late
 
 
 @needs_make
-@settings(deadline=None)
+@settings(deadline=None, max_examples=30)
 @given(setting=st.sampled_from(sorted(SETTINGS)), name=odd_names())
 @example(setting="MAP", name="map (2)")
 @example(setting="RAW", name="(")

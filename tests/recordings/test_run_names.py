@@ -13,7 +13,7 @@ def test_names_that_name_a_file(name):
 
 @pytest.mark.parametrize(
     "name",
-    ["", ".", "..", "../x", "a/b", "a\\b", "a\0", "a\n", "\x1b[2J", "a\u202eb", " a", "a ",
+    ["", ".", "..", "../x", "a/b", "a\\b", "a\0", "a\n", "\x1b[2J", "a\u202eb", " ", " a", "a ",
      "x" * 248, "力" * 83, "\ud800"],
 )  # fmt: skip
 def test_names_that_name_none(name):

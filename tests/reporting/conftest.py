@@ -1,14 +1,26 @@
 """What tests of pages share."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import pytest
 from matplotlib.figure import Figure
 
 
-@pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+@contextmanager
+def no_curves() -> Iterator[None]:
     """Let pictures have their words and no curves, which take longer than the rest of a page."""
 
     def empty(_, stream, **__):
         stream.write('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>')
 
-    monkeypatch.setattr(Figure, "savefig", empty)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "savefig", empty)
+        yield
+
+
+@pytest.fixture
+def undrawn() -> Iterator[None]:
+    """Draw no curves in a test."""
+    with no_curves():
+        yield

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+from tests.reporting.conftest import no_curves
 from tests.reporting.made_folders import REASONS, make_dataset, make_diagnosis
 from tests.reporting.test_page import Outline, headings
 from tsas_cli.effects import EFFECTS
@@ -28,7 +29,8 @@ def dataset(tmp_path_factory):
 @pytest.fixture(scope="module")
 def sections(dataset):
     """The section of the diagnosis, by verdict."""
-    return {v: written(make_diagnosis(dataset, dataset.parent / v, v)) for v in REASONS}
+    with no_curves():
+        return {v: written(make_diagnosis(dataset, dataset.parent / v, v)) for v in REASONS}
 
 
 def written(folder):

@@ -4,14 +4,14 @@ import re
 import pytest
 
 import tsas_cli as tsas
-from tests.comparing.made import NOMINAL, ROUGH, calibrated, clean
+from tests.comparing.made import NOMINAL, ROUGH, SENSORS, calibrated, clean
 from tests.reporting.made_folders import make_dataset, make_prediction
 from tests.reporting.test_page import Outline
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.reporting.prediction import section
 from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.sensors import measure
 
 HOSTILE = "<script>$x$"
 
@@ -22,7 +22,7 @@ def folder(tmp_path_factory):
     root = tmp_path_factory.mktemp("prediction")
     models = [calibrated(root, rig, seed=seed) for seed, rig in ((1, NOMINAL), (2, ROUGH))]
     runs = [
-        Run(name, measure(clean(rig, 1.0), Sensors(), seed=20 + k), conditions(rig))
+        Run(name, measure(clean(rig, 1.0), SENSORS, seed=20 + k), conditions(rig))
         for k, (name, rig) in enumerate((("a", NOMINAL), (HOSTILE, ROUGH)))
     ]
     write_dataset(root / "new", runs, name="bench & <b>")

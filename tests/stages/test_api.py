@@ -30,7 +30,7 @@ RIG = Rig(friction_coefficient=0.16, proximal_length_mm=150.0, distal_length_mm=
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    recorded = record(RIG, sine(rate_Hz=400.0), sensors=Sensors(rate_Hz=200.0))
+    recorded = record(RIG, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0))
     where = tmp_path_factory.mktemp("api") / "dataset"
     return write_dataset(where, [Run("a", recorded, conditions(RIG))])
 

@@ -17,7 +17,7 @@ RIG = Rig(cells=60)
 @pytest.fixture(scope="module")
 def pounds(tmp_path_factory):
     """Return a dataset whose f_in is in pounds and says newton."""
-    recorded = dict(record(RIG, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0)))
+    recorded = dict(record(RIG, sine(rate_Hz=100.0), sensors=Sensors(rate_Hz=50.0)))
     recorded["f_in_N"] = np.asarray(recorded["f_in_N"]) / 4.4482216
     folder = tmp_path_factory.mktemp("pounds") / "dataset"
     return write_dataset(folder, [Run("a", recorded, conditions(RIG))])

@@ -18,7 +18,7 @@ from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(proximal_length_mm=150.0, cells=60)
-RECORDED = record(TRUE, sine(rate_Hz=400.0), sensors=Sensors(rate_Hz=200.0))
+RECORDED = record(TRUE, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0))
 LENGTH = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
 
 

@@ -190,4 +190,4 @@ def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
     assert min(plain[3]) == 0.0
     for ours, theirs in zip(plain, compiled, strict=True):
-        assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-6)
+        np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-6)

@@ -1,8 +1,4 @@
-"""One static problem of the slip chain, and how samples follow: against the relations themselves.
-
-Whatever the nodes do, each segment stretches by its compliance, a node that slides passes on by
-its line, one that sticks stays, and both ends balance.
-"""
+"""How samples of the slip chain follow each other, how a run begins, and what it says."""
 
 import math
 
@@ -18,9 +14,7 @@ from tests.physics.references import (
     at,
     course_of,
     follow,
-    moment,
 )
-from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.mesh import segment_compliances
@@ -38,14 +32,10 @@ from tsas_cli.physics.slip.chain import (
 )
 from tsas_cli.physics.slip.chain import follow as go_on
 from tsas_cli.physics.slip.chain import moment as moment_of
-from tsas_cli.physics.slip.nodes import set_friction
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,
-    DROP,
-    DROP_SLOPE,
     END_SPEED,
-    FACTOR,
     POSITION,
     POSITION_BEFORE,
     SHARE_BEFORE,
@@ -54,12 +44,6 @@ from tsas_cli.physics.slip.state import (
     TENSION_BEFORE,
     TENSION_RISE,
     Moment,
-)
-from tsas_cli.physics.slip.step import (
-    solve_sample,
-    sweep_to_drive,
-    sweep_to_load,
-    update_active_set,
 )
 
 F0, KL = 25.0, 1.579
@@ -70,134 +54,6 @@ AT_ENDS = {
     "load_friction.before_sensor_N": 1.5,
     "load_friction.after_sensor_N": 3.0,
 }
-BOTH_FORCES = Boundary(FORCE, FORCE)
-BOUNDARIES = [
-    LOADED_BY_SPRING,
-    LOADED_BY_FORCE,
-    LOADED_BY_DISPLACEMENT,
-    DRIVEN_BY_FORCE,
-    BOTH_FORCES,
-]
-
-
-def sliding(rig, n, slips, *, seed=4):
-    """Return a chain at arbitrary places that slides by arbitrary lines."""
-    chain, rng = chain_at_rest(rig, n), np.random.default_rng(seed)
-    nodes = slice(1, n + 1)
-    chain[SLIP:][: n + 2] = slips
-    chain[POSITION_BEFORE:][: n + 2] = rng.uniform(-0.2, 0.2, n + 2)
-    chain[FACTOR:][nodes] = rng.uniform(0.8, 1.2, n)
-    chain[DROP:][nodes] = rng.uniform(-1.0, 1.0, n)
-    return chain
-
-
-def given(boundary):
-    drive = 30.0 if boundary.drive == FORCE else 0.9
-    return moment(NOW, drive=drive, load=27.0 if boundary.load == FORCE else 0.4)
-
-
-def hold_ends(chain, n, boundary, now):
-    """Hold both ends against what is given there, friction with the sign of their slip."""
-    x, tension = chain[POSITION:], chain[TENSION:]
-    if boundary.drive != FORCE:
-        assert x[0] == now.drive
-    elif chain[SLIP] == 0.0:
-        assert x[0] == chain[POSITION_BEFORE]
-    else:
-        assert tension[0] + 4.0 * x[0] + 2.0 * chain[SLIP] == pytest.approx(now.drive)
-    last = n + 1
-    slip = chain[SLIP + last]
-    if boundary == LOADED_BY_DISPLACEMENT:
-        assert x[last] == now.load
-    elif slip == 0.0:
-        assert x[last] == chain[POSITION_BEFORE + last]
-    elif boundary.load == SPRING:
-        assert tension[n] == pytest.approx(F0 - now.losses.preload_N + KL * x[last] + 4.5 * slip)
-    else:
-        assert tension[n] == pytest.approx(now.load + 1.5 * slip)
-
-
-SLIPS = [
-    (1, 1, 1, 1, 1),
-    (-1, -1, -1, -1, -1),
-    (1, 1, 0, -1, -1),
-    (0, 1, -1, 1, 0),
-    (-1, 0, 0, 0, 1),
-]
-
-
-@pytest.mark.parametrize("slips", SLIPS)
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_both_sweeps_solve_the_row_of_relations(boundary, slips):
-    rig, n, now = with_values(GROUP_A, AT_ENDS), 3, given(boundary)
-    laws, chain = slip_laws(rig, n, LOADED_BY_SPRING), sliding(rig, n, slips)
-    sweep_to_drive(chain, now, at(laws, boundary))
-    sweep_to_load(chain, now, at(laws, boundary))
-    x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
-    gives = segment_compliances(rig, n)
-    np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-12)
-    for i in range(1, n + 1):
-        if slips[i]:
-            passed = chain[FACTOR + i] * tension[i - 1] - chain[DROP + i]
-            assert tension[i] == pytest.approx(passed)
-        else:
-            assert x[i] == chain[POSITION_BEFORE + i]
-    hold_ends(chain, n, boundary, now)
-
-
-@pytest.mark.parametrize("n", [3, 40])
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_both_sweeps_solve_the_row_of_bristles(boundary, n):
-    rig = with_values(GROUP_A, AT_ENDS | {"presliding.length_mm": 0.05})
-    now, laws, chain = (
-        given(boundary),
-        slip_laws(rig, n, LOADED_BY_SPRING),
-        sliding(rig, n, np.ones(n + 2)),
-    )
-    chain[DROP_SLOPE:][1 : n + 1] = np.random.default_rng(8).uniform(0.0, 30.0, n)
-    sweep_to_drive(chain, now, at(laws, boundary))
-    sweep_to_load(chain, now, at(laws, boundary))
-    x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
-    gives = segment_compliances(rig, n)
-    np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-10)
-    nodes = slice(1, n + 1)
-    passed = chain[FACTOR:][nodes] * tension[:-1] - chain[DROP:][nodes]
-    np.testing.assert_allclose(
-        tension[1:], passed - chain[DROP_SLOPE:][nodes] * x[nodes], rtol=1e-9
-    )
-    hold_ends(chain, n, boundary, now)
-
-
-@pytest.mark.parametrize("most", [1, 2, 5])
-def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
-    """The first, second and fourth are pulled loose, the third holds, the fifth slides back."""
-    n, straight = 5, slip_laws(GROUP_A, 5, LOADED_BY_SPRING)
-    chain = chain_at_rest(GROUP_A, n)
-    set_friction(chain, NOW, straight)
-    kept, more = math.exp(-0.6 / n), math.exp(0.45 / n)
-    chain[TENSION : TENSION + n + 1] = np.cumprod(
-        [40.0, 0.9 * kept, 1.1 * more, 1.0, 0.9 * kept, 1.0]
-    )
-    chain[SLIP + 5], chain[POSITION + 5] = 1.0, -0.1
-    now = moment(NOW, viscous_N=0.0)
-    found = update_active_set(chain, now, at(straight, scale=0.01), most)
-    assert found == min(most, 4)
-    expected = [1.0, -1.0, 0.0, 1.0, 0.0]
-    before = [0.0, 0.0, 0.0, 0.0, 1.0]
-    revised = {1: 1, 2: 2, 5: 5}[most]
-    assert chain[SLIP + 1 : SLIP + 6].tolist() == expected[:revised] + before[revised:]
-
-
-def test_a_node_loses_its_share_of_the_viscous_loss_before_it_is_pulled_loose():
-    """0.4 N at each of three: half before the bend and half behind it."""
-    n, straight = 3, slip_laws(GROUP_A, 3, LOADED_BY_SPRING)
-    now = moment(NOW, pulled=0.0, released=0.0, viscous_N=1.2)
-    for drop, slips in ((0.39, 0.0), (0.41, 1.0), (-0.39, 0.0), (-0.41, -1.0)):
-        chain = chain_at_rest(GROUP_A, n)
-        set_friction(chain, now, straight)
-        chain[TENSION : TENSION + n + 1] = 40.0 - drop * np.array([0.0, 1.0, 1.0, 1.0])
-        assert update_active_set(chain, now, at(straight, scale=0.01), n) == abs(slips)
-        assert chain[SLIP + 1 : SLIP + 4].tolist() == [slips, 0.0, 0.0]
 
 
 def test_a_load_that_its_guide_holds_does_not_move_at_all():
@@ -209,18 +65,6 @@ def test_a_load_that_its_guide_holds_does_not_move_at_all():
     assert x_out[30] > 0.5
     assert set(x_out[31:36].tolist()) == {x_out[30]}
     assert x_out[-1] < x_out[30] - 0.1
-
-
-@pytest.mark.parametrize("values", [{}, {"load_friction.after_sensor_N": 3.0}])
-def test_a_problem_settles_at_rest_and_far_from_it(values):
-    rig = with_values(GROUP_A, values)
-    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3, LOADED_BY_SPRING)
-    assert solve_sample(
-        chain, moment(NOW, drive=0.0, preload_N=0.0), at(laws, LOADED_BY_SPRING, 0.01)
-    )
-    np.testing.assert_allclose(chain[POSITION : POSITION + 5], 0.0, atol=1e-12)
-    assert solve_sample(chain, moment(NOW, drive=20.0), at(laws, LOADED_BY_SPRING, 0.01))
-    assert chain[SLIP + 1 : SLIP + 4].tolist() == [1.0] * 3
 
 
 START = Moment(1.0, 2.0, Losses(0.3, 0.4, 5.0, 6.0), 0.1)

@@ -57,7 +57,7 @@ def test_friction_and_scales_are_the_rigs_and_a_hidden_cause_keeps_its_value():
     bench = replace(BENCH, nuisance=DRAWN[0])
     n = DRAWN[0]
     hidden = (Hidden("force_sensor_curvature", {"f_in_per_N": 1e-3}),)
-    _, sensors = clean_run(bench, hidden, "b", rate_Hz=50.0)
+    _, sensors = clean_run(bench, hidden, "b", rate_Hz=25.0)
     assert sensors.f_in_N.curvature == 1e-3
     assert sensors.f_out_N.curvature == n.f_out_per_N
     assert (sensors.f_in_of_f_out, sensors.f_out_of_f_in) == (n.f_in_of_f_out, n.f_out_of_f_in)
@@ -66,14 +66,14 @@ def test_friction_and_scales_are_the_rigs_and_a_hidden_cause_keeps_its_value():
     told = BENCH.nominal | {
         "friction_coefficient": BENCH.nominal["friction_coefficient"] * n.friction["b"]
     }
-    one, _ = clean_run(replace(BENCH, nuisance=alone), (), "b", rate_Hz=50.0)
-    other, _ = clean_run(replace(BENCH, nominal=told), (), "b", rate_Hz=50.0)
+    one, _ = clean_run(replace(BENCH, nuisance=alone), (), "b", rate_Hz=25.0)
+    other, _ = clean_run(replace(BENCH, nominal=told), (), "b", rate_Hz=25.0)
     np.testing.assert_allclose(one.columns["f_in_N"], other.columns["f_in_N"], atol=1e-9)
 
 
 def test_a_realistic_case_is_the_clean_one_with_what_its_conditions_add(tmp_path):
     twins = [case for case in cases(5) if case.name in ("nothing 1", "nothing 1, realistic")]
-    make(tmp_path, twins, rate_Hz=50.0)
+    make(tmp_path, twins, rate_Hz=25.0)
     told = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))["cases"]
     named = {case["conditions"]: (name, case) for name, case in told.items()}
     assert set(named) == {"clean", "realistic"}

@@ -20,7 +20,7 @@ EACH_TIME = ("strand_roll, size 1", "nothing 1 in slow noise")
 
 def diagnosed(case, folder):
     small = case.name in EACH_TIME
-    make(folder, [case], rate_Hz=50.0 if small else 100.0)
+    make(folder, [case], rate_Hz=30.0 if small else 100.0)
     (dataset,) = (folder / "cases").glob("*/dataset")
     diagnose(dataset, runs=["a", "b"] if small else None, out=folder / "answer")
     return json.loads((folder / "answer" / "diagnosis.json").read_text())

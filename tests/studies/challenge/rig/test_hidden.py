@@ -13,7 +13,7 @@ from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS
 
-RIG, SENSORS, MOTION = Rig(cells=20), Sensors(rate_Hz=100.0), nested(speed_mm_s=10.0, rate_Hz=100.0)
+RIG, SENSORS, MOTION = Rig(cells=20), Sensors(rate_Hz=100.0), nested(speed_mm_s=13.0, rate_Hz=100.0)
 NEUTRAL = {e.name: {p.name: p.neutral for p in e.parameters} for e in EFFECTS}
 SHAPES = {p.name: p.upper for e in EFFECTS for p in e.parameters if p.shape}
 
