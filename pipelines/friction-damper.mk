@@ -28,5 +28,5 @@ $(damper_out)/diagnose/model-extended.toml: $(damper_out)/dataset/dataset.toml $
 $(damper_out)/predict/predict.json: $(damper_out)/calibrate/model.toml $(damper_out)/diagnose/model-extended.toml $(PROGRAM)
 	$(TSAS) predict '$(DAMPER)/calibrate' '$(DAMPER)/diagnose/model-extended.toml' '$(DAMPER)/dataset' --runs $(DAMPER_PREDICTED) --out '$(DAMPER)/predict' --force
 
-$(damper_out)/report.html: $(damper_out)/dataset/dataset.toml $(damper_out)/diagnose/model-extended.toml $(PROGRAM)
-	$(TSAS) report '$(DAMPER)/dataset' '$(DAMPER)/diagnose' --out '$@' --force
+$(damper_out)/report.html: $(damper_out)/diagnose/model-extended.toml $(damper_out)/predict/predict.json $(PROGRAM)
+	$(TSAS) report '$(DAMPER)/dataset' '$(DAMPER)/diagnose' '$(DAMPER)/predict' --out '$@' --force

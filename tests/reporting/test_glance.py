@@ -7,6 +7,7 @@ import pytest
 
 from tests.reporting.made_folders import (
     CASES,
+    NOISE,
     make_closing,
     make_dataset,
     make_diagnosis,
@@ -34,17 +35,24 @@ def facts(it):
 
 
 def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp_path):
-    it = of(make_diagnosis(dataset, tmp_path / "d", "named"))
-    assert (it.kind, it.verdict) == ("Cause found", "Tendon outside the sheath")
-    assert "before → after" in it.numbers
+    folder = make_diagnosis(dataset, tmp_path / "d", "named")
+    it, noise = of(folder), read_inputs([folder]).noise
+    assert noise("f_in_N") == pytest.approx(NOISE, rel=0.2)
+    f_in, f_out = (
+        f"{before / noise(name):.2g} → {after / noise(name):.2g} × noise level"
+        for name, before, after in (("f_in_N", 0.91, 0.11), ("f_out_N", 0.104, 0.096))
+    )
+    assert it.kind == "Cause found: normalised residual on held-out data 48.2 % lower"
+    assert it.verdict == "Tendon outside the sheath"
+    assert "nominal → extended model" in it.numbers
     assert facts(it) == {
-        "normalised residual": ("", "48.2 % less", "95 % interval: 44.9 to 51.0 %"),
-        "tension at the drive": ("0.910", "0.110 N", "noise alone: 0.100 N"),
-        "tension at the load": ("0.104", "0.0960 N", "noise alone: 0.0800 N"),
+        "normalised residual": ("", "48.2 % lower", "95 %: 44.9 to 51.0 %"),
+        "tension at the drive": ("0.910", "0.110 N", f_in),
+        "tension at the load": ("0.104", "0.0960 N", f_out),
         "displacement of the tendon at the load": (
             "0.0243",
             "0.00920 mm",
-            "noise alone: 0.00800 mm",
+            "3.0 → 1.1 × noise level",
         ),
     }
 
@@ -54,7 +62,7 @@ def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
     named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
     it = of(make_diagnosis(dataset, tmp_path / "d", "named", named=named))
     assert it.verdict == "Backlash and own thing"
-    assert facts(it)["normalised residual by mine"] == ("", "7.25 % less", "")
+    assert facts(it)["normalised residual by mine"] == ("", "7.25 % lower", "")
 
 
 def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
@@ -66,7 +74,7 @@ def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
 
 def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     it = of(make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
-    assert it.kind == "Cause found, but these recordings leave open which"
+    assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")
     assert it.verdict == "Tendon outside the sheath, or compliance of the drive"
 
 
