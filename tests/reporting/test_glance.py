@@ -1,5 +1,6 @@
 """The first screen says what came out, with the numbers that it rests on."""
 
+import json
 import re
 from html import unescape
 
@@ -135,3 +136,33 @@ def test_it_stands_above_everything_else(dataset, tmp_path):
 def test_the_reproduction_counts_its_verdicts():
     text = reproduction_page(PAPER, GROUPS)
     assert 'class="verdict">1 of 3 numbers and statements agree' in text
+
+
+def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
+    length = {"value": 1.0, "unit": "N", "interval_low": 0.9, "interval_high": 1.1}
+    law = {
+        "law": "drive_law",
+        "title": "Law at the drive",
+        "equation": "f = g(x)",
+        "sentence": "Elements at the drive.",
+        "parameters": {"size_N": length, "x_out_size_mm": length},
+        "channel": "f_in_N",
+        "unit": "N",
+        "rmse_before": 0.62,
+        "rmse_after": 0.11,
+        "what": "f_in [N]",
+        "travel_mm": [0.0, 1.0],
+        "after_reversal": [0.0, 2.0],
+        "place_mm": [0.0, 10.0],
+        "along_stroke": [1.0, 1.1],
+    }
+    folder = make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
+    path = folder / "diagnosis.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"verdict": "described"}))
+    it = of(folder)
+    assert it.verdict == "A law of unnamed origin describes what the model misses"
+    assert it.numbers.endswith("nominal → extended model")
+    assert facts(it)["tension at the drive"][0] == "0.620"
+    text = page(read_inputs([folder]))
+    assert "<code>size_N</code> 1.00 N, 95 % interval 0.90 to 1.10" in text
+    assert "x_out_size_mm" not in text
