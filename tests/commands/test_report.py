@@ -1,11 +1,14 @@
 import json
+import re
 import shutil
+from html import unescape
 
 import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
 from tsas_cli.__main__ import main
 from tsas_cli.reporting.pdf import PDF_MARK
+from tsas_cli.verifying.seal import sealed
 
 
 @pytest.fixture(scope="module")
@@ -99,9 +102,29 @@ def test_a_dataset_that_is_gone_is_refused(folder, run):
 
 
 def test_two_folders_of_one_kind_are_refused(folder, run):
-    shutil.copytree(folder / "simulated", folder / "second")
-    pair = [folder / "simulated", folder / "second"]
-    refused(run("report", *pair, "--out", folder / "r.html"), "second", "simulation.json")
+    shutil.copytree(folder / "calibrated", folder / "second")
+    pair = [folder / "calibrated", folder / "second"]
+    refused(run("report", *pair, "--out", folder / "r.html"), "second", "calibration.json")
+    again = [folder / "simulated"] * 2
+    refused(run("report", *again, "--out", folder / "r.html"), "a second folder", "simulated")
+
+
+def test_several_simulations_stand_beside_each_other_by_their_names(folder, run):
+    shutil.copytree(folder / "simulated", folder / "rough")
+    pair = [folder / "simulated", folder / "rough"]
+    code, out, _ = run("report", *pair, "--out", folder / "r.html", "--json")
+    assert code == 0
+    read = json.loads(out)["read"]
+    assert read["simulation.json, simulated"] == str(folder / "simulated")
+    assert read["simulation.json, rough"] == str(folder / "rough")
+    page = (folder / "r.html").read_text()
+    assert re.search(r"RMS of the residual: simulated ([\d.]+), rough \1, noise level", page)
+    commands = unescape(re.search("<pre[^>]*><code>(.*?)</code>", page, re.DOTALL)[1])
+    assert commands.count("tsas simulate") == 2
+    assert f"{folder / 'simulated'} {folder / 'rough'} --out report.html" in commands
+    assert sealed(folder / "r.html").read[-1]["folder"] == "rough"
+    (folder / "rough" / "simulation.json").write_text("{}")
+    refused(run("report", *pair, "--out", folder / "s.html"), "rough")
 
 
 @pytest.mark.parametrize(

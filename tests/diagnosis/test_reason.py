@@ -1,9 +1,8 @@
 """The sentences that give the reason of a verdict."""
 
-import math
-
 import pytest
 
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder
@@ -11,7 +10,10 @@ from tsas_cli.effects import EFFECTS
 
 TITLE = {e.name: e.title.lower() for e in EFFECTS}
 PLAY, MASS, FREE = "backlash", "load_inertia", "free_tendon"
-START = Remainder(16.0, {}, ())
+START = {
+    "f_in_N": HeldOutErrors(0.4, 0.12, 0.1, 0.11),
+    "x_out_mm": HeldOutErrors(0.03, 0.03, 0.01, 0.02),  # the smaller one over its noise level
+}
 
 
 def cause(effect, rivals=(), failed=(), law=""):
@@ -23,12 +25,12 @@ def left(mean_square, *signals, **more):
 
 
 def test_a_complete_nominal_model_lacks_nothing():
-    said = reason_of("sufficient", [], [], left(1.0), left(1.0))
+    said = reason_of("sufficient", [], [], START, left(1.0))
     assert said == "The nominal model is at the noise level: these runs show no missing effect."
 
 
 def test_a_nominal_model_within_tolerances_is_not_said_to_be_at_the_noise():
-    said = reason_of("sufficient", [], [], left(4.0), left(4.0))
+    said = reason_of("sufficient", [], [], START, left(4.0))
     assert said == (
         "The nominal model leaves 2.0 × the noise level: no more than slow noise and the "
         "tolerances of load cells, bend and friction do. These runs show no missing effect."
@@ -38,7 +40,8 @@ def test_a_nominal_model_within_tolerances_is_not_said_to_be_at_the_noise():
 def test_what_no_effect_explains_is_said_with_what_it_depends_on():
     after = left(16.0, "time_s", "x_in_mm", late=("x_out_mm",))
     assert reason_of("unexplained", [], [], START, after) == (
-        "The residual RMS is 4.0 × the noise level, and no catalogued effect explains it. "
+        "The RMS of the residual of f_in_N on held-out data is 0.400 N, and no catalogued effect "
+        "explains it. "
         "It depends on the time in the run, the displacement of the drive. "
         "At each reversal x_out_mm lags behind the model, or leads it."
     )
@@ -48,7 +51,7 @@ def test_causes_are_named_with_their_reduction():
     said = reason_of("named", [cause(PLAY), cause(MASS)], [], START, left(1.44))
     assert said == (
         f"The nominal model lacks: {TITLE[PLAY]} and {TITLE[MASS]}. "
-        "With it the residual RMS falls from 4.0 to 1.2 × the noise level."
+        "With them the RMS of the residual of f_in_N on held-out data falls from 0.400 to 0.120 N."
     )
 
 
@@ -57,12 +60,14 @@ def test_causes_are_named_with_their_reduction():
     [
         (1.04, 1.0, "from 1.04 to 1.00"),
         (1.004, 1.0, "from 1.004 to 1.000"),
-        (2.0, 1.0, "2.0 to 1.0"),
+        (1.0004, 1.0, "from 1.0004 to 1.0000"),
+        (250.0, 1.0, "from 250 to 1.00"),
     ],
 )
 def test_a_small_reduction_is_not_from_one_number_to_the_same(before, after, words):
-    said = reason_of("named", [cause(PLAY)], [], left(before**2), left(after**2))
-    assert f"{words} × the noise level" in said
+    channels = {"f_in_N": HeldOutErrors(before, after, 0.1, 0.1)}
+    said = reason_of("named", [cause(PLAY)], [], channels, left(1.0))
+    assert f"With it the RMS of the residual of f_in_N on held-out data falls {words} N." in said
 
 
 def test_rivals_are_said_once_each_in_order():
@@ -75,7 +80,7 @@ def test_rivals_are_said_once_each_in_order():
 def test_a_stand_in_is_said_with_what_it_fails_to_prove():
     stand_in = cause(PLAY, failed=("is not constant over the speed: 1 (low) and 2 (high) mm",))
     alone = reason_of("stand_in", [], [stand_in], START, left(16.0, "time_s"))
-    assert alone.startswith("The residual RMS is 4.0 × the noise level, and no catalogued effect")
+    assert alone.startswith("The RMS of the residual of f_in_N on held-out data is 0.400 N, and no")
     said = f"{TITLE[PLAY].capitalize()} takes 50 % off it, but is not proven: it is not constant"
     assert said in alone
     beside = reason_of("partly", [cause(MASS)], [stand_in], START, left(2.0))
@@ -94,13 +99,12 @@ def test_a_law_that_differs_is_said_of_its_effect():
 
 @pytest.mark.parametrize(
     ("rms", "text"),
-    [(1.0, "1.0"), (1.04, "1.0"), (9.94, "9.9"), (9.96, "10"), (10.4, "10"), (123.0, "120")],
+    [(1.0, "1.00"), (1.004, "1.00"), (9.994, "9.99"), (9.996, "10.0"), (1234.0, "1230")],
 )
-def test_the_noise_level_is_exceeded_to_two_digits(rms, text):
-    after = left(rms**2, "time_s")
-    said = reason_of("unexplained", [], [], after, after)
-    assert said.startswith(f"The residual RMS is {text} × the noise level")
-    assert math.sqrt(after.mean_square) == pytest.approx(rms)
+def test_the_residual_is_said_to_three_digits(rms, text):
+    channels = {"x_out_mm": HeldOutErrors(rms, rms, 0.1, 0.1)}
+    said = reason_of("unexplained", [], [], channels, left(1.0, "time_s"))
+    assert said.startswith(f"The RMS of the residual of x_out_mm on held-out data is {text} mm,")
 
 
 def test_three_causes_are_a_list():

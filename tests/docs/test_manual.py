@@ -130,7 +130,7 @@ def test_the_picture_stands_alone():
     assert len(text) < 150_000
     assert set(re.findall(r"var\(--([\w-]+)\)", text)) <= set(re.findall(r"--([\w-]+):", text))
     assert not re.search(r"(href|src)=.http", text)
-    assert "On held-out runs the error falls from" in text
+    assert "On held-out runs the residual falls from" in text
 
 
 def test_every_page_of_docs_is_in_the_site():

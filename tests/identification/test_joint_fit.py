@@ -59,10 +59,10 @@ def test_a_channel_is_missed_by_its_worst_run():
     one = run_with({"f_in_N": np.full(4, 1.3), "f_out_N": np.array([5.0, -5.0])})
     two = run_with(None, {"f_in_N": np.full(4, 1.0), "f_out_N": np.array([1.0, 1.0])})
     (said,) = j.misfit(fit_of(problem_of(), errors=(one, two)))
-    assert said.startswith("f_out_N: residual RMS up to 5 × the noise level:")
+    assert said.startswith("f_out_N: reduced chi-square up to 25 (1 at the noise level):")
     two = run_with(None, {"f_in_N": np.array([0.0, 1.31 * math.sqrt(2.0)])})
     first, second = j.misfit(fit_of(problem_of(), errors=(one, two)))
-    assert first.startswith("f_in_N: residual RMS up to 1.31 ×")
+    assert first.startswith("f_in_N: reduced chi-square up to 1.72 (1")
     assert second.startswith("f_out_N")
 
 

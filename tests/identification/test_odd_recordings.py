@@ -262,7 +262,7 @@ def test_a_straight_sheath_with_friction_is_told_to_be_wrong():
     result = calibrated(ran(recorded(), total_bend_rad=0.0))
     friction = next(e for e in result.model.estimates if e.name == "friction_coefficient")
     assert (friction.value, friction.origin) == (0.125, "data sheet")
-    assert any("f_in_N: residual RMS" in sentence for sentence in result.cannot_tell)
+    assert any("f_in_N: reduced chi-square" in sentence for sentence in result.cannot_tell)
 
 
 def test_what_does_not_show_is_kept_as_the_data_sheet_says():

@@ -255,6 +255,24 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
     return _write(folder, "diagnosis.json", content | more)
 
 
+def write_predictions(dataset: Path, folder: Path, wrong) -> Path:
+    """Write what the diagnosis's models say: the nominal is off by `wrong(run, channel, x_in)`."""
+    (folder / "runs").mkdir()
+    for recording in read_dataset(dataset):
+        x_in, f_in, f_out, _ = play(recording.time_s)
+        columns = {"time_s": recording.time_s, "x_in_mm": x_in}
+        for name, true in (("f_in", f_in), ("f_out", f_out)):
+            columns[f"{name}_N"] = true
+            columns[f"{name}_nominal_N"] = true + wrong(recording.run.id, name, x_in)
+        write_parquet(folder / "runs" / f"{recording.run.id}.parquet", pa.table(columns))
+    return folder
+
+
+def off_at_the_end(run, channel, x_in):
+    """Return what a nominal model misses in f_in near the upper reversal, of run b."""
+    return np.where((x_in > 19.0) & (run == "b") & (channel == "f_in"), 3.0, 0.0)
+
+
 def make_prediction(dataset: Path, folder: Path) -> Path:
     """Write what two models, one of them with more friction, predict of the made dataset."""
     rough = Model((Estimate("friction_coefficient", 0.2, "1", "given"),))

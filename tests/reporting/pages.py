@@ -17,6 +17,8 @@ from tests.reporting.made_folders import (
     make_prediction,
     make_simulation,
     make_tracking,
+    off_at_the_end,
+    write_predictions,
 )
 from tests.studies.reproduction import test_page as test_reproduction
 from tsas_cli.reporting.inputs import read_inputs
@@ -27,7 +29,7 @@ from tsas_cli.support.errors import InputError
 from tsas_studies.reproduction.page import reproduction_page
 
 
-def pipeline(root: Path, ids=("a", "b"), **more) -> list[Path]:
+def pipeline(root: Path, ids=("a", "b"), wrong=off_at_the_end, **more) -> list[Path]:
     """Write what the whole pipeline would; return the folders."""
     dataset = make_dataset(root / "dataset", ids, **more)
     return [
@@ -35,7 +37,7 @@ def pipeline(root: Path, ids=("a", "b"), **more) -> list[Path]:
         make_check(dataset, root / "check"),
         make_calibration(dataset, root / "calibrate", ["The sheath is silent."]),
         make_simulation(dataset, root / "simulate"),
-        make_diagnosis(dataset, root / "diagnose", "named"),
+        write_predictions(dataset, make_diagnosis(dataset, root / "diagnose", "named"), wrong),
     ]
 
 

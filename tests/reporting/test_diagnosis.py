@@ -18,6 +18,7 @@ from tsas_cli.reporting.diagnosis.gains import draw_gains
 from tsas_cli.reporting.diagnosis.maps import Panel, draw_residual_map
 from tsas_cli.reporting.diagnosis.similarity import draw_similarity
 from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.page import page
 
 
@@ -66,16 +67,16 @@ def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
     order = [
         ">Tendon outside the sheath</a></h3>",
         sentence,
+        "<code>proximal_length_mm</code> 152.0 mm, 95 % interval 145.9 to 158.1</li>",
         "x_in − x_sheath = (T0 − F0)·l/EA",
-        "Parameters of free_tendon",
-        "takes 48.2 % (95 % interval 44.9 to 51.0 %) off the normalised residual",
-        "Each of 4 runs is predicted",
-        "What was tried",
-        "What is left",
+        "lowers the normalised residual by 48.2 % (95 % interval 44.9 to 51.0 %).",
         "Next experiment",
         "twice the sheath length",
         "Cannot tell",
         "The preload stays open: no run is at &lt;rest&gt;.",
+        "What is left",
+        "Each of 4 runs is predicted",
+        "What was tried",
     ]
     places = [text.index(part) for part in order]
     assert places == sorted(places)
@@ -92,9 +93,9 @@ def test_an_equation_of_several_lines_stands_on_several(dataset, tmp_path):
 
 
 def test_each_parameter_has_its_interval_unit_and_bound(sections):
-    found = rows(sections["named"])
-    assert ["proximal_length_mm", "152.0", "145.9 to 158.1", "mm", "no"] in found
-    assert ["distal_length_mm", "0.000", "–", "mm", "yes"] in found
+    text = words(sections["named"])
+    assert "proximal_length_mm 152.0 mm, 95 % interval 145.9 to 158.1\n" in text
+    assert "distal_length_mm 0.000 mm, at its bound\n" in text
 
 
 def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
@@ -105,21 +106,24 @@ def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
     assert f"In these recordings it is {rival} {sentence}" in words(text)
 
 
-def test_errors_before_and_after_stand_in_their_columns(sections):
+def test_errors_before_and_after_stand_in_their_columns(sections, dataset):
     found = rows(sections["named"])
-    header = ["channel", "before", "with what is named", "attainable", "noise floor", "unit"]
-    assert header in found
-    assert ["f_in_N", "0.910", "0.110", "0.105", "0.100", "N"] in found
+    noise = read_inputs([dataset]).noise("f_in_N")
+    over = [plain(rms / noise, 3) for rms in (0.91, 0.11)]
+    header = ["channel", "nominal model", "extended model", "attainable", "noise level", "unit"]
+    assert [*header, "nominal, normalised", "extended, normalised"] in found
+    assert ["f_in_N", "0.910", "0.110", "0.105", plain(noise, 3), "N", *over] in found
     (bars,) = (label for label in labels(sections["named"]) if "held-out data. " in label)
-    assert "tension at the drive: before 0.910, with what is named 0.110, attain" in bars
+    assert "tension at the drive: nominal model 0.910, extended model 0.110, attain" in bars
 
 
 @pytest.mark.parametrize("verdict", ["sufficient", "unexplained"])
 def test_without_a_name_there_is_no_after(sections, verdict):
     text = sections[verdict]
-    assert ["channel", "nominal model", "attainable", "noise floor", "unit"] in rows(text)
+    header = ["channel", "nominal model", "attainable", "noise level", "unit"]
+    assert [*header, "nominal, normalised"] in rows(text)
     assert "var(--after)" not in text
-    assert headings(text, 3)[0] == "Error on held-out data"
+    assert "Residual on held-out data" in headings(text, 3)
 
 
 def test_what_is_not_explained_says_on_what_it_depends(sections):
@@ -138,7 +142,7 @@ def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):
 
 
 def maps_of(text):
-    return [label for label in labels(text) if label.startswith("Mean error over")]
+    return [label for label in labels(text) if label.startswith("Mean residual over")]
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -146,14 +150,17 @@ def test_errors_that_do_not_stand_out_of_the_noise_are_not_drawn(dataset, tmp_pa
     flat = {"from": 0.0, "to": 1.0, "label": "", "mean": 0.1, "sd": 1.0, "samples": 9}
     maps = {"before": {"f_in_N": {"x_in_mm": [flat, flat]}}}
     text = written(make_diagnosis(dataset, tmp_path / "d", "sufficient", residual_map=maps))
-    assert "Over no signal does the error stand out of the noise." in text
+    assert "Over no signal does the residual stand out of the noise." in text
     assert not maps_of(text)
 
 
 def test_maps_show_the_strongest_first_and_only_the_channels_that_are_off(sections):
     shown = maps_of(sections["named"])
     assert "over the phase of the cycle" in shown[0]
-    assert "f_in_N: before −0.91 to 8.2 with scatter up to 1.0, after −0.020 to 0.18" in shown[0]
+    assert (
+        "f_in_N: nominal model −0.91 to 8.2 with scatter up to 1.0, extended model −0.020 to 0.18"
+        in shown[0]
+    )
     assert len(shown) == 4
     assert not any("f_out_N:" in label for label in shown)
 
@@ -172,7 +179,7 @@ def test_an_error_that_shows_only_in_the_scatter_is_drawn(dataset, tmp_path):
 
 def test_candidates_stand_in_order_with_gain_and_test_statistic(sections):
     found = rows(sections["named"])
-    first = found.index(["free_tendon + backlash", "87.2", "6.0", "yes", "1.02", ""])
+    first = found.index(["free_tendon + backlash", "87.2", "6.0", "yes", ""])
     assert found[first + 1][:4] == ["backlash", "43.6", "5.0", "yes"]
     assert found[first + 5][-1] == "did not converge"
     assert "Hypotheses, 10 of 12, best first" in sections["named"]
@@ -185,7 +192,7 @@ def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(dataset, tmp
     tried = [{"effects": ["backlash", f"e{n}"], **alone} for n in range(12)]
     tried += [{"effects": [e], **alone} for e in ("free_tendon", "presliding", "drive_compliance")]
     named = written(make_diagnosis(dataset, tmp_path / "a", "ambiguous", candidates=tried))
-    marks = {row[0]: row[-1] for row in rows(named) if len(row) == 6 and row[-1]}
+    marks = {row[0]: row[-1] for row in rows(named) if len(row) == 5 and row[-1]}
     assert marks["free_tendon"] == "named"
     assert marks["drive_compliance"] == "rival"
     assert "presliding" not in marks
@@ -201,9 +208,9 @@ def test_where_screening_left_nothing_the_page_says_so(dataset, tmp_path):
 
 def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
     text = words(sections["named"])
-    group = "drive_compliance, free_tendon and sheath_compression look alike here (similarity at "
-    assert f"{group}least 0.970)." in text
-    assert "direction_dependent_friction and force_sensor_gain look alike" in text
+    group = "drive_compliance, free_tendon and sheath_compression are hard to tell apart here "
+    assert f"{group}(similarity at least 0.97)." in text
+    assert "direction_dependent_friction and force_sensor_gain are hard to tell" in text
     assert "backlash and" not in text
     assert "These inputs hardly show load_inertia at" in text
 
@@ -268,11 +275,11 @@ def test_the_bar_after_is_as_long_as_the_error_after():
     draw_gains(figure, {"f_in_N": channel}, named=True)
     (axes,) = figure.axes
     assert {bar.get_label(): bar.patches[0].get_width() for bar in axes.containers} == {
-        "before": 0.91,
-        "with what is named": 0.11,
+        "nominal model": 0.91,
+        "extended model": 0.11,
     }
     marks = {line.get_label(): line.get_xdata()[0] for line in axes.lines}
-    assert marks == {"attainable": 0.105, "noise floor": 0.1}
+    assert marks == {"attainable": 0.105, "noise level": 0.1}
 
 
 def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
@@ -286,10 +293,10 @@ def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
     figure = Figure()
     draw_residual_map(figure, [Panel("f_in_N", "x_in_mm", *bins)], label="x")
     drawn = {bar.get_label(): bar.lines[0] for bar in figure.axes[0].containers}
-    assert drawn["before"].get_color() == STAND_IN["before"]
-    assert list(drawn["before"].get_ydata()) == [1.0, 3.0]
-    assert list(drawn["after"].get_ydata()) == [-1.0, -3.0]
-    assert drawn["after"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)
+    assert drawn["nominal model"].get_color() == STAND_IN["before"]
+    assert list(drawn["nominal model"].get_ydata()) == [1.0, 3.0]
+    assert list(drawn["extended model"].get_ydata()) == [-1.0, -3.0]
+    assert drawn["extended model"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)
 
 
 def test_the_square_of_two_effects_is_as_large_as_their_similarity():
@@ -302,3 +309,30 @@ def test_the_square_of_two_effects_is_as_large_as_their_similarity():
         corners = patch.get_path().get_extents()
         assert ((corners.x0 + corners.x1) / 2, (corners.y0 + corners.y1) / 2) == place
         assert corners.width == pytest.approx(0.94 * side)
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_reduction_of_the_named_cause_is_one_number_and_a_loss_is_none(dataset, tmp_path):
+    tried = [
+        {"effects": [name], "gain_percent": gain, "test_statistic": 3.0}
+        for name, gain in (("free_tendon", 51.7), ("backlash", 7.0), ("presliding", -935.0))
+    ]
+    text = written(make_diagnosis(dataset, tmp_path / "d", "named", candidates=tried))
+    reductions = {row[0]: row[1] for row in rows(text)}
+    assert reductions["free_tendon"] == "48.2"  # as in the headline
+    assert reductions["backlash"] == "7.0"
+    assert reductions["presliding"] == "none"
+    assert "935" not in text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_parameter_of_a_channel_that_was_not_recorded_is_not_shown(dataset, tmp_path):
+    folder = make_diagnosis(dataset, tmp_path / "d", "named")
+    content = json.loads((folder / "diagnosis.json").read_text())
+    delay = {"value": 0.1, "unit": "s", "interval_low": 0.0, "interval_high": 0.2}
+    content["named"][0]["parameters"] = {"f_in_delay_s": delay, "x_out_delay_s": delay}
+    content["named"][0]["effect"] = "channel_delay"
+    (folder / "diagnosis.json").write_text(json.dumps(content))
+    text = written(folder)
+    assert "f_in_delay_s" in text
+    assert "x_out_delay_s" not in text

@@ -1,5 +1,6 @@
 """The first screen says what came out, with the numbers that it rests on."""
 
+import json
 import re
 from html import unescape
 
@@ -7,6 +8,7 @@ import pytest
 
 from tests.reporting.made_folders import (
     CASES,
+    NOISE,
     make_closing,
     make_dataset,
     make_diagnosis,
@@ -34,17 +36,24 @@ def facts(it):
 
 
 def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp_path):
-    it = of(make_diagnosis(dataset, tmp_path / "d", "named"))
-    assert (it.kind, it.verdict) == ("Cause found", "Tendon outside the sheath")
-    assert "before → after" in it.numbers
+    folder = make_diagnosis(dataset, tmp_path / "d", "named")
+    it, noise = of(folder), read_inputs([folder]).noise
+    assert noise("f_in_N") == pytest.approx(NOISE, rel=0.2)
+    f_in, f_out = (
+        f"{before / noise(name):.2g} → {after / noise(name):.2g} × noise level"
+        for name, before, after in (("f_in_N", 0.91, 0.11), ("f_out_N", 0.104, 0.096))
+    )
+    assert it.kind == "Cause found: normalised residual on held-out data 48.2 % lower"
+    assert it.verdict == "Tendon outside the sheath"
+    assert "nominal → extended model" in it.numbers
     assert facts(it) == {
-        "normalised residual": ("", "48.2 % less", "95 % interval: 44.9 to 51.0 %"),
-        "tension at the drive": ("0.910", "0.110 N", "noise alone: 0.100 N"),
-        "tension at the load": ("0.104", "0.0960 N", "noise alone: 0.0800 N"),
+        "normalised residual": ("", "48.2 % lower", "95 %: 44.9 to 51.0 %"),
+        "tension at the drive": ("0.910", "0.110 N", f_in),
+        "tension at the load": ("0.104", "0.0960 N", f_out),
         "displacement of the tendon at the load": (
             "0.0243",
             "0.00920 mm",
-            "noise alone: 0.00800 mm",
+            "3.0 → 1.1 × noise level",
         ),
     }
 
@@ -54,7 +63,7 @@ def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
     named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
     it = of(make_diagnosis(dataset, tmp_path / "d", "named", named=named))
     assert it.verdict == "Backlash and own thing"
-    assert facts(it)["normalised residual by mine"] == ("", "7.25 % less", "")
+    assert facts(it)["normalised residual by mine"] == ("", "7.25 % lower", "")
 
 
 def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
@@ -66,7 +75,7 @@ def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
 
 def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     it = of(make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
-    assert it.kind == "Cause found, but these recordings leave open which"
+    assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")
     assert it.verdict == "Tendon outside the sheath, or compliance of the drive"
 
 
@@ -127,3 +136,33 @@ def test_it_stands_above_everything_else(dataset, tmp_path):
 def test_the_reproduction_counts_its_verdicts():
     text = reproduction_page(PAPER, GROUPS)
     assert 'class="verdict">1 of 3 numbers and statements agree' in text
+
+
+def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
+    length = {"value": 1.0, "unit": "N", "interval_low": 0.9, "interval_high": 1.1}
+    law = {
+        "law": "drive_law",
+        "title": "Law at the drive",
+        "equation": "f = g(x)",
+        "sentence": "Elements at the drive.",
+        "parameters": {"size_N": length, "x_out_size_mm": length},
+        "channel": "f_in_N",
+        "unit": "N",
+        "rmse_before": 0.62,
+        "rmse_after": 0.11,
+        "what": "f_in [N]",
+        "travel_mm": [0.0, 1.0],
+        "after_reversal": [0.0, 2.0],
+        "place_mm": [0.0, 10.0],
+        "along_stroke": [1.0, 1.1],
+    }
+    folder = make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
+    path = folder / "diagnosis.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"verdict": "described"}))
+    it = of(folder)
+    assert it.verdict == "A law of unnamed origin describes what the model misses"
+    assert it.numbers.endswith("nominal → extended model")
+    assert facts(it)["tension at the drive"][0] == "0.620"
+    text = page(read_inputs([folder]))
+    assert "<code>size_N</code> 1.00 N, 95 % interval 0.90 to 1.10" in text
+    assert "x_out_size_mm" not in text

@@ -1,5 +1,6 @@
 """Every kind of page in a real browser: whole, quiet, accessible, on a phone and on a desk."""
 
+import re
 from importlib import resources
 from itertools import product
 
@@ -134,6 +135,101 @@ def test_the_keyboard_reaches_the_content_at_once_and_shows_where_it_is(made, ta
     one.keyboard.press("Tab")
     assert one.evaluate(focused) == one.locator("main h2").first.inner_text()
     assert one.evaluate(outline) != "none"
+
+
+HEIGHT = "document.documentElement.scrollHeight"
+
+
+def test_the_page_of_a_pipeline_is_short_and_begins_with_the_picture(made, tab):
+    one = tab(made("pipeline"), 1400)
+    assert one.evaluate(HEIGHT) <= 4000
+    assert one.locator("main details").first.bounding_box()["y"] <= 4000
+    first = one.locator(".glance svg").first.bounding_box()
+    assert first["y"] + first["height"] < 844
+    assert not one.locator("main table").first.is_visible()
+
+
+def plot_of(one):
+    """Return the first plot, ready, and a function that moves the mouse to parts of its size."""
+    plot = one.locator(".glance .plot").first
+    plot.locator(".key").first.wait_for()
+    box = plot.locator("svg").bounding_box()
+
+    def move(x, y, **more):
+        one.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"], **more)
+
+    return plot, move
+
+
+def test_values_show_under_the_mouse_at_the_same_sample_in_both_panels(made, tab):
+    one = tab(made("pipeline"), DESK)
+    plot, move = plot_of(one)
+    tip = one.locator(".tip")
+    assert not tip.is_visible()
+    move(0.5, 0.37)
+    said = tip.inner_text().split("\n")
+    assert re.fullmatch(r"x_in −?[\d.]+ mm", said[0])
+    assert re.fullmatch(r"time [\d.]+ s", said[8])
+    assert said[2::2][:3] == ["measured", "nominal model", "extended model"]
+    measured, nominal = (float(said[k].removesuffix(" N").replace("−", "-")) for k in (3, 5))
+    residual = float(said[11].removesuffix(" N").replace("−", "-"))
+    assert measured - nominal == pytest.approx(residual, abs=0.02)
+    assert plot.locator("circle.mark").count() == 5
+    move(0.5, 1.2)
+    assert not tip.is_visible()
+    assert plot.locator("circle.mark").count() == 0
+
+
+def test_a_click_or_a_key_on_the_legend_hides_a_curve_and_shows_it_again(made, tab):
+    one = tab(made("pipeline"), DESK)
+    plot, _ = plot_of(one)
+    curves = plot.locator("[id*=axes_] > g > [clip-path][style*='--before']")
+    assert [curves.nth(k).is_visible() for k in range(2)] == [True, True]
+    key = plot.get_by_role("button", name="nominal model")
+    key.click()
+    assert key.get_attribute("aria-pressed") == "false"
+    assert [curves.nth(k).is_visible() for k in range(2)] == [False, False]
+    key.press("Enter")
+    assert key.get_attribute("aria-pressed") == "true"
+    assert [curves.nth(k).is_visible() for k in range(2)] == [True, True]
+
+
+def test_a_part_of_a_loop_is_enlarged_with_ticks_of_its_own_and_back(made, tab):
+    one = tab(made("pipeline"), DESK)
+    plot, move = plot_of(one)
+    loop = plot.locator("[id*=axes_1] > g > [clip-path][style*='--after']")
+    whole = loop.get_attribute("d")
+    ticks = plot.locator("[id*=axes_1] text").all_text_contents()
+    move(0.7, 0.15)
+    one.mouse.down()
+    move(0.9, 0.4, steps=4)
+    one.mouse.up()
+    assert loop.get_attribute("d") != whole
+    shown = plot.locator("[id*=axes_1] text:visible").all_text_contents()
+    assert shown
+    values = [float(text.replace("−", "-")) for text in shown if "[" not in text]
+    assert values != [float(text.replace("−", "-")) for text in ticks if "[" not in text]
+    plot.get_by_role("button", name="Reset zoom").click()
+    assert loop.get_attribute("d") == whole
+    assert not plot.locator(".reset").is_visible()
+    move(0.5, 0.3)
+    one.mouse.dblclick(*centre(plot))
+    assert loop.get_attribute("d") != whole
+
+
+def centre(plot):
+    box = plot.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 3
+
+
+def test_a_link_to_a_folded_section_opens_it(made, tab):
+    one = tab(made("pipeline"), DESK)
+    section = one.locator("#parameters")
+    assert not section.locator("table").first.is_visible()
+    one.locator("nav a[href='#parameters']").click()
+    assert section.locator("table").first.is_visible()
+    again = tab(made("pipeline") + "#simulation", DESK)
+    assert again.locator("#simulation svg").first.is_visible()
 
 
 def test_a_fold_opens_with_the_keyboard(made, tab):

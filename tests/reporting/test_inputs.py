@@ -1,7 +1,10 @@
+import numpy as np
 import pytest
 
+from tests.reporting.made_folders import NOISE, make_dataset, make_simulation
+from tsas_cli.identification.prepared import noise_of
 from tsas_cli.records.check import CheckFile
-from tsas_cli.reporting.inputs import read_stage
+from tsas_cli.reporting.inputs import read_inputs, read_stage
 from tsas_cli.support.errors import InputError
 
 
@@ -9,3 +12,36 @@ def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
     (tmp_path / CheckFile.FILE).write_text('{"a": ' + "[" * 800 + "]" * 800 + "}")
     with pytest.raises(InputError, match=r"check\.json: is nested too deep"):
         read_stage(CheckFile, tmp_path)
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    return make_dataset(tmp_path_factory.mktemp("inputs") / "dataset")
+
+
+def test_simulations_are_named_by_their_folders_by_their_paths_where_two_share_one(
+    dataset, tmp_path
+):
+    places = [tmp_path / "a" / "simulate", tmp_path / "b" / "simulate", tmp_path / "rough"]
+    folders = [make_simulation(dataset, place) for place in places]
+    with pytest.raises(InputError, match=r"a second folder with simulation\.json"):
+        read_inputs(folders)
+    inputs = read_inputs(folders, several=True)
+    assert list(inputs.simulations) == [str(places[0]), str(places[1]), "rough"]
+    assert [folder for _, folder in inputs.simulations.values()] == places
+
+
+def test_a_channel_has_one_noise_level_over_all_runs(dataset):
+    inputs = read_inputs([dataset])
+    levels = [noise_of(recording.get("f_in_N")) for recording in inputs.recordings]
+    assert inputs.noise("f_in_N") == pytest.approx(np.sqrt(np.mean(np.square(levels))))
+    assert inputs.noise("f_in_N") == pytest.approx(NOISE, rel=0.05)
+    assert inputs.noise("x_out_mm") is None
+
+
+def test_a_parameter_concerns_the_page_unless_its_channel_was_not_recorded(dataset):
+    inputs = read_inputs([dataset])
+    for name in ("channel_delay.f_in_delay_s", "f_out_offset_N", "x_in_zero_mm", "preload_N"):
+        assert inputs.concerns(name)
+    for name in ("channel_delay.x_out_delay_s", "x_out_zero_mm"):
+        assert not inputs.concerns(name)

@@ -23,7 +23,8 @@ def report(
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
     Each DIR is a dataset or an output of `tsas check`, `calibrate`, `simulate` or `diagnose`. An
-    output of `tsas track`, `close-loop` or `identify-harmonic-drive` has a page of its own.
+    output of `tsas track`, `close-loop` or `identify-harmonic-drive` has a page of its own. Several
+    simulations stand beside each other, each by the name of its folder.
 
     With `--pdf`, report.html is also printed to report.pdf.
     """

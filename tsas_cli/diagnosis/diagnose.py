@@ -173,16 +173,19 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         complete=complete,
         described=law is not None,
     )
-    rmse = proven.held_out[named].rmse if law is None else law.after.rmse
-    errors = proven.held_out[frozenset()].rmse, rmse
+    errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
+    by_causes = channel_errors(bench, *errors, start, after)
+    channels = by_causes
+    if law is not None:
+        channels = channel_errors(bench, errors[0], law.after.rmse, start, after)
     return Diagnosis(
         verdict,
-        reason_of(verdict, causes, stand_ins, start, after, law),
+        reason_of(verdict, causes, stand_ins, by_causes, after, law),
         Model(proven.estimates if law is None else law.estimates).over(base.model),
         Model(tuple(nominal)).over(base.model),
         causes,
         stand_ins,
-        channel_errors(bench, *errors, start, after),
+        channels,
         after,
         _share_left(start, after),
         proven.search,

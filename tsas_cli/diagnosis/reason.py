@@ -1,8 +1,9 @@
 """The verdict of a diagnosis in a few plain sentences."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.law import Law
 from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
 from tsas_cli.diagnosis.remainder import LEAST_SLOW, Remainder
@@ -17,23 +18,25 @@ def reason_of(
     verdict: Verdict,
     causes: Sequence[FoundCause],
     stand_ins: Sequence[FoundCause],
-    start: Remainder,
+    channels: Mapping[str, HeldOutErrors],
     after: Remainder,
     law: Law | None = None,
 ) -> str:
     """Return the verdict in sentences: what is lacking, what it gains, what remains.
 
-    `start` and `after` are the remaining residuals without and with the causes, `law` describes
-    what remains.
+    `channels` are the residuals on held-out data with the causes, `after` is what remains with
+    them, and `law` describes it.
     """
     sentences = []
     if causes:
-        both = _distinct(math.sqrt(start.mean_square), math.sqrt(after.mean_square))
         names = listed([_title(cause.effect) for cause in causes])
-        sentences += [
-            f"The nominal model lacks: {names}.",
-            f"With it the residual RMS falls from {both[0]} to {both[1]} × the noise level.",
-        ]
+        name, most = max(channels.items(), key=lambda it: _fall(it[1]))
+        before, now = _distinct(most.rmse_before, most.rmse_after)
+        sentences.append(f"The nominal model lacks: {names}.")
+        sentences.append(
+            f"With {'them' if causes[1:] else 'it'} the RMS of the residual of {name} on held-out "
+            f"data falls from {before} to {now} {BY_COLUMN[name].unit}."
+        )
         rivals = sorted({_title(r) for c in causes for r in c.rivals})
         sentences += [
             f"The law of {_title(c.effect)} differs from the catalogue's {c.law_differs}."
@@ -44,16 +47,17 @@ def reason_of(
             sentences.append(f"Indistinguishable from it in these recordings: {', '.join(rivals)}.")
     elif verdict == "sufficient" and after.mean_square > 1.0 + LEAST_SLOW:
         return (
-            f"The nominal model leaves {_two_digits(math.sqrt(after.mean_square))} × the noise "
+            f"The nominal model leaves {_digits(math.sqrt(after.mean_square), 2)} × the noise "
             "level: no more than slow noise and the tolerances of load cells, bend and friction "
             "do. These runs show no missing effect."
         )
     elif verdict == "sufficient":
         return "The nominal model is at the noise level: these runs show no missing effect."
     else:
-        rms = _two_digits(math.sqrt(after.mean_square))
+        name, most = max(channels.items(), key=lambda it: it[1].rmse_before / it[1].noise_floor)
         sentences.append(
-            f"The residual RMS is {rms} × the noise level, and no catalogued effect explains it."
+            f"The RMS of the residual of {name} on held-out data is {_digits(most.rmse_before, 3)} "
+            f"{BY_COLUMN[name].unit}, and no catalogued effect explains it."
         )
     for cause in stand_ins:
         gain = f"{_title(cause.effect)} takes {cause.gain_percent:.0f} % off it"
@@ -96,17 +100,21 @@ def _title(effect: str) -> str:
     return BY_NAME[effect].title.lower()
 
 
+def _fall(channel: HeldOutErrors) -> float:
+    """Return by how much the normalised residual of a channel falls."""
+    return (channel.rmse_before - channel.rmse_after) / channel.noise_floor
+
+
 def _distinct(before: float, after: float) -> tuple[str, str]:
-    """Return two values to two digits, or to as many as show that they differ, four at most."""
-    both = _two_digits(before), _two_digits(after)
-    if both[0] != both[1] or before >= 9.95:
-        return both
-    for digits in (3, 4):
-        both = f"{before:#.{digits}g}", f"{after:#.{digits}g}"
+    """Return two values to three digits, or to as many as show that they differ, five at most."""
+    both = "", ""
+    for digits in (3, 4, 5):
+        both = _digits(before, digits), _digits(after, digits)
         if both[0] != both[1]:
             break
     return both
 
 
-def _two_digits(value: float) -> str:
-    return f"{value:#.2g}" if value < 9.95 else f"{float(f'{value:.2g}'):.0f}"
+def _digits(value: float, digits: int) -> str:
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:#.{digits}g}" if rounded < 10.0 ** (digits - 1) else f"{rounded:.0f}"

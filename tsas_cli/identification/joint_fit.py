@@ -102,12 +102,13 @@ def misfit(fit: FittedModel) -> list[str]:
     worst: dict[str, float] = {}
     for run, rig in zip(fit.errors, fit.rigs, strict=True):
         for name, errors in run.errors(rig).items():
-            worst[name] = max(worst.get(name, 0.0), float(np.sqrt(np.mean(errors**2))))
+            worst[name] = max(worst.get(name, 0.0), float(np.mean(errors**2)))
     return [
-        f"{name}: residual RMS up to {ratio:.3g} × the noise level: the nominal model is wrong "
-        "somewhere, and its estimates are those of the nearest nominal model, not of the rig."
-        for name, ratio in worst.items()
-        if ratio > WRONG_RATIO
+        f"{name}: reduced chi-square up to {found:.3g} (1 at the noise level): the nominal model "
+        "is wrong somewhere, and its estimates are those of the nearest nominal model, not of the "
+        "rig."
+        for name, found in worst.items()
+        if found > WRONG_RATIO**2
     ]
 
 

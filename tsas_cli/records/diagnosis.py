@@ -195,6 +195,11 @@ class Findings(Record):
         return frozenset(named.effect for named in self.named)
 
     @property
+    def extended(self) -> bool:
+        """Whether the extended model differs from the nominal one."""
+        return bool(self.named or self.laws)
+
+    @property
     def warns(self) -> bool:
         """Whether it says that something is there which it has no name for."""
         warned = ("partly", "described", "stand_in", "unexplained")

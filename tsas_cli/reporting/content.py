@@ -84,20 +84,22 @@ class Fact:
 class Glance:
     """The first screen: the kind of answer, the answer in a few words, the numbers behind it.
 
-    `numbers` says what the facts are.
+    `numbers` says what the facts are; `pictures` stand right under the answer.
     """
 
     kind: str
     verdict: str
     numbers: str = ""
     facts: tuple[Fact, ...] = ()
+    pictures: tuple[Picture, ...] = ()
 
 
 @dataclass(frozen=True)
 class Section:
     """One section: what it shows, in the order of the fields; `parts` have their own headings.
 
-    `given` says whether there was anything to make it from.
+    `given` says whether there was anything to make it from, `folded` whether only its title shows
+    until a reader opens it.
     """
 
     anchor: str
@@ -112,6 +114,7 @@ class Section:
     closing: tuple[str, ...] = ()
     parts: tuple["Section", ...] = ()
     given: bool = True
+    folded: bool = False
 
 
 def anchor(*words: str) -> str:

@@ -5,6 +5,7 @@ import numpy as np
 from tsas_cli.support.arrays import Floats, Indices
 
 POINTS = 2400  # a bin is then narrower than a pixel of a plot of 30 rem
+FEWEST = 200
 CELLS = 300  # across and down a plot of half that width
 
 
@@ -35,6 +36,17 @@ def kept_samples(*series: Floats, points: int = POINTS) -> Indices:
         kept.append(starts + np.where(missing, np.inf, bins).argmin(axis=1))
         kept.append(starts + np.where(missing, -np.inf, bins).argmax(axis=1))
     return np.unique(np.concatenate(kept))
+
+
+def shared_points(curves: int, total: int) -> int:
+    """Return about how many points each of so many curves may have, so that a page stays small.
+
+    Examples
+    --------
+    >>> shared_points(3, 30_000), shared_points(30, 30_000), shared_points(3000, 30_000)
+    (2400, 1000, 200)
+    """
+    return min(max(total // max(curves, 1), FEWEST), POINTS)
 
 
 def kept_cells(x: Floats, y: Floats, *, cells: int = CELLS) -> Indices:

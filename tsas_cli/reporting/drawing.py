@@ -1,9 +1,10 @@
 """From a drawing function to inline SVG that follows the page's colours and never changes."""
 
 import io
+import json
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -45,11 +46,18 @@ _STYLE: dict[Any, Any] = {
 _LONGEST, _LONGEST_UPRIGHT, _LONGEST_TICK = 48, 44, 22  # letters
 _NOTHING = {"Creator": None, "Date": None, "Format": None, "Type": None}
 _SVG = "{http://www.w3.org/2000/svg}"
+_NAMED = re.compile(r"(axes|legend|[xy]tick)_\d")  # what the page's script looks for
 _LINK = "{http://www.w3.org/1999/xlink}href"
 
 
 def picture(
-    draw: Callable[[Any], None], *, key: str, alt: str, caption: str, height_in: float = 3.5
+    draw: Callable[[Any], None],
+    *,
+    key: str,
+    alt: str,
+    caption: str,
+    height_in: float = 3.5,
+    every_point: bool = False,
 ) -> Picture:
     """Draw on an empty matplotlib figure and return it as a picture of the page.
 
@@ -65,11 +73,16 @@ def picture(
         The line under the plot.
     height_in
         Height in inches, at a width of `WIDTH_IN`.
+    every_point
+        Keep all points of each curve, so that the same place in two curves is the same sample.
     """
     from matplotlib.figure import Figure
     from matplotlib.style import context
 
-    with context(["default", _STYLE]), warnings.catch_warnings():
+    with (
+        context(["default", _STYLE | {"path.simplify": not every_point}]),
+        warnings.catch_warnings(),
+    ):
         # The browser's fonts hold more letters than the one that measures here.
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
@@ -77,8 +90,19 @@ def picture(
         _shorten(figure)
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata=_NOTHING)
-    svg = _inline(_visible(stream.getvalue()), key=anchor(key), alt=alt)
+        scales = {f"axes_{number}": _scales(axes) for number, axes in enumerate(figure.axes, 1)}
+    svg = _inline(_visible(stream.getvalue()), key=anchor(key), alt=alt, scales=scales)
     return Picture(svg=svg, caption=caption)
+
+
+def _scales(axes: Any) -> dict[str, str]:
+    """Return what the page's script needs to read values off a plot; nothing of one not linear."""
+    if axes.get_xscale() != "linear" or axes.get_yscale() != "linear" or not axes.axison:
+        return {}
+    ends = {"data-x": axes.get_xlim(), "data-y": axes.get_ylim()}
+    return {name: " ".join(f"{end:.7g}" for end in both) for name, both in ends.items()} | {
+        "data-names": json.dumps([axes.get_xlabel(), axes.get_ylabel()])
+    }
 
 
 def shortened(text: str, most: int) -> str:
@@ -117,18 +141,24 @@ def _visible(svg: str) -> str:
     return "\n".join(map(printable, svg.split("\n")))
 
 
-def _inline(text: str, *, key: str, alt: str) -> Markup:
+def _inline(text: str, *, key: str, alt: str, scales: Mapping[str, Mapping[str, str]]) -> Markup:
     """Strip what only a file needs, make the ids the picture's own, shorten the numbers."""
     root = ET.fromstring(text)  # noqa: S314  our own output
     for parent in list(root.iter()):
         for style in parent.findall(f"{_SVG}defs/{_SVG}style/.."):
             parent.remove(style)  # it would hold for the whole page
+    known = set(re.findall(r"#([\w.-]+)", text)) | set(scales)
     for element in root.iter():
         element.tag = element.tag.removeprefix(_SVG)
+        if not _NAMED.match(name := element.attrib.get("id", "")) and name not in known:
+            element.attrib.pop("id", None)
         attributes = {
             "href" if name == _LINK else name: _own(name, value, key)
             for name, value in element.attrib.items()
         }
+        if attributes.get("transform", "").startswith("rotate(-0 "):
+            del attributes["transform"]
+        attributes |= scales.get(element.attrib.get("id", ""), {})
         element.attrib.clear()
         element.attrib.update(attributes)
         element.tail = None
@@ -143,7 +173,9 @@ def _own(name: str, value: str, key: str) -> str:
         return f"{key}-{value}"
     if name == _LINK:
         return f"#{key}-{value[1:]}"
-    if name == "d":
+    if name in {"d", "x", "y", "transform"}:
         short = re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", value)
-        return re.sub(r"\s*([A-Z])\s*", r"\1", short)
+        return re.sub(r"\s*([A-Zz])\s*", r"\1", short) if name == "d" else short
+    if name == "style":  # the page has letters of its own
+        value = re.sub(r"font-family: [^;]*; ", "", value)
     return value.replace("url(#", f"url(#{key}-")

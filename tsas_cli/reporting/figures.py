@@ -3,13 +3,13 @@
 from typing import Any
 
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.decimation import POINTS, kept_samples
 from tsas_cli.support.arrays import Floats
 
 
-def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:
+def line(axes: Any, time_s: Floats, values: Floats, *, points: int = POINTS, **style: Any) -> None:
     """Draw values over time, with as many points as the plot can show."""
-    kept = kept_samples(values)
+    kept = kept_samples(values, points=points)
     axes.plot(time_s[kept], values[kept], **style)
 
 

@@ -1,6 +1,7 @@
 """The first screen of the page: the answer in a few words, and the numbers that it rests on."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from statistics import median
 
 from tsas_cli.records.closing import ClosingFile
@@ -9,6 +10,7 @@ from tsas_cli.records.drive import DriveDiagnosis, DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
+from tsas_cli.reporting import before_after
 from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.diagnosis.words import heading_of, title_of, within
@@ -16,10 +18,12 @@ from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 from tsas_cli.support.wording import listed
 
+_REDUCTION = "normalised residual"
 _KINDS = {
     "named": "Cause found",
     "ambiguous": "Cause found, but these recordings leave open which",
     "partly": "Cause found, and something unknown beside it",
+    "described": "Something without a name is missing, and described",
     "stand_in": "Something unknown is missing",
     "sufficient": "Nothing is missing",
     "unexplained": "Something unknown is missing",
@@ -27,6 +31,7 @@ _KINDS = {
 }
 _NO_CAUSE = {
     "sufficient": "The nominal model explains these recordings",
+    "described": "A law of unnamed origin describes what the model misses",
     "stand_in": "No known effect explains what the model misses",
     "unexplained": "No known effect explains what the model misses",
     "undecided": "These recordings hold too little to decide",
@@ -39,28 +44,35 @@ def glance(inputs: Inputs) -> Glance | None:
         return _of_closing(closing)
     if tracking := inputs.get(TrackingFile):
         return _of_tracking(tracking)
+    if diagnosis := inputs.get(DiagnosisFile):
+        found = _of_diagnosis(diagnosis, inputs.held_out)
+        return replace(found, pictures=before_after.pictures(inputs))
     if prediction := inputs.get(PredictionFile):
         best, _, _ = next(iter(prediction.findings), "").partition(";")
         facts = tuple(Fact(f"model {one.name}", one.path) for one in prediction.models)
-        return Glance("Prediction of other recordings", best, facts=facts)
-    if diagnosis := inputs.get(DiagnosisFile):
-        return _of_diagnosis(diagnosis)
+        return Glance("Predicted, not fitted", best, facts=facts)
     if drive := inputs.get(DriveFile):
-        return _of_diagnosis(drive.diagnosis)
+        return _of_diagnosis(drive.diagnosis, drive.diagnosis.channels)
     if simulation := inputs.get(SimulationFile):
         return _of_simulation(simulation)
     return None
 
 
-def _of_diagnosis(diagnosis: DiagnosisFile | DriveDiagnosis) -> Glance:
+def _of_diagnosis(
+    diagnosis: DiagnosisFile | DriveDiagnosis, channels: Mapping[str, HeldOut]
+) -> Glance:
     named = diagnosis.named
     verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, diagnosis.reason)
-    numbers = "Root mean square error on data that no fit has seen"
-    facts = (*_gains(named), *_errors(diagnosis.channels, named=bool(named)))
+    numbers = "RMS of the residual on held-out data"
+    extended = diagnosis.extended if isinstance(diagnosis, DiagnosisFile) else bool(named)
+    facts = (*_gains(named), *_errors(channels, extended=extended))
     shown = tuple(fact for fact in facts if ABSENT not in fact.value)
-    if named:
-        numbers += ", before → after"
-    return Glance(_KINDS[diagnosis.verdict], verdict, numbers if shown else "", shown)
+    if extended:
+        numbers += ", nominal → extended model"
+    kind = _KINDS[diagnosis.verdict]
+    if len(named) == 1 and shown and shown[0].label == _REDUCTION:
+        kind += f": {_REDUCTION} on held-out data {shown[0].value}"
+    return Glance(kind, verdict, numbers if shown else "", shown)
 
 
 def _causes(named: Sequence[NamedCause]) -> str:
@@ -68,12 +80,22 @@ def _causes(named: Sequence[NamedCause]) -> str:
     return listed([first, *map(within, more)])
 
 
-def _errors(channels: Mapping[str, HeldOut], *, named: bool) -> Iterator[Fact]:
+def _errors(channels: Mapping[str, HeldOut], *, extended: bool) -> Iterator[Fact]:
     for name, channel in channels.items():
         before, after = plain(channel.rmse_before, 3), plain(channel.rmse_after, 3)
-        value = f"{after if named else before} {channel.unit}"
-        noise = f"noise alone: {plain(channel.noise_floor, 3)} {channel.unit}"
-        yield Fact(called(name), value, noise, before if named else "")
+        value = f"{after if extended else before} {channel.unit}"
+        note = _normalised(channel, extended=extended)
+        yield Fact(called(name), value, note, before if extended else "")
+
+
+def _normalised(channel: HeldOut, *, extended: bool) -> str:
+    """Return the normalised residual, before and after with an extended model."""
+    both = (channel.rmse_before, channel.rmse_after) if extended else (channel.rmse_before,)
+    noise = channel.noise_floor
+    if not noise or None in both:
+        return ""
+    said = " → ".join(plain(rms / noise, 2) for rms in both if rms is not None)
+    return f"{said} × noise level"
 
 
 def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
@@ -82,9 +104,9 @@ def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
         gain, interval = with_interval(cause.gain_percent, low, high)
         by = f" by {within(title_of(cause.effect))}" if len(named) > 1 else ""
         if interval == ABSENT:
-            yield Fact(f"normalised residual{by}", f"{plain(cause.gain_percent, 3)} % less")
+            yield Fact(f"{_REDUCTION}{by}", f"{plain(cause.gain_percent, 3)} % lower")
         else:
-            yield Fact(f"normalised residual{by}", f"{gain} % less", f"95 % interval: {interval} %")
+            yield Fact(f"{_REDUCTION}{by}", f"{gain} % lower", f"95 %: {interval} %")
 
 
 def _of_tracking(tracking: TrackingFile) -> Glance:

@@ -1,11 +1,13 @@
 """What the page is made from: the dataset, and what the stages wrote about it."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from tsas_cli.identification.prepared import CHANNELS, noise_of
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
@@ -16,7 +18,7 @@ from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.records.closing import ClosingFile
-from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
@@ -43,11 +45,25 @@ class Inputs:
     """The dataset, and by kind of stage what was given: its file's content, and its folder.
 
     Without a dataset there is only what `tsas close-loop` wrote, which has one for each case.
+    `more_simulations` are those after the first.
     """
 
     dataset: Dataset | None
     stages: Mapping[type[StageFile], StageFile]
     folders: Mapping[type[StageFile], Path]
+    more_simulations: tuple[tuple[SimulationFile, Path], ...] = ()
+
+    @property
+    def simulations(self) -> dict[str, tuple[SimulationFile, Path]]:
+        """Each simulation with its folder, by the folder's name, its path where two share one."""
+        first = self.get(SimulationFile)
+        given = () if first is None else ((first, self.folders[SimulationFile]),)
+        every = (*given, *self.more_simulations)
+        names = [folder.name for _, folder in every]
+        return {
+            name if names.count(name) == 1 else str(folder): (record, folder)
+            for name, (record, folder) in zip(names, every, strict=True)
+        }
 
     @cached_property
     def check(self) -> CheckFile:
@@ -64,33 +80,72 @@ class Inputs:
         """Return what a stage wrote, or None where it was not given."""
         return cast("Stage | None", self.stages.get(kind))
 
-    def series(self, run: str, rows: int, column: str, stage: type[StageFile]) -> Floats:
-        """Return a column that a stage wrote about a run of so many samples, NaN for gaps.
+    def noise(self, column: str) -> float | None:
+        """Return the noise level of a channel over all runs, in its unit, None where unknown."""
+        return self._noise.get(column)
+
+    @property
+    def held_out(self) -> dict[str, HeldOut]:
+        """The residuals of the diagnosis's channels, over the noise level of the whole page."""
+        diagnosis = self.get(DiagnosisFile)
+        return {
+            name: held.model_copy(update={"noise_floor": self.noise(name) or held.noise_floor})
+            for name, held in (diagnosis.channels if diagnosis else {}).items()
+        }
+
+    @cached_property
+    def _noise(self) -> dict[str, float]:
+        squares: dict[str, list[tuple[float, int]]] = {}
+        for recording in self.recordings:
+            for name in CHANNELS:
+                values = recording.get(name)
+                level = math.nan if values is None else noise_of(values)
+                if values is not None and level > 0.0:
+                    squares.setdefault(name, []).append((level**2, values.size))
+        return {
+            name: math.sqrt(sum(square * n for square, n in of) / sum(n for _, n in of))
+            for name, of in squares.items()
+        }
+
+    def concerns(self, parameter: str) -> bool:
+        """Say whether a model's parameter is not of a channel that no run holds."""
+        name = parameter.rpartition(".")[2]
+        of = [c for c in CHANNELS if name.startswith(c.rsplit("_", 1)[0] + "_")]
+        return not of or of[0] in self._columns
+
+    @cached_property
+    def _columns(self) -> frozenset[str]:
+        return frozenset(name for one in self.recordings for name in one.columns)
+
+    def series(self, run: str, rows: int, column: str, stage: type[StageFile] | Path) -> Floats:
+        """Return a column of a run of so many samples, NaN for gaps, by a stage or from its folder.
 
         Raises
         ------
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = result_file(self.folders[stage], run)
+        path = result_file(stage if isinstance(stage, Path) else self.folders[stage], run)
         values = columns_of(path, (column,))[column]
         check_rows(path, len(values), rows)
         return values
 
-    def written_columns(self, run: str, stage: type[StageFile]) -> frozenset[str]:
-        """Return the columns that a stage wrote about a run, none where it did not take it.
+    def written_columns(self, run: str, stage: type[StageFile] | Path) -> frozenset[str]:
+        """Return the columns that a stage, or its folder, has of a run, none without the run.
 
         Raises
         ------
         InputError
             The file cannot be read.
         """
-        path = result_file(self.folders[stage], run)
+        path = result_file(stage if isinstance(stage, Path) else self.folders[stage], run)
         return frozenset(names_of(path) if path.is_file() else ())
 
 
-def read_inputs(folders: Sequence[Location]) -> Inputs:
+def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs:
     """Recognise each folder by the files in it, read all, and find the dataset.
+
+    `several` simulations may be given, else one.
 
     Raises
     ------
@@ -98,24 +153,31 @@ def read_inputs(folders: Sequence[Location]) -> Inputs:
         A folder is of no known kind, a kind is a duplicate, no dataset can be found, a stage has
         read other recordings than the dataset holds, or tracked runs are not in it.
     """
-    by_file = _by_file(folders)
-    where = {kind: cast("Path", by_file[kind.FILE]) for kind in STAGES if kind.FILE in by_file}
-    stages = {kind: read_stage(kind, folder) for kind, folder in where.items()}
+    by_file = _by_file(folders, {SimulationFile.FILE} if several else set())
+    given = [
+        (read_stage(kind, folder), folder)
+        for kind in STAGES
+        for folder in cast("list[Path]", by_file.get(kind.FILE, []))
+    ]
     named = (
-        _dataset_of(stage, where[kind] / kind.FILE)
-        for kind, stage in stages.items()
-        if kind is not ClosingFile
+        _dataset_of(stage, folder / stage.FILE)
+        for stage, folder in given
+        if not isinstance(stage, ClosingFile)
     )
-    folder = by_file[MANIFEST_FILE] if MANIFEST_FILE in by_file else next(named, None)
+    first = {type(stage): (stage, folder) for stage, folder in reversed(given)}
+    stages = {kind: first[kind][0] for kind in STAGES if kind in first}
+    where = {kind: first[kind][1] for kind in stages}
+    folder = by_file[MANIFEST_FILE][0] if MANIFEST_FILE in by_file else next(named, None)
     if folder is None:
         return Inputs(None, stages, where)
-    dataset = read_dataset(folder).under(**_conditions(stages, where))
-    for kind, stage in stages.items():
+    dataset = read_dataset(folder).under(**_conditions(given))
+    for stage, path in given:
         if isinstance(stage, OfDataset):
-            _check_hashes(stage, dataset, where[kind] / kind.FILE)
-        elif kind is TrackingFile:
-            _check_own(dataset, where[kind] / kind.FILE)
-    return Inputs(dataset, stages, where)
+            _check_hashes(stage, dataset, path / stage.FILE)
+        elif isinstance(stage, TrackingFile):
+            _check_own(dataset, path / stage.FILE)
+    simulations = [(one, path) for one, path in given if isinstance(one, SimulationFile)]
+    return Inputs(dataset, stages, where, tuple(simulations[1:]))
 
 
 def read_stage(kind: type[Stage], folder: Path) -> Stage:
@@ -146,9 +208,9 @@ def _visible(content: Any) -> Any:
     return content
 
 
-def _by_file(folders: Sequence[Location]) -> dict[str, Location]:
+def _by_file(folders: Sequence[Location], several: Set[str]) -> dict[str, list[Location]]:
     known = (MANIFEST_FILE, *(kind.FILE for kind in STAGES))
-    found: dict[str, Location] = {}
+    found: dict[str, list[Location]] = {}
     for folder in folders:
         looked_for = (
             known if isinstance(folder, Path) else (MANIFEST_FILE,)
@@ -161,14 +223,16 @@ def _by_file(folders: Sequence[Location]) -> dict[str, Location]:
                 expected=f"a folder with one of {', '.join(looked_for)}",
             )
         for file in files:
-            if file in found:
+            before = found.setdefault(file, [])
+            if before and (file not in several or folder in before):
                 raise InputError(
-                    f"a second folder with {file}, after {found[file]}",
+                    f"a second folder with {file}, after {before[0]}",
                     where=folder,
-                    expected="one folder of each kind",
+                    expected="one folder of each kind"
+                    + "".join(f", and several with {name}" for name in several),
                     remedy="write a page for each",
                 )
-            found[file] = folder
+            before.append(folder)
     return found
 
 
@@ -206,20 +270,17 @@ def _check_own(dataset: Dataset, path: Path) -> None:
         )
 
 
-def _conditions(
-    stages: Mapping[type[StageFile], StageFile], where: Mapping[type[StageFile], Path]
-) -> dict[str, float]:
+def _conditions(given: Sequence[tuple[StageFile, Path]]) -> dict[str, float]:
     """Return what the stages say of the runs in place of the manifest; they have to agree."""
-    stated = {kind: s.conditions for kind, s in stages.items() if isinstance(s, OfDataset)}
-    for kind, conditions in stated.items():
-        first = next(iter(stated))
-        if conditions != stated[first]:
+    stated = [(s.conditions, path / s.FILE) for s, path in given if isinstance(s, OfDataset)]
+    for conditions, path in stated:
+        if conditions != stated[0][0]:
             raise InputError(
-                f"was given other conditions of the runs than {where[first] / first.FILE}",
-                where=where[kind] / kind.FILE,
+                f"was given other conditions of the runs than {stated[0][1]}",
+                where=path,
                 remedy="write a page for each",
             )
-    return next(iter(stated.values()), {})
+    return stated[0][0] if stated else {}
 
 
 def _check_hashes(stage: OfDataset, dataset: Dataset, path: Path) -> None:

@@ -1,6 +1,7 @@
 """The page that a person reads: every section in order, in one file that needs nothing else."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.drive import DriveFile
@@ -22,8 +23,8 @@ from tsas_cli.reporting.tracking import section as tracking
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,
     tracking.section,
-    prediction.section,
     diagnosis.section,
+    prediction.section,
     drive.section,
     recordings.section,
     stiffness.section,
@@ -48,11 +49,11 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     """
     kinds = (ClosingFile, TrackingFile, DriveFile, PredictionFile)
     alone = any(inputs.get(kind) is not None for kind in kinds)
-    sections = []
+    sections: list[Section] = []
     for make in SECTIONS:
         section = make(inputs)
         if section is not None and (section.given or not alone):
-            sections.append(section)
+            sections.append(replace(section, folded=bool(sections)))
         advance()
     name, about = "From diagnosis to tracking", "hidden differences, named and tracked"
     if inputs.dataset is not None:

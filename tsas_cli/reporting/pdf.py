@@ -19,6 +19,7 @@ BROWSERS = (
 )
 _LONGEST_S = 120.0
 PDF_MARK = b"/Maker (tsas)"  # in the first object, which describes the document
+_SCRIPT = re.compile("<script>.*?</script>", re.DOTALL)  # what it adds, and when, is in the bytes
 _DATE = re.compile(rb"/(?:Creation|Mod)Date \(D:[^()]*\)")
 _OPTIONS = (
     "--headless",
@@ -64,7 +65,7 @@ def print_page(html: str, pdf: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="tsas-pdf-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         page, made = folder / "page.html", folder / "page.pdf"
-        page.write_text(html, encoding="utf-8")
+        page.write_text(_SCRIPT.sub("", html), encoding="utf-8")
         call = [program, *_OPTIONS, f"--user-data-dir={folder / 'profile'}"]
         if os.geteuid() == 0:
             call.append("--no-sandbox")  # as root Chromium starts in no other way

@@ -10,10 +10,11 @@ from tsas_cli.comparing.predict_stage import tables
 from tsas_cli.recordings.columns import name_by
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.prediction import PredictedChannel, PredictionFile
+from tsas_cli.records.result import Table as Printed
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import MODELS, STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.decimation import POINTS, kept_samples, shared_points
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import legend, noise_bounds
 from tsas_cli.reporting.inputs import Inputs
@@ -21,7 +22,9 @@ from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.arrays import Floats
 
 _X = "x_in_mm"
+_WORDS = {"RMSE / noise": "normalised residual"}
 _MOST_RUNS = 10
+_POINTS = 30_000  # of all curves
 _LINES = ("-", "--", ":")  # after as many models as there are colours
 
 
@@ -32,21 +35,28 @@ def section(inputs: Inputs) -> Section | None:
         return None
     recordings = {one.run.id: one for one in inputs.recordings}
     shown = _order(prediction, recordings)
+    curves = 2 * min(len(shown), _MOST_RUNS) * (1 + 2 * len(prediction.models))
+    points = shared_points(curves, _POINTS)
     groups = tuple(
         Group(f"Run {run}", pictures)
         for number, run in enumerate(shown[:_MOST_RUNS])
-        if (pictures := tuple(_pictures(inputs, prediction, recordings[run], number)))
+        if (pictures := tuple(_pictures(inputs, prediction, recordings[run], number, points)))
     )
     left = len(shown) - _MOST_RUNS
     return Section(
         "prediction",
-        "Prediction of other recordings",
+        "Predicted, not fitted",
         (" ".join(prediction.notes[:1]),),
         points=(*prediction.findings, *prediction.notes[1:]),
-        tables=tuple(Table.printed(table) for table in tables(prediction)),
+        tables=tuple(map(_printed, tables(prediction))),
         groups=groups,
         closing=(f"{left} more runs are in the table.",) if left > 0 else (),
     )
+
+
+def _printed(table: Printed) -> Table:
+    caption, header, rows = table
+    return Table.printed((caption, [_WORDS.get(name, name) for name in header], rows))
 
 
 def _order(prediction: PredictionFile, known: Container[str]) -> list[str]:
@@ -63,7 +73,11 @@ def _order(prediction: PredictionFile, known: Container[str]) -> list[str]:
 
 
 def _pictures(
-    inputs: Inputs, prediction: PredictionFile, recording: Recording, number: int
+    inputs: Inputs,
+    prediction: PredictionFile,
+    recording: Recording,
+    number: int,
+    points: int,
 ) -> Iterator[Picture]:
     run = recording.run.id
     rows = [row for row in prediction.channels if row.run == run]
@@ -80,7 +94,7 @@ def _pictures(
         x = inputs.series(run, recording.time_s.size, _X, PredictionFile)
         if np.isfinite(x + measured).any():
             shown = [row for row in rows if row.channel == channel]
-            yield _picture(shown, number, x, measured, models)
+            yield _picture(shown, number, x, measured, models, points)
 
 
 def _picture(
@@ -89,6 +103,7 @@ def _picture(
     x: Floats,
     measured: Floats,
     models: Mapping[str, Floats],
+    points: int,
 ) -> Picture:
     channel, unit = rows[0].channel, rows[0].unit
     said = ", ".join(f"{row.model} {plain(row.rmse, 3)} {unit}" for row in rows)
@@ -100,6 +115,7 @@ def _picture(
             models=models,
             noise=rows[0].noise,
             labels=(at_axis(_X), at_axis(channel), f"residual [{unit}]"),
+            points=points,
         ),
         key=f"prediction-{number}-{channel}",
         alt=f"Run {rows[0].run}: {in_words(channel)} over {in_words(_X)}, measured and predicted, "
@@ -117,6 +133,7 @@ def draw_predictions(
     models: Mapping[str, Floats],
     noise: float | None,
     labels: tuple[str, str, str],
+    points: int = POINTS,
 ) -> None:
     """Draw the loop of one run, and under it what each model leaves.
 
@@ -130,9 +147,11 @@ def draw_predictions(
         Noise level of the channel in its unit, None where it is unknown.
     labels
         The names of the axes with units: of x, the channel and its residual.
+    points
+        About how many points to draw of each curve.
     """
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    kept = kept_samples(x, measured)
+    kept = kept_samples(x, measured, points=points)
     upper.plot(x[kept], measured[kept], color=STAND_IN["measured"], linewidth=2.2, label="measured")
     for number, (name, values) in enumerate(models.items()):
         turn, colour = divmod(number, len(MODELS))
@@ -141,9 +160,9 @@ def draw_predictions(
             "linestyle": _LINES[turn % len(_LINES)],
             "linewidth": 1.0,
         }
-        kept = kept_samples(x, values)
+        kept = kept_samples(x, values, points=points)
         upper.plot(x[kept], values[kept], label=f"model {name}", **style)
-        kept = kept_samples(x, measured - values)
+        kept = kept_samples(x, measured - values, points=points)
         lower.plot(x[kept], (measured - values)[kept], **style)
     noise_bounds(lower, noise)
     upper.set_ylabel(labels[1])

@@ -1,7 +1,10 @@
 """From sections to one HTML file that needs nothing else."""
 
 import re
+from base64 import b64encode
 from collections.abc import Sequence
+from hashlib import sha256
+from importlib.resources import files
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
@@ -41,6 +44,7 @@ def rendered(
         lstrip_blocks=True,
     )
     environment.filters["prose"] = _prose
+    script = (files("tsas_cli.reporting") / "templates" / "figures.js").read_text(encoding="utf-8")
     return environment.get_template("page.html").render(
         name=name,
         about=about,
@@ -48,6 +52,8 @@ def rendered(
         sections=sections,
         glance=glance,
         version=__version__,
+        script=Markup(script),  # noqa: S704  our own, and the one that the page allows
+        digest=b64encode(sha256(script.encode()).digest()).decode(),
     )
 
 

@@ -38,7 +38,7 @@ _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 def section(inputs: Inputs) -> Section:
     """Return the section on how to repeat the page."""
     hashes = {} if inputs.dataset is None else inputs.dataset.hashes()
-    for stage in (inputs.get(SimulationFile), inputs.get(DiagnosisFile)):
+    for stage in (*(one for one, _ in inputs.simulations.values()), inputs.get(DiagnosisFile)):
         if stage and stage.model.sha256:
             hashes[stage.model.file] = stage.model.sha256
     if prediction := inputs.get(PredictionFile):
@@ -83,7 +83,7 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
     if closing := inputs.get(ClosingFile):
         yield ["tsas", "close-loop", *closing_call.options(closing), "--out", folder[ClosingFile]]
-    read = list(folder.values())
+    read = [*folder.values(), *(str(path) for _, path in inputs.more_simulations)]
     if inputs.dataset is not None:
         read.insert(0, str(inputs.dataset.folder))
         yield from _of_dataset(inputs, read[0], folder)
@@ -107,8 +107,8 @@ def _of_dataset(
         options = ["--out", folder[DiagnosisFile]]
         model = _model(diagnosis.model, inputs)
         yield ["tsas", "diagnose", dataset, *model, *options, *_despite(diagnosis)]
-    if simulation := inputs.get(SimulationFile):
-        options = ["--dynamics", simulation.dynamics, "--out", folder[SimulationFile]]
+    for simulation, written in inputs.simulations.values():
+        options = ["--dynamics", simulation.dynamics, "--out", str(written)]
         if simulation.nodes is not None:
             options += ["--nodes", str(simulation.nodes)]
         if simulation.own_values_fitted:

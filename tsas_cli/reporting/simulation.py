@@ -1,86 +1,132 @@
-"""The simulation over the measurement, channel by channel, with the residual under it."""
+"""Each model's simulation over the measurement, channel by channel, the residuals under it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.simulation import SimulatedChannel, SimulationFile
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
+from tsas_cli.reporting.decimation import shared_points
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import legend, line, noise_bounds
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
+from tsas_cli.reporting.simulated import Simulated, rms, simulated_models
 from tsas_cli.support.arrays import Floats
 
 _TITLE = "Simulation and measurement"
+_MOST_RUNS = 10
+_POINTS = 50_000  # of all curves
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One channel of one run: time [s], measured and by model, shape (n,) each, and the noise."""
+
+    run: str
+    channel: str
+    noise: float | None
+    time_s: Floats
+    measured: Floats
+    by_model: Mapping[Simulated, Floats]
+
+    @property
+    def unit(self) -> str:
+        """The channel's unit."""
+        return BY_NAME[self.channel].unit
+
+    def rmse(self, model: Simulated) -> float | None:
+        """Return the RMS of a model's residual, None without the model."""
+        return rms(self.measured - self.by_model[model]) if model in self.by_model else None
 
 
 def section(inputs: Inputs) -> Section:
-    """Return the section of the simulation, one group per run."""
-    simulation = inputs.get(SimulationFile)
-    if simulation is None:
+    """Return the section of the simulations, one group per run."""
+    models = simulated_models(inputs)
+    if not models or inputs.dataset is None:
         return missing("simulation", _TITLE, what="simulation", stage="simulate")
-    intro: tuple[str, ...] = (
-        f"The model ({simulation.dynamics}) is driven with the measured input.",
-        "Residual: measured minus simulated. Noise alone leaves 95 % between the dashed lines.",
-    )
-    methods = {c.method for run in simulation.runs.values() for c in run.conditioning.values()}
-    intro += tuple(f"Inputs are cleaned first: {method}." for method in sorted(methods))
-    channels = {run_id: run.channels for run_id, run in simulation.runs.items()}
+    compared = [c for one in inputs.recordings for c in _compared(inputs, one, models)]
+    runs = list(dict.fromkeys(one.run for one in compared))
+    shown = [one for one in compared if one.run in runs[:_MOST_RUNS]]
+    points = shared_points(sum(1 + 2 * len(one.by_model) for one in shown), _POINTS)
     groups = tuple(
-        Group(f"Run {recording.run.id}", pictures)
-        for number, recording in enumerate(inputs.recordings)
-        if (pictures := tuple(_pictures(inputs, recording, channels, number)))
+        Group(f"Run {run}", tuple(_picture(one, number, points) for one in shown if one.run == run))
+        for number, run in enumerate(runs[:_MOST_RUNS])
     )
+    left = len(runs) - _MOST_RUNS
+    more = (f"{left} more runs are in the table.",) if left > 0 else ()
+    given = [record for record, _ in inputs.simulations.values()]
     return Section(
         "simulation",
         _TITLE,
-        intro,
-        tables=(_table(simulation), _inputs(simulation)),
+        (*_intro(inputs), *more),
+        tables=(_table(compared, models), *_inputs(inputs)),
         groups=groups,
-        points=simulation.notes,
+        points=tuple(dict.fromkeys(note for record in given for note in record.notes)),
     )
 
 
-def _table(simulation: SimulationFile) -> Table:
+def _intro(inputs: Inputs) -> Iterator[str]:
+    yield (
+        "Each model is driven with the measured input. Residual: measured minus simulated. Noise "
+        "alone leaves 95 % between the dashed lines."
+    )
+    for name, (record, _) in inputs.simulations.items():
+        yield f"`{name}` is the {record.dynamics} model of `{record.model.file}`."
+    runs = [run for record, _ in inputs.simulations.values() for run in record.runs.values()]
+    methods = {c.method for run in runs for c in run.conditioning.values()}
+    yield from (f"Inputs are cleaned first: {method}." for method in sorted(methods))
+
+
+def _compared(
+    inputs: Inputs, recording: Recording, models: Sequence[Simulated]
+) -> Iterator[Compared]:
+    for channel in CHANNELS:
+        measured = recording.get(channel)
+        if measured is None:
+            continue
+        predicted = {model: model.predicted(inputs, recording, channel) for model in models}
+        there = {
+            model: values
+            for model, values in predicted.items()
+            if values is not None and np.isfinite(measured - values).any()
+        }
+        if there:
+            noise = inputs.noise(channel)
+            yield Compared(recording.run.id, channel, noise, recording.time_s, measured, there)
+
+
+def _table(compared: Sequence[Compared], models: Sequence[Simulated]) -> Table:
+    """Return the residuals in the channel's unit, and over its noise level."""
+    rows = []
+    for one in compared:
+        sizes = [one.rmse(model) for model in models]
+        normalised = (_normalised(size, one.noise) for size in sizes)
+        noise = plain(one.noise, 3)
+        found = (*(plain(size, 3) for size in sizes), noise, one.unit, *normalised)
+        rows.append((one.run, one.channel, *found))
+    names = [model.label for model in models]
+    header = ("run", "channel", *names, "noise level", "unit", *(f"{n}, normalised" for n in names))
+    numeric = frozenset(range(2, len(header))) - {3 + len(names)}
+    return Table("RMS of the residual", header, tuple(rows), numeric).without_empty()
+
+
+def _normalised(size: float | None, noise: float | None) -> str:
+    return ABSENT if size is None or not noise else plain(size / noise, 3)
+
+
+def _inputs(inputs: Inputs) -> Iterator[Table]:
+    """Yield how each run's inputs were cleaned, where it starts and what solved it."""
     rows = tuple(
         (
-            run_id,
             name,
-            plain(channel.rmse, 3),
-            plain(channel.noise, 3),
-            _ratio(channel),
-            _unit(name, channel),
-            str(run.slack_samples),
-            str(run.unconverged_samples),
-        )
-        for run_id, run in simulation.runs.items()
-        for name, channel in run.channels.items()
-    )
-    header = (
-        "run",
-        "channel",
-        "RMSE",
-        "noise",
-        "RMSE / noise",
-        "unit",
-        "samples with slack",
-        "not converged",
-    )
-    caption = "How far the simulation is from the measurement"
-    return Table(caption, header, rows, numeric=frozenset({2, 3, 4, 6, 7}))
-
-
-def _inputs(simulation: SimulationFile) -> Table:
-    """Return how each run's inputs were cleaned, where it starts and what solved it."""
-    rows = tuple(
-        (
             run_id,
             column,
             plain(c.window_s, 3),
@@ -89,110 +135,71 @@ def _inputs(simulation: SimulationFile) -> Table:
             str(c.reversals),
             run.start,
             run.solver,
+            str(run.slack_samples),
+            str(run.unconverged_samples),
         )
-        for run_id, run in simulation.runs.items()
+        for name, (record, _) in inputs.simulations.items()
+        for run_id, run in record.runs.items()
         for column, c in run.conditioning.items()
     )
     header = (
+        "simulation",
         "run",
         "input",
         "window [s]",
-        "noise",
+        "noise level",
         "unit",
         "reversals",
         "start",
         "solver",
+        "samples with slack",
+        "not converged",
     )
-    caption = "How the measured inputs were made ready, and what solved the model"
-    return Table(caption, header, rows, numeric=frozenset({2, 3, 5}))
+    if rows:
+        caption = "How the measured inputs were made ready, and what solved the model"
+        yield Table(caption, header, rows, numeric=frozenset({3, 4, 6, 9, 10}))
 
 
-def _ratio(channel: SimulatedChannel) -> str:
-    if channel.rmse is None or not channel.noise:
-        return ABSENT
-    return plain(channel.rmse / channel.noise, 3)
+def _picture(it: Compared, number: int, points: int) -> Picture:
+    what, unit = in_words(it.channel), it.unit
+    sizes = ", ".join(f"{model.label} {plain(it.rmse(model), 3)}" for model in it.by_model)
+    said = f"RMS of the residual: {sizes}, noise level {plain(it.noise, 3)} {unit}."
+    spans = "; ".join(
+        f"{model.label} {spanned(values)}, residual {spanned(it.measured - values)}"
+        for model, values in it.by_model.items()
+    )
+    lasts = plain(float(np.ptp(it.time_s)), 3)
+    return picture(
+        partial(draw_comparison, it=it, points=points),
+        key=f"simulation-{number}-{it.channel}",
+        alt=f"Run {it.run}, {what} over {lasts} s: measured {spanned(it.measured)} {unit}; "
+        f"{spans} {unit}. {said}",
+        caption=f"{what.capitalize()}. {said}",
+        height_in=4.0,
+    )
 
 
-def _unit(name: str, channel: SimulatedChannel) -> str:
-    return channel.unit or (BY_NAME[name].unit if name in BY_NAME else ABSENT)
-
-
-def _residual_in_words(
-    time_s: Floats, residual: Floats, channel: SimulatedChannel, unit: str
-) -> str:
-    """Return the residual's span, where it is largest, and its ratio to the noise level."""
-    there = np.isfinite(residual)
-    at = float(time_s[np.nanargmax(np.abs(residual))])
-    said = f"residual {spanned(residual)} {unit}, largest at {plain(at, 3)} s"
-    if not channel.noise:
-        return said
-    inside = float(np.mean(np.abs(residual[there]) <= 2 * channel.noise))
-    return f"{said}, {100.0 * inside:.0f} % of it within twice the noise"
-
-
-def _pictures(
-    inputs: Inputs,
-    recording: Recording,
-    channels: Mapping[str, Mapping[str, SimulatedChannel]],
-    number: int,
-) -> Iterator[Picture]:
-    for name, channel in channels.get(recording.run.id, {}).items():
-        measured = recording.get(name)
-        if measured is None:
-            continue
-        simulated = inputs.series(recording.run.id, recording.time_s.size, name, SimulationFile)
-        if not np.isfinite(measured - simulated).any():
-            continue
-        unit, what = _unit(name, channel), in_words(name)
-        lasts = plain(float(np.ptp(recording.time_s)), 3)
-        distance = f"RMSE {plain(channel.rmse, 3)} {unit}, noise {plain(channel.noise, 3)} {unit}."
-        yield picture(
-            partial(
-                draw_comparison,
-                time_s=recording.time_s,
-                measured=measured,
-                simulated=simulated,
-                noise=channel.noise,
-                labels=(f"{name.rsplit('_', 1)[0]} [{unit}]", f"residual [{unit}]"),
-            ),
-            key=f"simulation-{number}-{name}",
-            alt=f"Run {recording.run.id}, {what} over {lasts} s: "
-            f"measured {spanned(measured)}, simulated {spanned(simulated)} {unit}; "
-            f"{_residual_in_words(recording.time_s, measured - simulated, channel, unit)}. "
-            f"{distance}",
-            caption=f"{what.capitalize()}: {distance}",
-            height_in=4.0,
-        )
-
-
-def draw_comparison(
-    figure: Any,
-    *,
-    time_s: Floats,
-    measured: Floats,
-    simulated: Floats,
-    noise: float | None,
-    labels: tuple[str, str],
-) -> None:
-    """Draw one channel of one run.
+def draw_comparison(figure: Any, *, it: Compared, points: int) -> None:
+    """Draw one channel of one run over time, and under it the residual of each model.
 
     Parameters
     ----------
     figure
         The matplotlib figure to draw on.
-    time_s, measured, simulated
-        Time [s], and the channel in its unit, shape (n,), NaN where there is none.
-    noise
-        Standard deviation of the channel's noise in its unit, None where it is not known.
-    labels
-        What stands at the axis of the channel, and at that of the residual.
+    it
+        The channel, measured and simulated.
+    points
+        About how many points to draw of each curve.
     """
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    line(upper, time_s, measured, color=STAND_IN["measured"], linewidth=2.6, label="measured")
-    line(upper, time_s, simulated, color=STAND_IN["simulated"], linewidth=1.1, label="simulated")
-    upper.set_ylabel(labels[0])
-    line(lower, time_s, measured - simulated, color=STAND_IN["muted"], linewidth=0.7)
-    noise_bounds(lower, noise)
-    lower.set(xlabel="time [s]", ylabel=labels[1])
+    style = {"color": STAND_IN["measured"], "linewidth": 2.6, "label": "measured"}
+    line(upper, it.time_s, it.measured, points=points, **style)
+    for model, values in it.by_model.items():
+        style = {"color": STAND_IN[model.role]}
+        line(upper, it.time_s, values, points=points, linewidth=1.1, label=model.label, **style)
+        line(lower, it.time_s, it.measured - values, points=points, linewidth=0.7, **style)
+    upper.set_ylabel(f"{it.channel.rsplit('_', 1)[0]} [{it.unit}]")
+    noise_bounds(lower, it.noise)
+    lower.set(xlabel="time [s]", ylabel=f"residual [{it.unit}]")
     figure.align_ylabels()
-    legend(figure, ncols=3)
+    legend(figure, upper, ncols=3 if len(it.by_model) < 3 else 2)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from tsas_cli.records.base import OfDataset
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.support.wording import count_of
 
@@ -20,11 +21,11 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     of_data = [stage for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
     yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)
-    first, *others = (calibration and calibration.cannot_tell) or ("",)
-    if first:
-        yield f"Keep in mind: {first}"
-    if others:
-        yield f"{count_of(len(others), 'more note')} on the estimates: see Parameters."
+    if calibration and calibration.cannot_tell and inputs.get(DiagnosisFile) is None:
+        notes = calibration.cannot_tell
+        yield f"Keep in mind: {notes[0]}"
+        if notes[1:]:
+            yield f"{count_of(len(notes) - 1, 'more note')} on the estimates: see Parameters."
 
 
 def _findings(check: CheckFile) -> str:

@@ -36,9 +36,17 @@ def draw_two_residuals(
         both = panel.first, panel.second
         least = min(float(np.nanstd(values)) for values in both)
         for name, values, role in zip(names, both, ("before", "after"), strict=True):
-            style = {"color": STAND_IN[role], "linewidth": 0.7, "label": name}
             on_top = float(np.nanstd(values)) <= least
-            line(axes, panel.time_s, values, zorder=2.2 if on_top else 2.1, **style)
+            order = 2.2 if on_top else 2.1
+            line(
+                axes,
+                panel.time_s,
+                values,
+                color=STAND_IN[role],
+                linewidth=0.7,
+                label=name,
+                zorder=order,
+            )
         noise_bounds(axes, panel.noise)
         axes.set_ylabel(panel.label)
     rows[-1].set_xlabel("time [s]")

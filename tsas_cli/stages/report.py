@@ -9,6 +9,7 @@ from pathlib import Path
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.storage import Location
 from tsas_cli.records.result import Result, Table
+from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.inputs import Inputs, read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.reporting.pdf import PDF_MARK, browser, print_page
@@ -45,7 +46,7 @@ def report(
     ----------
     folders
         A dataset's folder or address, and the folders that the stages have written, one of each
-        kind.
+        kind, but any number of simulations.
     out
         The HTML file to write.
     pdf
@@ -76,7 +77,7 @@ def report(
             stack.enter_context(written(path, mark=mark))
             for path, mark in zip(pages, (PAGE_MARK, PDF_MARK), strict=False)
         )
-        inputs = read_inputs(places)
+        inputs = read_inputs(places, several=True)
         step.ahead(len(SECTIONS))
         text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
         html.write_text(text, encoding="utf-8")
@@ -84,6 +85,10 @@ def report(
             print_page(text, path)
     read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
     read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
+    if inputs.more_simulations:
+        del read[SimulationFile.FILE]
+        every = inputs.simulations.items()
+        read |= {f"{SimulationFile.FILE}, {name}": str(path) for name, (_, path) in every}
     sizes = {str(path): path.stat().st_size for path in pages}
     summary = {"stage": "report", "page": str(out), "bytes": sizes[str(pages[0])], "read": read}
     if pdf:
@@ -96,6 +101,7 @@ def _files_of(inputs: Inputs) -> list[tuple[Location, str]]:
     stages: list[tuple[Location, str]] = [
         (folder, kind.FILE) for kind, folder in inputs.folders.items()
     ]
+    stages += [(folder, SimulationFile.FILE) for _, folder in inputs.more_simulations]
     return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST_FILE), *stages]
 
 

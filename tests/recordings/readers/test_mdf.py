@@ -133,5 +133,5 @@ def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, tsas, kept)
 
 def test_the_missing_package_is_named(path, monkeypatch):
     monkeypatch.setitem(sys.modules, "asammdf", None)
-    with pytest.raises(InputError, match=r"install tsas\[mdf\]"):
+    with pytest.raises(InputError, match=r"install 'tsas\[mdf\]'"):
         mdf.read(path, ReadOptions(), ["place"])

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause, TriedHypothesis
 from tsas_cli.reporting.content import Section, Table
-from tsas_cli.reporting.numbers import fixed, plain
+from tsas_cli.reporting.numbers import fixed
 
 _TITLE = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals
 _WHAT = (
-    "Each of these was fitted together with all parameters of the nominal model. Gain: by how "
-    "much the normalised residual on held-out data falls. Test statistic: how many standard "
-    "deviations the gain is above what chance gives, over all blocks."
+    "Each of these was fitted together with all parameters of the nominal model. Reduction: by how "
+    "much the normalised residual on held-out data falls; what is named was fitted again for it. "
+    "Test statistic: how many standard deviations the reduction is above what chance gives."
 )
 
 
@@ -30,17 +30,16 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
     header = (
         "effects",
-        "gain [%]",
+        "reduction [%]",
         "test statistic",
         "convincing",
-        "mean square / noise",
         "remark",
     )
     table = Table(
         f"Hypotheses{of}",
         header,
-        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
-        numeric=frozenset({1, 2, 4}),
+        tuple(_row(c, standing[frozenset(c.effects)], diagnosis.named) for c in shown),
+        numeric=frozenset({1, 2}),
     ).without_empty()
     return Section("diagnosis-candidates", _TITLE, (_WHAT,), tables=(table,))
 
@@ -56,12 +55,13 @@ def _standing(candidate: TriedHypothesis, named: Sequence[NamedCause]) -> str:
     return "rival" if set(candidate.effects) in rivals else ""
 
 
-def _row(candidate: TriedHypothesis, standing: str) -> tuple[str, ...]:
+def _row(candidate: TriedHypothesis, standing: str, named: Sequence[NamedCause]) -> tuple[str, ...]:
+    alone = standing == "named" and len(named) == 1
+    gain = named[0].gain_percent if alone else candidate.gain_percent
     return (
         " + ".join(candidate.effects),
-        fixed(candidate.gain_percent, 1),
+        "none" if gain is not None and gain < 0.0 else fixed(gain, 1),
         fixed(candidate.test_statistic, 1),
         "yes" if candidate.convincing else "no",
-        plain(candidate.mean_square, 3),
         standing if candidate.converged else "did not converge",
     )

@@ -7,12 +7,13 @@ from collections.abc import Iterator, Mapping
 
 from tsas_cli.records.base import Value
 from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause
-from tsas_cli.reporting.content import Section, Table, anchor
+from tsas_cli.reporting.content import Section, anchor
 from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
+from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 
-def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
+def parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
     """Yield one part for each named cause, and one for each stand-in."""
     for cause in (*diagnosis.named, *diagnosis.stand_ins):
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
@@ -22,24 +23,20 @@ def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
             f"Not proven: {within(heading_of(cause))}" if cause.failed else heading_of(cause),
             tuple(text for text in (sentence_of(cause.effect), *_failed(cause)) if text),
             equations=tuple(equation.split(",  ")) if equation else (),
-            tables=(parameters_of(cause.effect, cause.parameters),),
+            points=tuple(parameters_of(cause.parameters, inputs)),
             closing=(*_rivals(cause), *_gain(cause)),
+            folded=bool(cause.failed),
         )
 
 
-def parameters_of(effect: str, parameters: Mapping[str, Value]) -> Table:
-    """Return the table of an effect's parameters, by name."""
-    rows = tuple(
-        (
-            name,
-            *with_interval(p.value, p.interval_low, p.interval_high),
-            p.unit or ABSENT,
-            "yes" if p.at_bound else "no",
-        )
-        for name, p in parameters.items()
-    )
-    header = ("parameter", "value", "95 % interval", "unit", "at its bound")
-    return Table(f"Parameters of {effect}", header, rows, numeric=frozenset({1, 2}))
+def parameters_of(parameters: Mapping[str, Value], inputs: Inputs) -> Iterator[str]:
+    """Yield each parameter with its interval, unit and whether it is at its bound."""
+    for name, p in parameters.items():
+        if inputs.concerns(name):
+            value, interval = with_interval(p.value, p.interval_low, p.interval_high)
+            said = f"`{name}` {value} {p.unit or ''}".removesuffix(" 1").rstrip()
+            said += "" if interval == ABSENT else f", 95 % interval {interval}"
+            yield f"{said}, at its bound" if p.at_bound else said
 
 
 def _failed(cause: NamedCause) -> Iterator[str]:
@@ -66,7 +63,4 @@ def _gain(cause: NamedCause) -> Iterator[str]:
         gain, sure = plain(cause.gain_percent, 3), ""
     else:
         sure = f" (95 % interval {interval} %)"
-    yield (
-        f"On held-out data it takes {gain} %{sure} off the normalised residual, which averages "
-        "noise over neighbouring samples."
-    )
+    yield f"On held-out data it lowers the normalised residual by {gain} %{sure}."

@@ -1,4 +1,4 @@
-"""The error on held-out data before and after, beside what noise and the best model leave."""
+"""The residual on held-out data before and after, beside what noise and the best model leave."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -13,29 +13,29 @@ from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import ABSENT, plain
 
 _BOUNDS = (
-    "The noise floor is the RMS of the noise. Attainable is what a flexible regression on the "
-    "recorded signals leaves, whatever the cause."
+    "Normalised: over the noise level, which is then 1. Attainable is what a flexible regression "
+    "on the recorded signals leaves, whatever the cause."
 )
 
 
-def part(diagnosis: DiagnosisFile) -> Section | None:
+def part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Section | None:
     """Return the part, None where no channel was judged."""
-    if not diagnosis.channels:
+    if not channels:
         return None
-    named = bool(diagnosis.named)
-    alt = "; ".join(_in_words(name, c, named=named) for name, c in diagnosis.channels.items())
+    named = diagnosis.extended
+    alt = "; ".join(_in_words(name, c, named=named) for name, c in channels.items())
     shown = picture(
-        partial(draw_gains, channels=diagnosis.channels, named=named),
+        partial(draw_gains, channels=channels, named=named),
         key="diagnosis-gains",
-        alt=f"Root mean square error on held-out data. {alt}.",
-        caption="Root mean square error on held-out data, by channel.",
-        height_in=0.6 + 0.75 * len(diagnosis.channels),
+        alt=f"RMS of the residual on held-out data. {alt}.",
+        caption="RMS of the residual on held-out data, by channel.",
+        height_in=0.6 + 0.75 * len(channels),
     )
     return Section(
         "diagnosis-gains",
-        "Error on held-out data" + (", before and after" if named else ""),
+        "Residual on held-out data",
         tuple(text for text in (_judged(diagnosis), _BOUNDS) if text),
-        tables=(table(diagnosis),),
+        tables=(table(channels, named=named),),
         pictures=(shown,),
     )
 
@@ -45,9 +45,8 @@ def _judged(diagnosis: DiagnosisFile) -> str:
     return how[:1].upper() + how[1:]
 
 
-def table(diagnosis: DiagnosisFile) -> Table:
-    """Return the errors in numbers."""
-    named = bool(diagnosis.named)
+def table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
+    """Return the residuals in numbers, in the channel's unit and over its noise level."""
     rows = tuple(
         (
             name,
@@ -56,21 +55,35 @@ def table(diagnosis: DiagnosisFile) -> Table:
             plain(c.attainable, 3),
             plain(c.noise_floor, 3),
             c.unit,
+            _normalised(c.rmse_before, c),
+            _normalised(c.rmse_after, c) if named else ABSENT,
         )
-        for name, c in diagnosis.channels.items()
+        for name, c in channels.items()
     )
-    first = "before" if named else "nominal model"
-    header = ("channel", first, "with what is named", "attainable", "noise floor", "unit")
-    caption = "Root mean square error on held-out data"
-    return Table(caption, header, rows, numeric=frozenset(range(1, 5))).without_empty()
+    header = (
+        "channel",
+        "nominal model",
+        "extended model",
+        "attainable",
+        "noise level",
+        "unit",
+        "nominal, normalised",
+        "extended, normalised",
+    )
+    caption = "RMS of the residual on held-out data"
+    numeric = frozenset({1, 2, 3, 4, 6, 7})
+    return Table(caption, header, rows, numeric=numeric).without_empty()
+
+
+def _normalised(rms: float | None, channel: HeldOut) -> str:
+    return ABSENT if rms is None or not channel.noise_floor else plain(rms / channel.noise_floor, 3)
 
 
 def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
-    first = "before" if named else "nominal model"
-    after = f", with what is named {plain(channel.rmse_after, 3)}" if named else ""
+    after = f", extended model {plain(channel.rmse_after, 3)}" if named else ""
     return (
-        f"{called(name)}: {first} {plain(channel.rmse_before, 3)}"
-        f"{after}, attainable {plain(channel.attainable, 3)}, noise floor "
+        f"{called(name)}: nominal model {plain(channel.rmse_before, 3)}"
+        f"{after}, attainable {plain(channel.attainable, 3)}, noise level "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )
 
@@ -88,12 +101,11 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
         Whether a cause is named, so that there is an error after to show.
     """
     rows = figure.subplots(len(channels), 1, squeeze=False)[:, 0]
-    first = "before" if named else "nominal model"
     for axes, (name, channel) in zip(rows, channels.items(), strict=True):
-        _bar(axes, channel.rmse_before, at=0.2 * named, role="before", label=first)
+        _bar(axes, channel.rmse_before, at=0.2 * named, role="before", label="nominal model")
         if named:
-            _bar(axes, channel.rmse_after, at=-0.2, role="after", label="with what is named")
-        _mark(axes, channel.noise_floor, linestyle="-", label="noise floor")
+            _bar(axes, channel.rmse_after, at=-0.2, role="after", label="extended model")
+        _mark(axes, channel.noise_floor, linestyle="-", label="noise level")
         _mark(axes, channel.attainable, linestyle=(0, (2, 1.5)), label="attainable")
         axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
         axes.set_ylabel(

@@ -9,11 +9,12 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, anchor
 from tsas_cli.reporting.diagnosis.causes import parameters_of
 from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.wording import listed
 
 
-def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
+def parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
     """Yield one part for each law."""
     for law in diagnosis.laws:
         rivals = f" As good are: {listed(law.rivals)}." if law.rivals else ""
@@ -30,7 +31,7 @@ def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
                     caption="After a reversal, at the mean tension; and along the stroke.",
                 ),
             ),
-            tables=(parameters_of(law.law, law.parameters),),
+            points=tuple(parameters_of(law.parameters, inputs)),
             closing=(
                 (
                     f"On held-out data the RMS of {law.channel} falls from "

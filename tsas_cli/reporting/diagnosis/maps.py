@@ -1,4 +1,4 @@
-"""Where the error was and where it is now: its mean and scatter over the strongest signals."""
+"""Where the residual was and is now: its mean and scatter over the strongest signals."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -19,10 +19,11 @@ from tsas_cli.support.wording import listed
 _SEEN = 0.5  # in units of noise
 _SIGNALS = 4
 _WHAT = (
-    "Measured minus simulated in units of the noise level: the mean in each bin, and bars of "
-    "one standard deviation. Noise alone has its mean at zero and bars as long as the band."
+    "The residual in units of the noise level: the mean in each bin, and bars of one standard "
+    "deviation. Noise alone has its mean at zero and bars as long as the band."
 )
-NAMES = ("before", "after")  # of the two series of a panel
+NAMES = ("nominal model", "extended model")  # of the two series of a panel
+_ROLES = ("before", "after")
 _MOST_LABELS = 8
 
 
@@ -41,10 +42,10 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     maps = diagnosis.residual_map
     if not maps.before:
         return None
-    title = "Where the error was, and where it is now" if diagnosis.named else "Where the error is"
+    title = "Where the residual was, and is now" if diagnosis.named else "Where the residual is"
     shown = pictures(list(_panels(diagnosis)), key="diagnosis-map")
     if not shown:
-        nothing = "Over no signal does the error stand out of the noise."
+        nothing = "Over no signal does the residual stand out of the noise."
         return Section("diagnosis-maps", title, (nothing,))
     return Section("diagnosis-maps", title, (_WHAT,), pictures=shown)
 
@@ -97,7 +98,7 @@ def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, s
     return picture(
         partial(draw_residual_map, panels=seen, label=signal_at_axis(signal), names=names),
         key=f"{key}-{signal}",
-        alt=f"Mean error over the {words}, in units of noise. {said}.",
+        alt=f"Mean residual over the {words}, in units of noise. {said}.",
         caption=f"{listed([p.channel for p in seen])} over the {words}.",
         height_in=0.9 + 1.25 * len(seen),
     )
@@ -132,12 +133,11 @@ def draw_residual_map(
         places = _places(panel.before, by_label=by_label)
         spread = 0.12 if by_label else 0.12 * (places[-1] - places[0]) / max(len(places) - 1, 1)
         joined = "none" if by_label else "-"
-        series = zip((panel.before, panel.after), NAMES, names, (-1, 1), strict=True)
+        series = zip((panel.before, panel.after), _ROLES, names, (-1, 1), strict=True)
         for bins, role, name, side in series:
             if bins:
                 shift = side * spread * bool(panel.after)
-                word = name if panel.after else "nominal model"
-                style = {"color": STAND_IN[role], "label": word, "linestyle": joined}
+                style = {"color": STAND_IN[role], "label": name, "linestyle": joined}
                 _series(axes, bins, shift=shift, by_label=by_label, **style)
         axes.set_ylabel(f"{panel.channel.rsplit('_', 1)[0]} / noise")
         axes.margins(x=0.04)

@@ -1,6 +1,7 @@
 """What the diagnosis says: the verdict, its causes, the evidence, and what to measure next."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.content import Section, missing
@@ -18,16 +19,19 @@ def section(inputs: Inputs) -> Section:
     diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
-    evidence = (part.part(diagnosis) for part in (gains, maps, candidates, similarity))
+    evidence = (
+        gains.part(diagnosis, inputs.held_out),
+        *(part.part(diagnosis) for part in (maps, candidates, similarity)),
+    )
     return Section(
         "diagnosis",
         _TITLE,
         (_verdict(diagnosis),),
         parts=(
-            *causes.parts(diagnosis),
-            *laws.parts(diagnosis),
-            *(part for part in evidence if part is not None),
-            *remainder(diagnosis),
+            *causes.parts(diagnosis, inputs),
+            *laws.parts(diagnosis, inputs),
+            *closing(diagnosis),
+            *(replace(part, folded=True) for part in evidence if part is not None),
         ),
     )
 
@@ -37,14 +41,18 @@ def _verdict(diagnosis: DiagnosisFile) -> str:
     return f"Undecided: {diagnosis.reason}" if undecided else diagnosis.reason
 
 
-def remainder(diagnosis: DiagnosisFile) -> Iterator[Section]:
-    """Yield the parts that close the diagnosis."""
-    if left := tuple(_left(diagnosis)):
-        yield Section("diagnosis-remainder", "What is left", left)
+def closing(diagnosis: DiagnosisFile) -> Iterator[Section]:
+    """Yield the parts that close the diagnosis; what is left stands first where it is unknown."""
+    left = Section("diagnosis-remainder", "What is left", tuple(_left(diagnosis)))
+    unknown = diagnosis.remainder.unexplained
+    if unknown:
+        yield left
     if diagnosis.next_experiment:
         yield Section("diagnosis-next", "Next experiment", (diagnosis.next_experiment,))
     if diagnosis.cannot_tell:
         yield Section("diagnosis-unknown", "Cannot tell", points=diagnosis.cannot_tell)
+    if left.intro and not unknown:
+        yield replace(left, folded=True)
 
 
 def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
@@ -58,7 +66,7 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
         share = fixed(left.share_percent, 0)
         yield f"Of what could be explained, {share} % is left after what is named."
     if left.unexplained:
-        yield "There is structure in them that no effect of the catalogue accounts for."
+        yield "There is structure in it that no effect of the catalogue accounts for."
     yield from (noise.text(name) for name, noise in left.slow_noise.items())
     if left.depends_on:
         signals = listed([signal_in_words(name) for name in left.depends_on])

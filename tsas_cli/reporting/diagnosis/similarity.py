@@ -12,7 +12,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.drawing import WIDTH_IN, picture
 from tsas_cli.reporting.figures import legend
-from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.numbers import fixed
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import listed
 
@@ -84,8 +84,9 @@ def _alike(names: npt.NDArray[np.object_], similarity: Floats) -> Iterator[str]:
         if inside.size > 1:
             pairs = similarity[np.ix_(inside, inside)][np.triu_indices(inside.size, 1)]
             group = listed([f"`{name}`" for name in names[inside]])
-            least = "at least " if inside.size > 2 else ""
-            yield f"{group} look alike here (similarity {least}{plain(float(pairs.min()), 3)})."
+            lowest = fixed(float(pairs.min()), 2)
+            least = "at least " if inside.size > 2 and lowest != fixed(1.0, 2) else ""
+            yield f"{group} are hard to tell apart here (similarity {least}{lowest})."
 
 
 def _apart(similarity: Floats) -> Floats:

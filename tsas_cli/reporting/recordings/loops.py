@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import partial
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.decimation import POINTS, kept_samples, shared_points
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.inputs import Inputs
@@ -23,6 +24,8 @@ from tsas_cli.support.arrays import Floats, Mask
 
 _TENSIONS = ("f_in_N", "f_out_N")
 _X = "x_in_mm"
+_MOST_RUNS = 10
+_POINTS = 20_000  # of all loops
 Keys = npt.NDArray[np.object_]
 
 
@@ -35,18 +38,21 @@ def section(inputs: Inputs) -> Section | None:
     if calibration is None:
         intro = "Without a folder written by `tsas calibrate`, the phases are unknown."
     segments = calibration.segments if calibration else {}
+    runs = 0 if inputs.dataset is None else len(inputs.dataset.runs)
+    points = shared_points(len(_TENSIONS) * min(runs, _MOST_RUNS), _POINTS)
     groups = tuple(
-        Group(f"Run {recording.run.id}", pictures)
-        for number, recording in enumerate(inputs.recordings)
-        if (pictures := tuple(_pictures(recording, segments.get(recording.run.id, ()), number)))
+        Group(f"Run {one.run.id}", pictures)
+        for number, one in enumerate(islice(inputs.recordings, _MOST_RUNS))
+        if (pictures := tuple(_pictures(one, segments.get(one.run.id, ()), number, points)))
     )
     if not groups:
         intro = "No run holds x_in_mm and a tension: there is no loop to show."
-    return Section("loops", "Loops and phases", (intro,), groups=groups, given=bool(groups))
+    more = (f"The first {_MOST_RUNS} of {runs} runs are shown.",) if runs > _MOST_RUNS else ()
+    return Section("loops", "Loops and phases", (intro, *more), groups=groups, given=bool(groups))
 
 
 def _pictures(
-    recording: Recording, segments: tuple[PhaseSegment, ...], number: int
+    recording: Recording, segments: tuple[PhaseSegment, ...], number: int, points: int
 ) -> Iterator[Picture]:
     phase = phase_of_samples(recording.time_s, segments)
     x = recording.get(_X)
@@ -55,7 +61,14 @@ def _pictures(
         if x is None or y is None or not np.isfinite(x + y).any():
             continue
         yield picture(
-            partial(draw_loop, x=x, y=y, phase=phase, labels=(at_axis(_X), at_axis(column))),
+            partial(
+                draw_loop,
+                x=x,
+                y=y,
+                phase=phase,
+                labels=(at_axis(_X), at_axis(column)),
+                points=points,
+            ),
             key=f"loop-{number}-{column}",
             alt=_alt(recording.run.id, x, y, phase, column),
             caption=f"{in_words(column).capitalize()} over {in_words(_X)}.",
@@ -69,7 +82,15 @@ def _alt(run: str, x: Floats, y: Floats, phase: npt.NDArray[np.object_], column:
     return f"Loop of run {run}: {whole}. By phase: {each or 'unknown'}."
 
 
-def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[str, str]) -> None:
+def draw_loop(
+    figure: Any,
+    *,
+    x: Floats,
+    y: Floats,
+    phase: Keys,
+    labels: tuple[str, str],
+    points: int = POINTS,
+) -> None:
     """Draw the loop of one run.
 
     Parameters
@@ -82,10 +103,12 @@ def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[s
         The key of the phase at each sample, shape (n,).
     labels
         The names of the two axes, with units.
+    points
+        About how many points to draw.
     """
     axes = figure.add_subplot()
     y = np.where(np.isfinite(x), y, np.nan)
-    kept = kept_samples(x, y)
+    kept = kept_samples(x, y, points=points)
     for one in PHASES:
         if (phase == one.key).any():
             _draw_phase(axes, x[kept], y[kept], phase[kept] == one.key, one)
