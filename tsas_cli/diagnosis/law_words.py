@@ -24,9 +24,10 @@ WHAT = {  # what each law changes, and its unit in the names of its parameters
 
 
 def records_of(law: Law) -> tuple[records.DescribedLaw, ...]:
-    """Return the records of the laws that describe what is left."""
+    """Return the records of the laws that describe what is left; a law of nothing has none."""
     tensions = tensions_of(law)
-    return tuple(_record(law, name, tensions) for name in law.names)
+    every = (_record(law, name, tensions) for name in law.names)
+    return tuple(record for record in every if record.sentence)
 
 
 def _record(law: Law, name: str, tensions: tuple[float, float]) -> records.DescribedLaw:
@@ -55,10 +56,11 @@ def _record(law: Law, name: str, tensions: tuple[float, float]) -> records.Descr
 
 
 def tensions_of(law: Law) -> tuple[float, float]:
-    """Return the lowest and the highest simulated tension at the drive [N]."""
+    """Return the lowest and the highest simulated tension at the drive, not below 0 [N]."""
     runs = enumerate(law.bench.errors_for(law.trial))
     f_in = [run.predict(law.bench.rig(law.trial, k))["f_in_N"] for k, run in runs]
-    return min(float(f.min()) for f in f_in), max(float(f.max()) for f in f_in)
+    low, high = min(float(f.min()) for f in f_in), max(float(f.max()) for f in f_in)
+    return max(low, 0.0), max(high, 0.0)
 
 
 def after_reversal(name: str, value: Mapping[str, float], travel: Floats, tension: float) -> Floats:
@@ -74,7 +76,10 @@ def after_reversal(name: str, value: Mapping[str, float], travel: Floats, tensio
 
 
 def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, float]) -> str:
-    """Return what a law says, in words and numbers."""
+    """Return what a law says, in words and numbers; nothing where it does nothing.
+
+    `tensions` are the lowest and the highest one [N].
+    """
     travel = _travels(value)
     change = after_reversal(name, value, travel, float(np.mean(tensions)))
     heights = _heights(name, value)
@@ -84,7 +89,7 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         if np.ptp(speeds) > LEAST * max(np.ptp(heights), float(np.abs(change).max())):
             ends = f"{value['slow_mm_per_s']:.2g} to {value['fast_mm_per_s']:.2g} mm/s"
             parts.append(f"friction changes {_along(100.0 * speeds)} % from {ends}")
-        return f"In the sheath {'; '.join(parts)}."
+        return f"In the sheath {'; '.join(parts)}." if parts else ""
     low, high = sorted(2.0 * float(_weights(name, value, t).sum()) for t in tensions)
     span = float(np.ptp(heights))
     parts = []
@@ -104,9 +109,11 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
         parts.append(f"{subject} {_along(heights)} {unit} along the stroke")
-    if name == "load_law" and value["compliance_mm_per_N"] > 0.0:
-        parts.append(f"x_out yields by {value['compliance_mm_per_N']:.2g} mm per N of f_out")
-    return f"At the {'drive' if name == 'drive_law' else 'load'} {'; '.join(parts)}."
+    yields = value.get("compliance_mm_per_N", 0.0)
+    if yields * (tensions[1] - tensions[0]) > LEAST * max(high, span):
+        parts.append(f"x_out yields by {yields:.2g} mm per N of f_out")
+    where = "drive" if name == "drive_law" else "load"
+    return f"At the {where} {'; '.join(parts)}." if parts else ""
 
 
 def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
