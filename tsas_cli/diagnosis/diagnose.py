@@ -167,6 +167,8 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     law = None
     if stand_ins or not after.complete:
         law = describe(bench, final, predicted_folds(final, folds), step)
+    if law is not None:  # one number of one name: before the law is after the causes
+        law = replace(law, before=proven.held_out[named])
     verdict = verdict_of(
         [cause.rivals for cause in causes],
         [cause.effect for cause in stand_ins],

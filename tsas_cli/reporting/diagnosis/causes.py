@@ -3,19 +3,19 @@
 A stand-in says what it does not prove.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from tsas_cli.records.base import Value
-from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause
+from tsas_cli.records.diagnosis import NamedCause
 from tsas_cli.reporting.content import Section, anchor
 from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 
-def parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
-    """Yield one part for each named cause, and one for each stand-in."""
-    for cause in (*diagnosis.named, *diagnosis.stand_ins):
+def parts(causes: Iterable[NamedCause], inputs: Inputs) -> Iterator[Section]:
+    """Yield one part for each named cause or stand-in."""
+    for cause in causes:
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
         equation = cause.equation or law
         yield Section(

@@ -31,11 +31,18 @@ def parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
                     caption="After a reversal, at the mean tension; and along the stroke.",
                 ),
             ),
-            points=tuple(parameters_of(law.parameters, inputs)),
             closing=(
                 (
                     f"On held-out data the RMS of {law.channel} falls from "
                     f"{plain(law.rmse_before, 3)} to {plain(law.rmse_after, 3)} {law.unit}."
+                ),
+            ),
+            parts=(
+                Section(
+                    anchor("parameters", law.law),
+                    "Parameters of the law",
+                    points=tuple(parameters_of(law.parameters, inputs)),
+                    folded=True,
                 ),
             ),
         )

@@ -28,8 +28,9 @@ def section(inputs: Inputs) -> Section:
         _TITLE,
         (_verdict(diagnosis),),
         parts=(
-            *causes.parts(diagnosis, inputs),
+            *causes.parts(diagnosis.named, inputs),
             *laws.parts(diagnosis, inputs),
+            *causes.parts(diagnosis.stand_ins, inputs),
             *closing(diagnosis),
             *(replace(part, folded=True) for part in evidence if part is not None),
         ),
