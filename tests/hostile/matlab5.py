@@ -152,7 +152,7 @@ CASES = (
     Case("the bytes of a pickle", with_pickle),
     Case("a Java object", opaque, "column t is missing"),
     Case("an array of objects", of_objects, "column x is missing"),
-    Case("npz", npz, "unknown file format .npz"),
+    Case("npz", npz, "holds no column of numbers"),
     Case("npz called mat", npz_as_mat, "cannot be read as a MATLAB file"),
     Case("a sparse matrix of 10^18 cells", sparse, "cannot be read as a MATLAB file"),
     Case("a hundred thousand variables of one name", many, "Duplicate variable name"),

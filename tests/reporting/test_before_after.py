@@ -18,7 +18,7 @@ from tests.reporting.made_folders import (
 from tsas_cli.reporting import fits
 from tsas_cli.reporting.before_after import draw_before_after, pictures
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.fits import Fit
+from tsas_cli.reporting.fits import ShownFit
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import read_inputs
 
@@ -81,7 +81,7 @@ def test_without_what_the_diagnosis_has_written_of_the_runs_there_is_no_picture(
 def fit_of(x, measured, nominal, extended):
     time_s = np.arange(x.size) / 100.0
     models = (("nominal model", "before", nominal), ("extended model", "after", extended))
-    return Fit("a", "f_in_N", 0.1, time_s, x, x, measured, models)
+    return ShownFit("a", "f_in_N", 0.1, time_s, x, x, measured, models)
 
 
 def test_of_many_cycles_those_with_the_largest_gain_are_taken():

@@ -13,7 +13,7 @@ from tsas_cli.reporting.content import Picture
 from tsas_cli.reporting.decimation import kept_samples
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import legend, noise_bounds
-from tsas_cli.reporting.fits import Box, Fit, best_fits, near
+from tsas_cli.reporting.fits import Box, ShownFit, best_fits, near
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.simulated import rms
@@ -41,14 +41,14 @@ def pictures(inputs: Inputs) -> tuple[Picture, ...]:
     return _picture(first, first, mark=window), _picture(first, second, window=window)
 
 
-def _stands_out(fit: Fit) -> bool:
+def _stands_out(fit: ShownFit) -> bool:
     """Return whether the nominal model's residual can be seen in the whole loop."""
     residual = rms(fit.measured - fit.models[0][2])
     return residual > _VISIBLE * float(np.ptp(fit.measured))
 
 
 def _picture(
-    loop: Fit, below: Fit | None, *, mark: Box | None = None, window: Box | None = None
+    loop: ShownFit, below: ShownFit | None, *, mark: Box | None = None, window: Box | None = None
 ) -> Picture:
     loops = f"Run {loop.run}, {_short(loop.channel)} over x_in"
     if window:
@@ -73,14 +73,14 @@ def _short(channel: str) -> str:
     return channel.rsplit("_", 1)[0]
 
 
-def _in_words(fit: Fit) -> str:
+def _in_words(fit: ShownFit) -> str:
     unit = BY_NAME[fit.channel].unit
     sizes = ", ".join(f"{label} {plain(rms(fit.measured - v), 3)}" for label, _, v in fit.models)
     return f"RMS: {sizes}, noise level {plain(fit.noise, 3)} {unit} (dashed: twice that)."
 
 
 def draw_before_after(
-    figure: Any, *, loop: Fit, below: Fit | None, mark: Box | None, window: Box | None
+    figure: Any, *, loop: ShownFit, below: ShownFit | None, mark: Box | None, window: Box | None
 ) -> None:
     """Draw a loop over x_in, or the `window` of it, and a channel's residuals over time below.
 
@@ -94,7 +94,9 @@ def draw_before_after(
     legend(figure, rows[0], ncols=3)
 
 
-def draw_loop(axes: Any, fit: Fit, *, mark: Box | None = None, window: Box | None = None) -> None:
+def draw_loop(
+    axes: Any, fit: ShownFit, *, mark: Box | None = None, window: Box | None = None
+) -> None:
     """Draw the loop as measured and by each model, the whole or a `window` of it."""
     curves = [("measured", "measured", fit.x, fit.measured)]
     curves += [(label, role, fit.driven, values) for label, role, values in fit.models]
@@ -113,7 +115,7 @@ def draw_loop(axes: Any, fit: Fit, *, mark: Box | None = None, window: Box | Non
         axes.plot(*corners, color=STAND_IN["ink"], linewidth=0.8)
 
 
-def draw_residuals(axes: Any, fit: Fit) -> None:
+def draw_residuals(axes: Any, fit: ShownFit) -> None:
     """Draw the residual of each model over time, between bounds of twice the noise level."""
     kept = _kept(fit)
     for _, role, values in fit.models:
@@ -125,12 +127,12 @@ def draw_residuals(axes: Any, fit: Fit) -> None:
     axes.set_ylabel(f"residual {_short(fit.channel)} [{unit}]", fontsize=9)
 
 
-def _kept(fit: Fit) -> Indices:
+def _kept(fit: ShownFit) -> Indices:
     residuals = [fit.measured - values for _, _, values in fit.models]
     return kept_samples(fit.x, fit.measured, *residuals, points=_POINTS)
 
 
-def _inside(fit: Fit, window: Box) -> Indices:
+def _inside(fit: ShownFit, window: Box) -> Indices:
     """Return the samples in and near a window; its curves are cut at its edges."""
     left, right, bottom, top = window
     wide, high = right - left, top - bottom

@@ -21,7 +21,7 @@ Box = tuple[float, float, float, float]  # x from and to, y from and to
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class ShownFit:
     """One channel of one run, measured and by each model (label, role, values), shape (n,) each.
 
     `x` is x_in as measured, `driven` as it drives the models [mm].
@@ -49,15 +49,15 @@ class Fit:
         width = max(fall.size // 200, 3)
         return np.convolve(fall, np.full(width, 1.0 / width), mode="same")
 
-    def part(self, start_s: float, end_s: float) -> "Fit":
+    def part(self, start_s: float, end_s: float) -> "ShownFit":
         """Return the samples between two times [s]."""
         at = slice(*np.searchsorted(self.time_s, (start_s, end_s)))
         models = tuple((label, role, values[at]) for label, role, values in self.models)
         cut = self.time_s[at], self.x[at], self.driven[at], self.measured[at]
-        return Fit(self.run, self.channel, self.noise, *cut, models)
+        return ShownFit(self.run, self.channel, self.noise, *cut, models)
 
 
-def best_fits(inputs: Inputs) -> tuple[Fit, Fit | None] | None:
+def best_fits(inputs: Inputs) -> tuple[ShownFit, ShownFit | None] | None:
     """Return the run's channel with the largest gain, and another one with a gain.
 
     f_in comes first where its gain is at least half of the largest one. None without a diagnosis.
@@ -86,7 +86,7 @@ def best_fits(inputs: Inputs) -> tuple[Fit, Fit | None] | None:
     return first.part(*shown), max(others, key=lambda fit: fit.gain, default=None)
 
 
-def _fits(inputs: Inputs, recording: Recording) -> Iterator[Fit]:
+def _fits(inputs: Inputs, recording: Recording) -> Iterator[ShownFit]:
     models = diagnosed_models(inputs)
     x = recording.get(X_IN)
     driven = models[0].driven(inputs, recording) if models else None
@@ -94,8 +94,8 @@ def _fits(inputs: Inputs, recording: Recording) -> Iterator[Fit]:
         return
     for channel in CHANNELS:
         measured, noise = recording.get(channel), inputs.noise(channel)
-        answers = (model.predicted(inputs, recording, channel) for model in models)
-        predicted = [values for values in answers if values is not None]
+        simulated = (model.predicted(inputs, recording, channel) for model in models)
+        predicted = [values for values in simulated if values is not None]
         if measured is None or noise is None or len(predicted) < len(models):
             continue
         series = [recording.time_s, x, driven, measured, *predicted]
@@ -103,10 +103,10 @@ def _fits(inputs: Inputs, recording: Recording) -> Iterator[Fit]:
         if np.count_nonzero(there) > _FEWEST:
             time_s, at, moved, felt, *values = (one[there] for one in series)
             named = tuple((m.label, m.role, v) for m, v in zip(models, values, strict=True))
-            yield Fit(recording.run.id, channel, noise, time_s, at, moved, felt, named)
+            yield ShownFit(recording.run.id, channel, noise, time_s, at, moved, felt, named)
 
 
-def _cycles(fit: Fit) -> tuple[float, float]:
+def _cycles(fit: ShownFit) -> tuple[float, float]:
     """Return from when to when the gain is largest [s]: a few cycles, all of them if few."""
     middle, reach = float(np.mean(fit.x)), 0.1 * float(np.ptp(fit.x))
     side = np.where(fit.x > middle + reach, 1, np.where(fit.x < middle - reach, -1, 0))
@@ -121,7 +121,7 @@ def _cycles(fit: Fit) -> tuple[float, float]:
     return float(start_s), float(end_s)
 
 
-def near(fit: Fit) -> Box:
+def near(fit: ShownFit) -> Box:
     """Return the part of the plane in which the gain is largest."""
     gains = fit.gains()
     at, n = int(np.argmax(gains)), gains.size

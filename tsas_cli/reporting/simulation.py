@@ -27,7 +27,7 @@ _POINTS = 50_000  # of all curves
 
 
 @dataclass(frozen=True, eq=False)
-class Compared:
+class ShownChannel:
     """One channel of one run: time [s], measured and by model, shape (n,) each, and the noise."""
 
     run: str
@@ -87,7 +87,7 @@ def _intro(inputs: Inputs) -> Iterator[str]:
 
 def _compared(
     inputs: Inputs, recording: Recording, models: Sequence[Simulated]
-) -> Iterator[Compared]:
+) -> Iterator[ShownChannel]:
     for channel in CHANNELS:
         measured = recording.get(channel)
         if measured is None:
@@ -100,10 +100,10 @@ def _compared(
         }
         if there:
             noise = inputs.noise(channel)
-            yield Compared(recording.run.id, channel, noise, recording.time_s, measured, there)
+            yield ShownChannel(recording.run.id, channel, noise, recording.time_s, measured, there)
 
 
-def _table(compared: Sequence[Compared], models: Sequence[Simulated]) -> Table:
+def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Table:
     """Return the residuals in the channel's unit, and over its noise level."""
     rows = []
     for one in compared:
@@ -160,7 +160,7 @@ def _inputs(inputs: Inputs) -> Iterator[Table]:
         yield Table(caption, header, rows, numeric=frozenset({3, 4, 6, 9, 10}))
 
 
-def _picture(it: Compared, number: int, points: int) -> Picture:
+def _picture(it: ShownChannel, number: int, points: int) -> Picture:
     what, unit = in_words(it.channel), it.unit
     sizes = ", ".join(f"{model.label} {plain(it.rmse(model), 3)}" for model in it.by_model)
     said = f"RMS of the residual: {sizes}, noise level {plain(it.noise, 3)} {unit}."
@@ -179,7 +179,7 @@ def _picture(it: Compared, number: int, points: int) -> Picture:
     )
 
 
-def draw_comparison(figure: Any, *, it: Compared, points: int) -> None:
+def draw_comparison(figure: Any, *, it: ShownChannel, points: int) -> None:
     """Draw one channel of one run over time, and under it the residual of each model.
 
     Parameters

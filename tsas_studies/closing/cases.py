@@ -30,7 +30,7 @@ from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Known, Plant, plan, run_loop
 from tsas_studies.closing.drive import known_drives, record_drive
-from tsas_studies.closing.hidden import Case
+from tsas_studies.closing.hidden import HiddenCase
 
 STEPS = 7  # pieces of work of a case
 MODELS = ("data sheet", "calibrated", "extended", "true")
@@ -44,7 +44,7 @@ MOTIONS = {  # shape, mean [N], amplitude [N], angular frequency [rad/s]; 25 s e
 
 
 def close(
-    case: Case,
+    case: HiddenCase,
     settings: Settings,
     folder: Path,
     seeds: Sequence[int],

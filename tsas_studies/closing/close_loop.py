@@ -13,7 +13,7 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import read_settings
 from tsas_studies.closing.cases import MODELS, STEPS, close
-from tsas_studies.closing.hidden import CASES, Case
+from tsas_studies.closing.hidden import CASES, HiddenCase
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -27,7 +27,7 @@ class ClosingResult(Result):
         return _tables(self.record, self.titled("what was hidden, and named"))
 
 
-def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[Case, ...]:
+def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[HiddenCase, ...]:
     """Return the cases by name, or one that hides what options such as `NAME=VALUE` say.
 
     Raises
@@ -39,7 +39,7 @@ def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[Case, ...]
         changes = disturbed(hide, "--hide").changes
         if any(change.from_s > 0.0 for change in changes):
             raise InputError("a hidden effect begins with the run", where="--hide")
-        return (Case(HIDDEN, ", ".join(hide), {c.quantity: c.value for c in changes}),)
+        return (HiddenCase(HIDDEN, ", ".join(hide), {c.quantity: c.value for c in changes}),)
     known = {case.name: case for case in CASES}
     wanted = list(known) if names is None else list(names)
     for name in wanted:

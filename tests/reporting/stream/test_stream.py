@@ -247,7 +247,8 @@ def test_the_overview_says_what_was_found_and_escapes_what_files_hold(made, tmp_
     (tmp_path / "s.rrd").unlink()
     said = overview(stream(tmp_path, made / "diagnose"))
     assert said.startswith("# bench")
-    assert "**Cause found: Tendon outside the sheath**" in said
+    assert "**Cause found: normalised residual" in said
+    assert "lower: Tendon outside the sheath**" in said
     assert "A free length of tendon" in said
     assert "Next: Record the same motion" in said
     assert "- tension at the drive: 0.910 → 0.110 N (noise alone: 0.100 N)" in said

@@ -17,7 +17,7 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.strict_table import StrictTable
 
 
-class Part(StrictTable):
+class JoinedFile(StrictTable):
     """One of the files: `offset_s` plus its column `time` in s is the clock of the run."""
 
     file: str = Field(min_length=1)
@@ -38,11 +38,13 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
         or counts from its own first date and the list no offset.
     """
     del options
-    parts = {name: parse(Part, one, f"{path}, {name}") for name, one in read_toml(path).items()}
+    parts = {
+        name: parse(JoinedFile, one, f"{path}, {name}") for name, one in read_toml(path).items()
+    }
     yield Offered([column for name in parts for column in _columns(path, name, parts[name])])
 
 
-def _columns(path: Path, name: str, part: Part) -> Iterator[Column]:
+def _columns(path: Path, name: str, part: JoinedFile) -> Iterator[Column]:
     """Yield the columns of one file besides its clock; those of text are none."""
     file = path.parent / part.file
     if PurePath(part.file).name != part.file or file.suffix.lower() == path.suffix.lower():
@@ -68,7 +70,7 @@ def _loaded(values: Floats) -> Floats:
     return values
 
 
-def _seconds(table: ColumnTable, part: Part, where: str) -> Floats:
+def _seconds(table: ColumnTable, part: JoinedFile, where: str) -> Floats:
     unit = part.unit or table.units.get(part.time)
     if unit is None:
         raise InputError(f"the clock {part.time} states no unit", where=where, remedy='unit = "ms"')

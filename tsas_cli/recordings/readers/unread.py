@@ -1,5 +1,6 @@
 """What to do with a file of a format that is not read: one line for the shell."""
 
+import json
 import shlex
 from pathlib import Path
 
@@ -17,7 +18,7 @@ _PANDAS_READERS = {
     ".dta": "read_stata",
     ".sas7bdat": "read_sas",
 }
-_R = 'Rscript -e \'write.csv(readRDS("{file}"), "{made}.csv", row.names = FALSE)\''
+_R = "write.csv(readRDS({file}), {made}, row.names = FALSE)"
 _COPIES = {".nc": ".h5", ".nc4": ".h5", ".log": ".txt", ".out": ".txt", ".prn": ".txt"}
 
 
@@ -25,7 +26,7 @@ def way_to_convert(path: Path) -> str:
     """Return the sentence with the command that makes a readable file, or which formats to use."""
     suffixes = [suffix.lower() for suffix in path.suffixes]
     last = suffixes[-1] if suffixes else ""
-    made = path.with_name(path.name.split(".")[0])
+    made = path.with_name(path.name.split(".")[0] or "data")
     file, folder = shlex.quote(str(path)), shlex.quote(str(made))
     if ".tar" in suffixes or last in (".tgz", ".tbz", ".txz"):
         last = ".tar"
@@ -38,7 +39,8 @@ def way_to_convert(path: Path) -> str:
         trust = " (only if you trust it: the file may run code)" if "pickle" in command else ""
         return f"convert it{trust}: {command}"
     if last == ".rds":
-        return f"convert it: {_R.format(file=path, made=made)}"
+        said = _R.format(file=json.dumps(str(path)), made=json.dumps(f"{made}.csv"))
+        return f"convert it: Rscript -e {shlex.quote(said)}"
     if last in _COPIES:
         return f"copy it: cp {file} {shlex.quote(f'{made}{_COPIES[last]}')}"
     return "export it from the program that has written it, as CSV or Parquet"
