@@ -251,7 +251,7 @@ def test_the_overview_says_what_was_found_and_escapes_what_files_hold(made, tmp_
     assert "lower: Tendon outside the sheath**" in said
     assert "A free length of tendon" in said
     assert "Next: Record the same motion" in said
-    assert "- tension at the drive: 0.910 → 0.110 N (noise alone: 0.100 N)" in said
+    assert "- tension at the drive: 0.910 → 0.110 N (9.1 → 1.1 × noise level)" in said
 
 
 @pytest.mark.parametrize(
