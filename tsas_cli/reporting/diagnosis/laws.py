@@ -8,6 +8,7 @@ from tsas_cli.records.diagnosis import DescribedLaw, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, anchor
 from tsas_cli.reporting.diagnosis.causes import parameters_of
+from tsas_cli.reporting.diagnosis.words import within
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
@@ -15,7 +16,7 @@ from tsas_cli.support.wording import listed
 
 
 def parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
-    """Yield one part for each law."""
+    """Yield a part for each law, and its parameters, folded."""
     for law in diagnosis.laws:
         rivals = f" As good are: {listed(law.rivals)}." if law.rivals else ""
         yield Section(
@@ -37,14 +38,12 @@ def parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
                     f"{plain(law.rmse_before, 3)} to {plain(law.rmse_after, 3)} {law.unit}."
                 ),
             ),
-            parts=(
-                Section(
-                    anchor("parameters", law.law),
-                    "Parameters of the law",
-                    points=tuple(parameters_of(law.parameters, inputs)),
-                    folded=True,
-                ),
-            ),
+        )
+        yield Section(
+            anchor("parameters", law.law),
+            f"Parameters: {within(law.title)}",
+            points=tuple(parameters_of(law.parameters, inputs)),
+            folded=True,
         )
 
 
