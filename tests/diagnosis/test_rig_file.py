@@ -168,3 +168,11 @@ def test_limits_are_finite_and_known():
         Limits(preload_N=(float("inf"),))
     with pytest.raises(ValueError, match="Extra inputs"):
         Limits(preload=(1.0,))
+
+
+@pytest.mark.parametrize("name", ["a/b", "..", " a", "nul"])
+def test_a_run_has_a_name_that_files_can_have(tmp_path, name):
+    """Before, it was noticed when the run was simulated, as a defect."""
+    with pytest.raises(InputError, match=r"run.0.id: .*, got") as stopped:
+        read(tmp_path, TEXT.replace('id = "a"', f'id = "{name}"', 1))
+    assert "\n" not in stopped.value.line()

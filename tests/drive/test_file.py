@@ -64,7 +64,7 @@ def test_what_does_not_fit_is_refused(tmp_path, old, new, said):
     [
         ("gain_mm_per_s_rpm", -0.02, "expected a positive number"),
         ("gain_mm_per_s_rpm", 0.0, "expected a positive number"),
-        ("kV_rpm_s_per_mm", float("nan"), "expected a finite number"),
+        ("kV_rpm_s_per_mm", float("nan"), "should be a finite number"),
         ("gear_ratio", 0.0, "expected a positive number"),
         ("delay_s", -1.0, "expected zero or more"),
         ("motor_lag_s", "slow", "should be a valid number"),

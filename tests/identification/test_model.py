@@ -132,14 +132,17 @@ def test_a_bend_in_degrees_is_refused():
         ),
         ("format = 1\n" + VALUE.replace("'1'", "'N'"), "is in 'N'; expected the unit '1'"),
         ("format = 1\n" + VALUE.replace("unit = '1'\n", ""), "unit is missing"),
-        ("format = 1\n" + VALUE.replace("0.1", "nan"), "is nan; expected a finite number"),
-        ("format = 1\n" + VALUE.replace("0.1", "-0.1"), "is -0.1; expected a positive number"),
+        (
+            "format = 1\n" + VALUE.replace("0.1", "nan"),
+            "value: input should be a finite number, got nan",
+        ),
+        ("format = 1\n" + VALUE.replace("0.1", "-0.1"), "is -0.1; expected 0, or 0.0001 to 10"),
         ("format = 1\n" + VALUE.replace("0.1", "'x'"), "should be a valid number"),
         ("format = 1\n" + VALUE.replace("0.1", "true"), "value: true and false are no numbers"),
         ("format = 1\n" + VALUE + "stdder = 0.1\n", "did you mean stderr"),
         (
             "format = 1\n[parameters.tendon_stiffness_N]\nvalue = 0\nunit = 'N'\n",
-            "is 0.0; expected a positive number",
+            "is 0 N; expected 10 to 1e+08 N",
         ),
     ],
 )
@@ -156,9 +159,9 @@ def test_a_wrong_model_is_one_line(tmp_path, text, says):
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
-        ({"value": -1.0}, "friction_coefficient is -1.0; expected a positive number"),
-        ({"value": math.nan}, "friction_coefficient is nan; expected a finite number"),
-        ({"value": math.inf}, "friction_coefficient is inf; expected a finite number"),
+        ({"value": -1.0}, "friction_coefficient is -1; expected 0, or 0.0001 to 10"),
+        ({"value": math.nan}, "friction_coefficient: value: input should be a finite number"),
+        ({"value": math.inf}, "friction_coefficient: value: input should be a finite number"),
         ({"value": "much"}, "value: input should be a valid number"),
         ({"value": None}, "value: input should be a valid number"),
         ({"value": True}, "value: true and false are no numbers"),
@@ -169,7 +172,7 @@ def test_a_wrong_model_is_one_line(tmp_path, text, says):
         ({"name": "bristles.stiffness_N_per_mm", "unit": "N/mm", "value": 0.0}, "expected 0.01 to"),
         ({"name": "backlash.play_mm", "unit": "mm", "run": "b"}, "belongs to run b; expected one"),
         ({"name": CORRECTION, "unit": "N", "run": "b"}, "belongs to run b; expected one"),
-        ({"stderr": -0.1}, "stderr -0.1 is below 0"),
+        ({"stderr": -0.1}, "stderr: input should be greater than or equal to 0, got -0.1"),
         ({"interval_low": 0.1}, "interval_low and interval_high go together"),
         ({"interval_low": 0.3, "interval_high": 0.1}, "interval_low 0.3 is above"),
         ({"interval_low": 0.3, "interval_high": 0.4}, "lies outside of its interval"),
@@ -354,3 +357,38 @@ def test_a_zero_of_a_displacement_may_be_negative(tmp_path):
     assert read_model(path).value("x_in_zero_mm", "a") == -3.0
     path.write_text("format = 1\n[runs.a.preload_N]\nvalue = 0.0\nunit = 'N'\n", "utf-8")
     assert read_model(path).value("preload_N", "a") == 0.0
+
+
+LENGTH = "[runs.a.x_in_zero_mm]\nvalue = 1.0\nunit = 'mm'\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (VALUE.replace("0.1", "1e300"), "friction_coefficient is 1e+300; expected 0, or 0.0001 to"),
+        ("[runs.a.preload_N]\nvalue = -5\nunit = 'N'\n", "is -5 N; expected 0, or 0.001 to 1"),
+        ("[runs.a.preload_N]\nvalue = 1e300\nunit = 'N'\n", "expected 0, or 0.001 to 100000 N"),
+        ("[parameters.tendon_stiffness_N]\nvalue = 1\nunit = 'N'\n", "is 1 N; expected 10 to"),
+        (LENGTH.replace("1.0", "1e300"), "x_in_zero_mm is 1e+300 mm; expected -100000 to 100000"),
+        (f"[parameters.{CORRECTION}]\nvalue = 1e300\nunit = 'N'\n", "expected -100000 to 100000"),
+        (VALUE + "stderr = nan\n", "friction_coefficient.stderr: input should be a finite number"),
+        (VALUE + "stderr = inf\n", "friction_coefficient.stderr: input should be a finite number"),
+        (VALUE + "stderr = -0.1\n", "stderr: input should be greater than or equal to 0, got -0.1"),
+        (
+            VALUE + "interval_low = -inf\ninterval_high = 1.0\n",
+            "should be a finite number, got -inf",
+        ),
+        (
+            LENGTH + LENGTH.replace("runs.a", "parameters"),
+            "x_in_zero_mm is given for all runs and for run a; expected one of both; delete",
+        ),
+    ],
+)
+def test_an_implausible_number_is_refused_where_it_is_read(tmp_path, text, says):
+    """Before, these were taken without a word, or ended as a defect."""
+    path = tmp_path / "model.toml"
+    path.write_text("format = 1\n" + text, encoding="utf-8")
+    with pytest.raises(InputError) as stopped:
+        read_model(path)
+    assert says in stopped.value.line()
+    assert "\n" not in stopped.value.line()

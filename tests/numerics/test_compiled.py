@@ -113,3 +113,17 @@ def test_a_full_disk_of_the_cache_is_no_error_of_the_call(tmp_path):
     compilations, _, turns = json.loads(done.stdout)
     assert compilations > 0
     assert len(turns) > 2
+
+
+@pytest.mark.parametrize(("files", "bytes_left"), [("*.nbi", 0), ("*.nbi", 40), ("*.nbc", 400)])
+def test_damaged_machine_code_is_compiled_again(first, tmp_path, files, bytes_left):
+    """Before, it ended the process."""
+    cache = tmp_path / "cache"
+    shutil.copytree(first[0], cache)
+    for file in cache.rglob(files):
+        file.write_bytes(file.read_bytes()[:bytes_left])
+    done = run(USE_A_KERNEL, tmp_path, TSAS_CACHE_DIR=cache)
+    compilations, _, turns = json.loads(done.stdout)
+    assert (compilations > 0, turns) == (True, first[1][2])
+    assert "is damaged; the kernel is compiled again" in done.stderr
+    assert use_a_kernel(tmp_path, cache)[0] == 0

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
-from tsas_cli.recordings.manifest import RigSheet, parse, read_toml
+from tsas_cli.recordings.manifest import RigSheet, RunId, parse, read_toml
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.strict_table import StrictTable
 
@@ -40,7 +40,7 @@ class Sensors(StrictTable):
 class PlannedRun(StrictTable):
     """One run: its conditions and its motion."""
 
-    id: str = Field(min_length=1)
+    id: RunId
     sheath_length_mm: float = Field(gt=0)
     total_bend_rad: float = Field(ge=0)
     preload_N: float = Field(gt=0)

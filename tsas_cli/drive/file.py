@@ -168,8 +168,6 @@ def _check(name: str, value: StoredValue, path: object) -> None:
         raise InputError(
             f"{name} is in {value.unit!r}", where=path, expected=f"the unit {UNITS[name]!r}"
         )
-    if not math.isfinite(value.value):
-        raise InputError(f"{name} is {value.value}", where=path, expected="a finite number")
     if name in POSITIVE and value.value <= 0.0:
         raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")
     if name in NOT_NEGATIVE and value.value < 0.0:

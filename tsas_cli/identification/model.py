@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 IN_MEMORY = "in memory"  # in place of a file, for a model passed in Python
 CORRECTION = "preload_correction_N"  # mean of fitted minus stated preload, for other runs
+CORRECTIONS_N = (-1e5, 1e5)
 MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at the two ends
 MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 UNKNOWN_BEND_RAD = 1.0
@@ -241,7 +242,8 @@ def read_model(path: Path) -> Model:
     ------
     InputError
         The file is missing, not TOML, of another format, or has an unknown or duplicate parameter,
-        one of a single run that all runs share, or an invalid value.
+        one of a single run that all runs share, one for all runs and for a single one, or an
+        implausible value.
     """
     file = _read(path)
     values: list[_Value] = []
@@ -275,7 +277,7 @@ def _read(path: Path) -> _ModelTables:
 def _checked(values: Sequence[_Value], where: object) -> Model:
     """Return the model of these values, each with its name and its run, if they can be."""
     units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
-    seen = set()
+    seen: set[tuple[str, str | None]] = set()
     for name, run, value in values:
         if name not in units:
             known = [other for other in units if ("." in other) == ("." in name)]
@@ -291,6 +293,14 @@ def _checked(values: Sequence[_Value], where: object) -> Model:
             raise InputError(f"duplicate parameter {name}", where=where)
         seen.add((name, run))
         _check_value(name, value, units[name], where)
+    for name, run in seen:
+        if run is not None and (name, None) in seen:
+            raise InputError(
+                f"{name} is given for all runs and for run {run}",
+                where=where,
+                expected="one of both",
+                remedy="delete the value that does not hold",
+            )
     return Model(
         tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
     )
@@ -299,16 +309,13 @@ def _checked(values: Sequence[_Value], where: object) -> Model:
 def _check_value(name: str, value: StoredValue, unit: str, path: object) -> None:
     if value.unit != unit:
         raise InputError(f"{name} is in {value.unit!r}", where=path, expected=f"the unit {unit!r}")
-    nominal = NOMINAL_BY_NAME.get(name)
-    if not math.isfinite(value.value):
-        raise InputError(f"{name} is {value.value}", where=path, expected="a finite number")
+    known = QUANTITIES.get(name)
+    low, high = (known.lower, known.upper) if known else CORRECTIONS_N
     zero = value.value == 0.0 and name in MAY_BE_ZERO
-    if nominal and nominal.positive and value.value <= 0.0 and not zero:
-        raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")
-    bounds = QUANTITIES[name] if "." in name else None
-    if bounds and not bounds.lower <= value.value <= bounds.upper:
+    if not (low <= value.value <= high or zero):
+        shown = "" if unit == "1" else f" {unit}"
         raise InputError(
-            f"{name} is {value.value} {unit}",
+            f"{name} is {value.value:g}{shown}",
             where=path,
-            expected=f"{bounds.lower:g} to {bounds.upper:g} {unit}",
+            expected=f"{'0, or ' if name in MAY_BE_ZERO else ''}{low:g} to {high:g}{shown}",
         )

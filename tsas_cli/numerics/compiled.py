@@ -3,7 +3,6 @@
 import hashlib
 import os
 from collections.abc import Callable
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -32,19 +31,10 @@ def kernel(function: Function) -> Function:
     )
     compiled = compiler(function)
     if folder is not None:
-        _go_on_without_room(cast("Any", compiled)._cache)  # noqa: SLF001 # no other way
+        from tsas_cli.numerics.machine_code import checked
+
+        checked(cast("Any", compiled)._cache)  # noqa: SLF001 # no other way
     return cast("Function", compiled)
-
-
-def _go_on_without_room(machine_code: Any) -> None:
-    """Let machine code that cannot be stored be compiled again next time."""
-    store = machine_code.save_overload
-
-    def stored_if_possible(signature: Any, code: Any) -> None:
-        with suppress(OSError):
-            store(signature, code)
-
-    machine_code.save_overload = stored_if_possible
 
 
 @cache

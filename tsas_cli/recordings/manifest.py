@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 
 import tomlkit
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -42,6 +43,14 @@ def _as_date(value: object) -> object:
     elif isinstance(value, date):
         return value
     raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
+
+
+def _can_name_a_file(name: str) -> str:
+    check_run_name(name)
+    return name
+
+
+RunId = Annotated[str, AfterValidator(_can_name_a_file)]
 
 
 class _ManifestTable(BaseModel):
@@ -79,7 +88,7 @@ class RigSheet(_ManifestTable):
 class Run(_ManifestTable):
     """One run: its file with checksum, and the conditions under which it was recorded."""
 
-    id: str = Field(min_length=1)
+    id: RunId
     file: str
     sha256: str = Field(pattern=r"^[0-9a-fA-F]{64}$")
     started: Annotated[datetime, BeforeValidator(_as_date)] | None = None
@@ -98,12 +107,6 @@ class Run(_ManifestTable):
         if len(file) > _PATH_LENGTH or any(len(part.encode()) > 255 for part in path.parts):
             raise ValueError("is too long for a file's name")
         return str(path)
-
-    @field_validator("id")
-    @classmethod
-    def _can_name_a_file(cls, name: str) -> str:
-        check_run_name(name)
-        return name
 
 
 class Manifest(_ManifestTable):

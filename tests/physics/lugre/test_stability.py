@@ -82,3 +82,14 @@ def test_the_chain_chatters_where_it_is_said_to():
 def test_a_drive_that_never_moves_is_not_judged():
     still = np.zeros(100)
     assert stability(TABLE_1, TIME_S[:100], still, still + 25.0, still) is None
+
+
+@pytest.mark.parametrize("smooth", [{"friction_coefficient": 0.0}, {"total_bend_rad": 0.0}])
+def test_without_friction_nothing_is_judged_and_the_chain_answers(smooth):
+    """Before, it ended with a text of LAPACK."""
+    rig = TABLE_1._replace(**smooth)
+    x, tension = SINE[:200], np.full(200, 25.0)
+    assert stability(rig, TIME_S[:200], x, tension, np.ones(200)) is None
+    drive = DriveInput(x, time_s=TIME_S[:200])
+    slip, lugre = (simulate(rig, drive, dynamics) for dynamics in ("slip", "lugre"))
+    assert lugre.f_in_N == pytest.approx(slip.f_in_N, rel=0.02)

@@ -190,8 +190,11 @@ def stability(
 
     Returns
     -------
-        The least stable of its `moments`; None where the drive never moves under tension.
+        The least stable of its `moments`; None where the drive never moves under tension, or
+        nothing rubs.
     """
+    if rig.friction_coefficient * rig.total_bend_rad == 0.0:
+        return None
     chosen = moments(rig, time_s, x_in_mm, f_in_N, phase)
     found = [Stability(growth_rate(rig, moment), moment) for moment in chosen]
     return max(found, key=lambda s: s.folds, default=None)
