@@ -242,7 +242,7 @@ CASES = (
         "is a pipe or a device",
     ),
     Case("a run called ../x", run_id("../x"), "must be usable as a file name"),
-    Case("a run without a name", run_id(""), "at least 1 character"),
+    Case("a run without a name", run_id(""), "must be usable as a file name"),
     Case("a run with an escape", run_id("\x1b[2Jx"), "must be usable as a file name (no slash"),
     Case("a run with script", run_id("<script>alert(1)<script>")),
     Case(

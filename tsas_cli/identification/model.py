@@ -255,7 +255,9 @@ def read_model(path: Path) -> Model:
         for effect, named in file.effects.items()
         for name, v in named.items()
     ]
-    return _checked(values, path / MODEL_FILE if path.is_dir() else path)
+    where = path / MODEL_FILE if path.is_dir() else path
+    _check_owners(values, where)
+    return _checked(values, where)
 
 
 def read_fitted_to(path: Path) -> FittedTo | None:
@@ -272,6 +274,19 @@ def read_fitted_to(path: Path) -> FittedTo | None:
 def _read(path: Path) -> _ModelTables:
     path = path / MODEL_FILE if path.is_dir() else path
     return parse(_ModelTables, read_toml(path), path)
+
+
+def _check_owners(values: Sequence[_Value], where: object) -> None:
+    """Refuse a parameter with a value for all runs and one for a run; a sweep may set it so."""
+    for_all = {name for name, run, _ in values if run is None}
+    for name, run, _ in values:
+        if run is not None and name in for_all:
+            raise InputError(
+                f"{name} is given for all runs and for run {run}",
+                where=where,
+                expected="one of both",
+                remedy="delete the value that does not hold",
+            )
 
 
 def _checked(values: Sequence[_Value], where: object) -> Model:
@@ -293,14 +308,6 @@ def _checked(values: Sequence[_Value], where: object) -> Model:
             raise InputError(f"duplicate parameter {name}", where=where)
         seen.add((name, run))
         _check_value(name, value, units[name], where)
-    for name, run in seen:
-        if run is not None and (name, None) in seen:
-            raise InputError(
-                f"{name} is given for all runs and for run {run}",
-                where=where,
-                expected="one of both",
-                remedy="delete the value that does not hold",
-            )
     return Model(
         tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
     )
