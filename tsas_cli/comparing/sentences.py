@@ -6,6 +6,7 @@ from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.values import FALSE_CLAIMS, rounded
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.records.comparison import ParameterPair
+from tsas_cli.records.diagnosis import INCOMPLETE
 from tsas_cli.support.wording import count_of
 
 SHOWN = 4  # names that are listed
@@ -63,7 +64,7 @@ def _effects(it: Comparison) -> Iterator[str]:
         if alone:
             yield f"{name} alone holds {', '.join(alone)}."
     for name, side in it.sides.items():
-        if side.verdict in ("undecided", "partly", "described", "stand_in", "unexplained"):
+        if side.verdict == "undecided" or side.verdict in INCOMPLETE:
             yield f"The verdict of diagnosis {name} is {side.verdict}: {side.reason}"
 
 

@@ -23,7 +23,7 @@ from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.records.diagnosis import Verdict
+from tsas_cli.records.diagnosis import INCOMPLETE, Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
@@ -61,7 +61,7 @@ class Diagnosis:
     @property
     def unexplained(self) -> bool:
         """Whether a residual remains that no effect explains."""
-        return self.verdict in ("partly", "described", "stand_in", "unexplained")
+        return self.verdict in INCOMPLETE
 
 
 def verdict_of(

@@ -53,6 +53,11 @@ class Folds:
         """The number of blocks."""
         return int(self.block.max()) + 1
 
+    def blocks_of_runs(self, runs: int) -> list[Indices]:
+        """Return the block of each residual of each run, counted from 0 in each."""
+        own = (self.block[self.run == k] for k in range(runs))
+        return [np.unique(block, return_inverse=True)[1] for block in own]
+
 
 def folds_of(blocks: Sequence[Indices]) -> Folds:
     """Return the folds for runs whose residuals have these blocks, each counted from 0."""

@@ -14,7 +14,7 @@ import numpy as np
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
+from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
@@ -23,6 +23,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import ReversalShapes, RunErrors
 from tsas_cli.physics.rig import with_values
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 # The displacement that each law follows, and the channel that shows it.
@@ -138,11 +139,11 @@ def in_channel_units(
     bench: Bench, trial: HypothesisFit, ranges: Mapping[str, Mapping[str, float]]
 ) -> Bench:
     """Return the bench with each channel's residual over its RMS, and the ranges of the laws."""
-    raw: dict[str, list[float]] = {}
+    raw: dict[str, list[Floats]] = {}
     for k, run in enumerate(bench.errors_for(trial)):
         for name, errors in run.raw(bench.rig(trial, k)).items():
-            raw.setdefault(name, []).extend(errors)
-    rms = {name: float(np.sqrt(np.mean(np.square(errors)))) for name, errors in raw.items()}
+            raw.setdefault(name, []).append(errors)
+    rms = {name: rms_of(parts) for name, parts in raw.items()}
     given = {name: value for law in ranges.values() for name, value in law.items()}
     return replace(
         bench,
@@ -184,8 +185,7 @@ def _estimates(
     taken: Sequence[str],
 ) -> list[Estimate]:
     """Return the estimates of all free parameters, and the given ones of the laws."""
-    blocks = [folds.block[folds.run == k] for k in range(len(bench.rigs))]
-    counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
+    counted = folds.blocks_of_runs(len(bench.rigs))
     fitted = with_errors(trial.unknowns, trial.solution, counted, by_run=True)
     given = [
         Estimate(name, value, QUANTITIES[name].unit, "given")

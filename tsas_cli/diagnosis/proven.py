@@ -150,8 +150,7 @@ def estimates_with_tolerances(
 ) -> tuple[list[Estimate], Floats]:
     """Return the estimates of a trial and their correlation, with what tolerances change."""
     solution = trial.solution
-    blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
-    counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
+    counted = search.folds.blocks_of_runs(len(search.bench.rigs))
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
     by_tolerances = covariance_of_tolerances(trial, of_others(trial, tolerated), counted)
     known = np.where(np.isfinite(fitted.stderr), fitted.stderr, 0.0)

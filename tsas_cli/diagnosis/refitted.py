@@ -46,16 +46,17 @@ def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
             here[held_out[k]] = run.residuals(rig)[held_out[k]]
             for name, errors in run.raw(rig).items():
                 raw.setdefault((k, name), []).append(errors[run.spread(name, held_out[k])])
-    by_run = {key: _rms(parts) for key, parts in raw.items()}
+    by_run = {key: rms_of(parts) for key, parts in raw.items()}
     rmse = {
-        name: _rms([part for (_, n), parts in raw.items() if n == name for part in parts])
+        name: rms_of([part for (_, n), parts in raw.items() if n == name for part in parts])
         for name in sorted({name for _, name in raw})
     }
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
     return HeldOutFit(rmse, squares.astype(np.float64), by_run)
 
 
-def _rms(parts: Sequence[Floats]) -> float:
+def rms_of(parts: Sequence[Floats]) -> float:
+    """Return the RMS of all parts together."""
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 

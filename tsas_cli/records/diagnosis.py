@@ -29,6 +29,7 @@ Verdict = Literal[
     "sufficient",
     "undecided",
 ]
+INCOMPLETE = frozenset[Verdict]({"partly", "described", "stand_in", "unexplained"})
 UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 
 
@@ -202,8 +203,7 @@ class Findings(Record):
     @property
     def warns(self) -> bool:
         """Whether it says that something is there which it has no name for."""
-        warned = ("partly", "described", "stand_in", "unexplained")
-        return self.verdict in warned or self.remainder.unexplained
+        return self.verdict in INCOMPLETE or self.remainder.unexplained
 
 
 class DiagnosisFile(OfDataset, Findings):
