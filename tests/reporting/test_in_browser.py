@@ -8,6 +8,7 @@ import pytest
 
 from tests.reporting.pages import PAGES, chromium
 
+expect = pytest.importorskip("playwright.sync_api").expect
 PHONE, DESK = 390, 1280
 EACH_TIME = {*((kind, PHONE, "dark") for kind in PAGES), ("pipeline", DESK, "light")}
 LOOKS = [
@@ -146,7 +147,7 @@ def test_the_page_of_a_pipeline_is_short_and_begins_with_the_picture(made, tab):
     assert one.locator("main details").first.bounding_box()["y"] <= 4000
     first = one.locator(".glance svg").first.bounding_box()
     assert first["y"] + first["height"] < 844
-    assert not one.locator("main table").first.is_visible()
+    expect(one.locator("main table").first).not_to_be_visible()
 
 
 def plot_of(one):
@@ -165,7 +166,7 @@ def test_values_show_under_the_mouse_at_the_same_sample_in_both_panels(made, tab
     one = tab(made("pipeline"), DESK)
     plot, move = plot_of(one)
     tip = one.locator(".tip")
-    assert not tip.is_visible()
+    expect(tip).not_to_be_visible()
     move(0.5, 0.37)
     said = tip.inner_text().split("\n")
     assert re.fullmatch(r"x_in −?[\d.]+ mm", said[0])
@@ -176,7 +177,7 @@ def test_values_show_under_the_mouse_at_the_same_sample_in_both_panels(made, tab
     assert measured - nominal == pytest.approx(residual, abs=0.02)
     assert plot.locator("circle.mark").count() == 5
     move(0.5, 1.2)
-    assert not tip.is_visible()
+    expect(tip).not_to_be_visible()
     assert plot.locator("circle.mark").count() == 0
 
 
@@ -211,7 +212,7 @@ def test_a_part_of_a_loop_is_enlarged_with_ticks_of_its_own_and_back(made, tab):
     assert values != [float(text.replace("−", "-")) for text in ticks if "[" not in text]
     plot.get_by_role("button", name="Reset zoom").click()
     assert loop.get_attribute("d") == whole
-    assert not plot.locator(".reset").is_visible()
+    expect(plot.locator(".reset")).not_to_be_visible()
     move(0.5, 0.3)
     one.mouse.dblclick(*centre(plot))
     assert loop.get_attribute("d") != whole
@@ -225,29 +226,29 @@ def centre(plot):
 def test_a_link_to_a_folded_section_opens_it(made, tab):
     one = tab(made("pipeline"), DESK)
     section = one.locator("#parameters")
-    assert not section.locator("table").first.is_visible()
+    expect(section.locator("table").first).not_to_be_visible()
     one.locator("nav a[href='#parameters']").click()
-    assert section.locator("table").first.is_visible()
+    expect(section.locator("table").first).to_be_visible()
     again = tab(made("pipeline") + "#simulation", DESK)
-    assert again.locator("#simulation svg").first.is_visible()
+    expect(again.locator("#simulation svg").first).to_be_visible()
 
 
 def test_a_fold_opens_with_the_keyboard(made, tab):
     one = tab(made("pipeline"), PHONE)
     fold = one.locator("main details").nth(1)
-    assert not fold.locator("svg").first.is_visible()
+    expect(fold.locator("svg").first).not_to_be_visible()
     fold.locator("summary").press("Enter")
-    assert fold.locator("svg").first.is_visible()
+    expect(fold.locator("svg").first).to_be_visible()
 
 
 def test_contents_are_folded_on_a_phone_and_stay_beside_the_text_on_a_desk(made, tab):
     link = "nav ol ol a"
     one = tab(made("pipeline"), PHONE)
-    assert not one.locator(link).first.is_visible()
+    expect(one.locator(link).first).not_to_be_visible()
     one.locator("nav summary").click()
-    assert one.locator(link).first.is_visible()
+    expect(one.locator(link).first).to_be_visible()
     one = tab(made("pipeline"), DESK)
-    assert one.locator(link).first.is_visible()
+    expect(one.locator(link).first).to_be_visible()
     one.evaluate("window.scrollTo(0, document.body.scrollHeight)")
     nav, main = (one.locator(name).bounding_box() for name in ("nav", "main"))
     assert 0 <= nav["y"] < 50
@@ -265,9 +266,9 @@ def test_every_address_leads_into_view_and_into_folds(made, tab):
 def test_paper_is_light_whole_and_unfolded(made, tab):
     one = tab(made("pipeline"), 700, "dark")
     one.emulate_media(media="print", color_scheme="dark")
-    assert one.locator("main details:not([open]) svg").last.is_visible()
+    expect(one.locator("main details:not([open]) svg").last).to_be_visible()
     assert one.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    assert not one.locator(".skip").is_visible()
+    expect(one.locator(".skip")).not_to_be_visible()
     overflow = one.locator(".scroll").first.evaluate("it => getComputedStyle(it).overflowX")
     assert overflow == "visible"
 
