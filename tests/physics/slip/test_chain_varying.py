@@ -5,6 +5,7 @@ import pytest
 
 from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_studies.challenge.rig import tendon
 from tsas_studies.challenge.rig.motions import Motion
 
@@ -93,6 +94,27 @@ def test_everything_that_varies_at_once_is_that_of_the_relaxed_chain(drive, load
         apart = np.abs(answer - reference) > tolerance
         assert np.mean(apart) < 0.05
         np.testing.assert_allclose(answer, reference, atol=1e5 * tolerance)
+
+
+def test_friction_that_vanishes_lets_both_ends_of_a_stretched_tendon_move_apart():
+    """Of a node near the one that stays at rest only the tensions tell which way it slips."""
+    friction = np.interp(np.arange(120.0), [0, 30, 60, 90, 119], [A, 0.0, 0.0, A, A])
+    tension = 20.0 + 5.0 * np.sin(0.3 * np.arange(120.0))
+    # A third of what the tendon is longer by is given at the drive, the rest moves the load.
+    length = compliances(SPRINGY, 0.0).sum() * (tension - SPRINGY.preload_N)
+    x_in, x_out, f_in, _, phase = follow(
+        length / 3.0,
+        load=tension,
+        rig=SPRINGY,
+        boundary=Boundary(DISPLACEMENT, FORCE),
+        n=60,
+        pulled=friction,
+        released=friction,
+    )
+    assert UNCONVERGED not in phase
+    free = slice(30, 61)
+    np.testing.assert_allclose(f_in[free], tension[free], rtol=1e-9)
+    np.testing.assert_allclose((x_in - x_out)[free], length[free], rtol=1e-2)
 
 
 def test_constant_arrays_are_scalars_to_the_last_bit():

@@ -17,6 +17,7 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
 from tsas_cli.physics.slip.state import (
     BALANCED,
+    COMPLIANCE,
     DROP,
     DROP_SLOPE,
     FACTOR,
@@ -247,6 +248,20 @@ def slips_backwards(i: int, chain: Floats, laws: SlipLaws) -> bool:
     """Return whether a slipping node has slid against its own direction."""
     slid = chain[POSITION + i] - chain[POSITION_BEFORE + i]
     return bool(chain[SLIP + i] * slid < -TOLERANCE * laws.scale_mm)
+
+
+@kernel
+def slip_after_backwards(i: int, loss: float, chain: Floats) -> float:
+    """Return the next slip of a node that has slid backwards: none, or the other direction.
+
+    Held in place it would need a force of the two segments beside it; where that exceeds the
+    friction of both directions the node cannot stick. Without this, nodes with little friction
+    between two ends that stretch the tendon stick and slip in turn, without an end.
+    """
+    slid = abs(chain[POSITION + i] - chain[POSITION_BEFORE + i])
+    force = slid * (1.0 / chain[COMPLIANCE + i - 1] + 1.0 / chain[COMPLIANCE + i])
+    limits = 1.0 / capstan_ratio(-1.0, i, chain) - capstan_ratio(1.0, i, chain)
+    return -chain[SLIP + i] if force > abs(limits * chain[TENSION + i]) + 2.0 * loss else 0.0
 
 
 @kernel

@@ -21,6 +21,7 @@ from tsas_cli.physics.slip.nodes import (
     extrapolate,
     is_linear,
     set_friction,
+    slip_after_backwards,
     slips_backwards,
     update_relations,
 )
@@ -43,6 +44,7 @@ from tsas_cli.support.arrays import Floats
 
 NODES_PER_DIVISION = 16  # in the elimination with presliding
 MOST_ITERATIONS = 20  # changes of the active set
+MOST_REVERSALS = 20  # further ones, with nodes that reverse without a step at rest
 MOST_SINGLE_CHANGES = 5  # further ones, for each node
 
 
@@ -54,13 +56,19 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         extrapolate(chain, laws)
     set_friction(chain, now, laws)
     update_relations(chain, now, laws)
-    for iteration in range(MOST_ITERATIONS + MOST_SINGLE_CHANGES * n):
+    reversing = MOST_ITERATIONS + n
+    one_by_one = reversing + MOST_REVERSALS
+    for iteration in range(one_by_one + MOST_SINGLE_CHANGES * n):
         sweep_to_drive(chain, now, laws)
         sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
-        limit = n if iteration < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
-        unsolved = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, limit) > 0
+        reverse = reversing <= iteration < one_by_one
+        # One by one ends where all at once cycle, but for nodes with little friction.
+        limit = n if reverse or iteration < MOST_ITERATIONS else 1
+        unsolved = (
+            laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, limit, reverse) > 0
+        )
         unsolved = update_relations(chain, now, laws) or unsolved
         if not unsolved or limit == n:
             unsolved = update_ends(chain, now, laws) or unsolved
@@ -175,8 +183,8 @@ def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
 
 
 @kernel
-def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, limit: int) -> int:
-    """Update the active set: nodes beyond their friction slip, nodes that slip backwards stick.
+def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, limit: int, reverse: bool) -> int:
+    """Update the active set: nodes beyond their friction slip, others stick or reverse.
 
     Returns the number of changed nodes, at most `limit`, from the drive on.
     """
@@ -188,7 +196,7 @@ def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, limit: int) ->
         if before == 0.0:
             chain[SLIP + i] = breakaway(i, loss, chain)
         elif slips_backwards(i, chain, laws):
-            chain[SLIP + i] = 0.0
+            chain[SLIP + i] = slip_after_backwards(i, loss, chain) if reverse else 0.0
         if chain[SLIP + i] != before:
             changed += 1
             if changed == limit:
