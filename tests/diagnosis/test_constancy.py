@@ -72,7 +72,6 @@ def test_a_value_of_one_run_is_split_by_run():
     values = dict(found.values)
     assert values["run c"] / values["run a"] == pytest.approx(1.5, abs=0.05)
     assert values["run b"] / values["run a"] == pytest.approx(1.0, abs=0.05)
-    assert not found.scatter
 
 
 def test_a_value_at_its_bound_is_not_split():

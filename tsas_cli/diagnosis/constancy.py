@@ -24,7 +24,6 @@ from tsas_cli.diagnosis.signals import DIRECTION, RUN
 from tsas_cli.diagnosis.tolerances import (
     is_scatter,
     with_friction_of_runs,
-    within_scatter,
     without_tolerances,
 )
 from tsas_cli.identification.extension import HypothesisFit
@@ -41,15 +40,13 @@ class Split:
     """A parameter with values of its own for the parts of the data.
 
     `by` is the signal that the data are split by, `gain` the reduction of the held-out squares by
-    the split, `values` the parameter's value in each part, by the part's name. `scatter` is whether
-    the effect is no more than a plausible friction of its own for each run.
+    the split, `values` the parameter's value in each part, by the part's name.
     """
 
     parameter: str
     by: str
     gain: Reduction
     values: tuple[tuple[str, float], ...]
-    scatter: bool = False
 
 
 def worst_split(
@@ -85,11 +82,8 @@ def worst_split(
     J = trial.solution.jacobian
     residual = without_tolerances(trial, tolerated)
     trial = replace(trial, solution=replace(trial.solution, residual=residual))
-    scatter = any(is_scatter(trial, J[:, j], folds.run) for j in columns)
-    if not scatter:
+    if not any(is_scatter(trial, J[:, j], folds.run) for j in columns):
         trial = with_friction_of_runs(trial, folds.run)
-    sizes = [_from_neutral(trial.unknowns[j].name, trial.solution.values[j]) for j in columns]
-    small = scatter and within_scatter(trial, J[:, columns] @ np.array(sizes), folds.run)
     stretches = in_stretches(folds)
     before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
     worst: Split | None = None
@@ -100,7 +94,7 @@ def worst_split(
         if found.beyond(LEAST_GAIN) and (worst is None or found.part > worst.gain.part):
             name, values = _values(trial, extended, columns, shape)
             pairs = tuple(zip(labels, values, strict=True))
-            worst = Split(name, by, found, pairs, small and by == RUN)
+            worst = Split(name, by, found, pairs)
     return worst
 
 

@@ -21,6 +21,7 @@ from tsas_cli.diagnosis.tolerances import (
     largest_forces,
     of_others,
     tolerances,
+    within_scatter,
     within_tolerances,
 )
 from tsas_cli.identification.estimate import Estimate
@@ -137,11 +138,12 @@ def _cause(
     if split is not None and structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
-    negligible = split is not None and split.scatter
-    negligible |= not again.convincing and may_be_zero(name, own, related)
+    negligible = not again.convincing and may_be_zero(name, own, related)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
     if within_tolerances(judged.trial(named), name, tolerated, reduction):
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
+    if within_scatter(judged.trial(named), name, judged.folds.run):
+        failed, negligible = (*failed, "is no more than a friction that differs by run"), True
     return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, negligible)
 
 

@@ -16,6 +16,7 @@ from tsas_cli.support.arrays import Floats, Indices
 FRICTION = "friction_coefficient"
 PLAUSIBLE = 2.0  # standard deviations of it
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
+COINCIDENCE = 1e-3  # probability below which frictions in line are no coincidence
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.
@@ -100,16 +101,20 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduct
     """
     own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
     J, values = trial.solution.jacobian, trial.solution.values
-    neutral = [QUANTITIES[u.name].scaled(QUANTITIES[u.name].default) for u in trial.unknowns]
     held = replace(trial.solution, at_bound=trial.solution.at_bound | own)
     others = projector(replace(trial, solution=held))
-    change = _beside(others, J[:, own] @ (values - neutral)[own])
+    change = _beside(others, J[:, own] @ (values - _neutral(trial))[own])
     columns = _beside(others, columns)
     amounts = np.linalg.solve(columns.T @ columns + np.eye(columns.shape[1]), columns.T @ change)
     left = change - columns @ amounts
     plausible = bool(np.all(np.abs(amounts) <= PLAUSIBLE))
     squares = float(change @ change)
     return plausible and squares - float(left @ left) > 0.5 * max(squares, reduction)
+
+
+def _neutral(trial: HypothesisFit) -> Floats:
+    """Return the scaled values of the unknowns that change nothing, shape (p,)."""
+    return np.array([QUANTITIES[u.name].scaled(QUANTITIES[u.name].default) for u in trial.unknowns])
 
 
 def _beside(basis: Floats, columns: Floats) -> Floats:
@@ -124,15 +129,30 @@ def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
     return trial.with_columns(names, columns)
 
 
-def within_scatter(trial: HypothesisFit, change: Floats, run: Indices) -> bool:
-    """Return whether most of a change of the residuals is a plausible scatter of the friction."""
+def within_scatter(trial: HypothesisFit, effect: str, run: Indices) -> bool:
+    """Return whether an effect is no more than a plausible friction of its own for each run.
+
+    It is more where the scatter of the frictions about it is too small for a coincidence (F test).
+    """
+    from scipy.special import fdtrc
+
     columns = friction_of_runs(trial, run)
+    own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
+    J = trial.solution.jacobian
+    if not any(is_scatter(trial, column, run) for column in J[:, own].T):
+        return False
+    change = J[:, own] @ (trial.solution.values - _neutral(trial))[own]
     common = columns.sum(axis=1)  # what the friction coefficient does
     change = change - common * float(common @ change) / float(common @ common)
     frictions = np.linalg.lstsq(columns, change, rcond=None)[0]
     left = change - columns @ frictions
-    plausible = np.all(np.abs(frictions - frictions.mean()) <= PLAUSIBLE)
-    return bool(plausible) and float(left @ left) < 0.5 * float(change @ change)
+    if float(left @ left) > 0.5 * float(change @ change):
+        return False
+    about_it = _beside(projector(trial), columns)
+    scatter = np.linalg.lstsq(about_it, trial.solution.residual, rcond=1e-6)[0]
+    size, free = float(np.sum((frictions - frictions.mean()) ** 2)), columns.shape[1] - 2
+    by_chance = fdtrc(1, free, size * free / float(scatter @ scatter)) if free else 1.0
+    return size <= PLAUSIBLE**2 and by_chance > COINCIDENCE
 
 
 def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
