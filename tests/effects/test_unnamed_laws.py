@@ -39,6 +39,22 @@ def test_friction_at_the_drive_has_the_sign_of_its_motion_once_it_yields():
     assert (law.f_out_N == plain.f_out_N).all()
 
 
+def test_friction_with_a_gap_changes_at_both_ends_of_the_travel_after_a_reversal():
+    """Of width 2 mm: 1 mm until the spring is loose, 2 mm of gap, 1 mm until it yields."""
+    rising = np.linspace(2.0, 10.0, 401)
+    x = np.concatenate((rising, rising[::-1]))
+    drive = DriveInput(x, time_s=np.arange(x.size) / 100.0)
+    plain = run(drive)
+    law = run(drive, drive_law__travel_mm=4.0, drive_law__gap_friction_1_N=3.0)
+    back = 10.0 - x[401:]
+    expected = np.interp(back, [0.0, 1.0, 3.0, 4.0], [3.0, 0.0, 0.0, -3.0])
+    assert (law.f_in_N - plain.f_in_N)[401:] == pytest.approx(expected)
+    shared = run(drive, drive_law__travel_mm=4.0, drive_law__gap_share_1=0.1)
+    assert (shared.f_in_N - plain.f_in_N)[401:] == pytest.approx(
+        0.1 * plain.f_in_N[401:] * expected / 3.0
+    )
+
+
 def test_a_share_grows_with_the_tension_of_the_tendon():
     plain, law = run(), run(drive_law__travel_mm=0.01, drive_law__share_1=0.1)
     moving = SETTLED & (np.abs(np.cos(TIME_S)) > 0.2)

@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tsas_cli.numerics.stops import ELEMENTS, RATIO, curve_of, states_of, widths_of
+from tsas_cli.numerics.stops import (
+    ELEMENTS,
+    RATIO,
+    beyond_gap,
+    curve_of,
+    states_of,
+    widths_of,
+    widths_with_gaps,
+)
 
 WIDTHS = np.array([1.0, 0.25])
 
@@ -49,6 +57,22 @@ def test_weights_that_are_not_negative_only_dissipate(corners, weights):
     force = np.array(weights) @ states_of(path, WIDTHS, no_memory())
     work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(path)))
     assert work >= -1e-9 * (1.0 + sum(weights))
+
+
+@given(st.lists(st.floats(-3.0, 3.0), min_size=2, max_size=8))
+def test_elements_with_a_gap_only_dissipate(corners):
+    """Up to the error of the sum, which is of the second order at the ends of the gap."""
+    path = np.concatenate([np.linspace(a, b, 2000) for a, b in pairwise([*corners, corners[0]])])
+    force = beyond_gap(states_of(path, WIDTHS, no_memory()))
+    work = np.sum(0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(path), axis=1)
+    assert (work >= -1e-4).all()
+
+
+def test_the_spring_of_an_element_with_a_gap_is_loose_over_half_of_its_width():
+    assert beyond_gap(np.array([-1.0, -0.75, -0.5, 0.0, 0.4, 0.75, 1.0])) == pytest.approx(
+        [-1.0, -0.5, 0.0, 0.0, 0.0, 0.5, 1.0]
+    )
+    assert widths_with_gaps(8.0) == pytest.approx([4.0, 2.0, 1.0, 0.5])
 
 
 def test_a_curve_is_straight_between_its_heights_and_constant_outside():

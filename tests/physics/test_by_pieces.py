@@ -36,6 +36,7 @@ REMEMBERED = {
     "sensor_lag.x_out_lag_s": 0.02,
     "drive_law.friction_2_N": 1.5,
     "drive_law.share_3": 0.1,
+    "drive_law.gap_friction_2_N": 0.7,
     "load_law.lost_1_mm": 0.3,
     "tendon_law.start_1": 0.4,
 }

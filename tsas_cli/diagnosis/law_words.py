@@ -7,7 +7,16 @@ import numpy as np
 from tsas_cli.diagnosis.law import CHANGES, Law
 from tsas_cli.effects import LAWS
 from tsas_cli.effects.laws.tendon_law import STARTS
-from tsas_cli.numerics.stops import ELEMENTS, KNOTS, RATIO, widths_of
+from tsas_cli.numerics.stops import (
+    ELEMENTS,
+    GAP,
+    GAPS,
+    KNOTS,
+    RATIO,
+    beyond_gap,
+    widths_of,
+    widths_with_gaps,
+)
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import Value
@@ -70,8 +79,9 @@ def after_reversal(name: str, value: Mapping[str, float], travel: Floats, tensio
         weights = [value[f"start_{k}"] for k in range(1, STARTS + 1)]
         decaying: Floats = np.exp(-travel[:, None] / widths) @ weights
         return decaying
-    moved = np.minimum(travel[:, None] / widths_of(value["travel_mm"]), 2.0)
-    change: Floats = moved @ _weights(name, value, tension)
+    left = 1.0 - np.minimum(travel[:, None] / _widths(name, value), 2.0)
+    left[:, ELEMENTS:] = beyond_gap(left[:, ELEMENTS:])
+    change: Floats = (1.0 - left) @ _weights(name, value, tension)
     return change
 
 
@@ -105,6 +115,8 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         else:
             parts.append(f"friction changes f_in by {high:.2g} N after each reversal")
         parts[-1] += f", within {within:.2g} mm"
+        gap = _gap(name, value, float(np.mean(tensions)))
+        parts[-1] += f", hardly over a gap of {gap:.2g} mm in its middle" if gap > 0.0 else ""
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
@@ -129,6 +141,14 @@ def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
     return parts
 
 
+def _gap(name: str, value: Mapping[str, float], tension: float) -> float:
+    """Return the gap of the element with a gap that carries most of the friction, else 0 [mm]."""
+    weights, widths = _weights(name, value, tension), _widths(name, value)
+    largest = int(np.argmax(weights))
+    carries = largest >= ELEMENTS and weights[largest] > 0.5 * weights.sum()
+    return 2.0 * GAP * float(widths[largest]) if carries else 0.0
+
+
 def _along(heights: Floats) -> str:
     """Return the ends of a monotone curve, or the extremes of another one."""
     steps = np.diff(heights)
@@ -141,10 +161,20 @@ def _along(heights: Floats) -> str:
 
 def _weights(name: str, value: Mapping[str, float], tension: float) -> Floats:
     """Return the weight of each element at a tension, in the unit of the law's channel."""
-    numbers = range(1, ELEMENTS + 1)
     if name == "load_law":
-        return np.array([value[f"lost_{k}_mm"] for k in numbers])
-    return np.array([value[f"friction_{k}_N"] + value[f"share_{k}"] * tension for k in numbers])
+        return np.array([value[f"lost_{k}_mm"] for k in range(1, ELEMENTS + 1)])
+    elements = [("", k) for k in range(1, ELEMENTS + 1)] + [("gap_", k) for k in range(1, GAPS + 1)]
+    return np.array(
+        [value[f"{g}friction_{k}_N"] + value[f"{g}share_{k}"] * tension for g, k in elements]
+    )
+
+
+def _widths(name: str, value: Mapping[str, float]) -> Floats:
+    """Return the width of each element, in the order of the weights [mm]."""
+    widths = widths_of(value["travel_mm"])
+    if name == "load_law":
+        return widths
+    return np.concatenate((widths, widths_with_gaps(value["travel_mm"])))
 
 
 def _travels(value: Mapping[str, float]) -> Floats:

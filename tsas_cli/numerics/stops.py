@@ -2,7 +2,9 @@
 
 An element follows a displacement until it has moved by its width, and then yields: its state is the
 share of its width, −1 to 1. A sum of elements with weights that are not negative only dissipates
-(Prandtl and Ishlinskii; Al-Bender, Lampaert and Swevers 2005).
+(Prandtl and Ishlinskii; Al-Bender, Lampaert and Swevers 2005). So do elements whose spring has a
+gap, as where parts with play rub: they alone can give a change after a reversal that is slow in its
+middle.
 """
 
 from collections.abc import Sequence
@@ -13,13 +15,25 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.support.arrays import Floats
 
-ELEMENTS, KNOTS = 6, 5
+ELEMENTS, GAPS, KNOTS = 6, 4, 5  # elements without and with a gap
 RATIO = 0.25  # width of each element over that of the one before
+GAP = 0.5  # share of the width of an element with a gap, within which its spring is loose
 
 
 def widths_of(longest: float) -> Floats:
-    """Return the widths of the elements, the longest first, shape (ELEMENTS,)."""
+    """Return the widths of the elements without a gap, the longest first, shape (ELEMENTS,)."""
     return np.array([longest * RATIO**k for k in range(ELEMENTS)])
+
+
+def widths_with_gaps(longest: float) -> Floats:
+    """Return the widths of the elements with a gap, half of `longest` first, shape (GAPS,)."""
+    return np.array([longest * 0.5**k for k in range(1, GAPS + 1)])
+
+
+def beyond_gap(states: Floats) -> Floats:
+    """Return the force of springs with a gap over that at full width, of any shape [1]."""
+    force: Floats = np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
+    return force
 
 
 @kernel

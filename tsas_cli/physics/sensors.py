@@ -28,7 +28,7 @@ from tsas_cli.effects.position_sensor_ripple import (
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.numerics.settling import lag_after
-from tsas_cli.numerics.stops import ELEMENTS
+from tsas_cli.numerics.stops import ELEMENTS, GAPS
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, Boundary
 from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
@@ -46,9 +46,9 @@ def new_memory() -> Floats:
 
     For each of `CHANNELS` time [s] and input of its low pass at the last sample, and by how much
     the low pass lags there; input and force of its elastoplastic element; input and states of the
-    elements of the law that acts on it; shape (3, 12), NaN before the first sample.
+    elements of the law that acts on it; shape (3, 16), NaN before the first sample.
     """
-    return np.full((len(CHANNELS), LAW_MEMORY + 1 + ELEMENTS), np.nan)
+    return np.full((len(CHANNELS), LAW_MEMORY + 1 + ELEMENTS + GAPS), np.nan)
 
 
 def sensed(

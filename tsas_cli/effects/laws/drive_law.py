@@ -2,10 +2,12 @@
 
 What one sees: a residual of f_in that repeats with the displacement of the drive: with its place,
 and with the travel since its reversals; f_out and x_out have none of it.
-Equation: f_in = T + Σ (friction_k + share_k·T)·s_k + curve(x), T the tension of the tendon, s_k the
-stop operator of width travel·4^(1−k) on the displacement of the motor where its angle was recorded,
-else of the drive: generalised Maxwell slip (Al-Bender, Lampaert and Swevers 2005). With friction
-and shares that are not negative its elements only dissipate. The paper has none.
+Equation: f_in = T + Σ (friction_k + share_k·T)·s_k + Σ (gap_friction_k + gap_share_k·T)·g_k +
+curve(x), T the tension of the tendon, s_k the stop operator of width travel·4^(1−k) on the
+displacement of the motor where its angle was recorded, else of the drive, g_k that of width
+travel·2^(−k) whose spring is loose over half of it: generalised Maxwell slip (Al-Bender, Lampaert
+and Swevers 2005). With weights that are not negative its elements only dissipate. The paper has
+none.
 Mistaken for: a cause. A law describes what no proven cause explains: friction, lost motion or
 springs at the drive, and whatever else acts there.
 Not validated: displacements, tensions and speeds beyond those that it was fitted to.
@@ -13,8 +15,18 @@ Not validated: displacements, tensions and speeds beyond those that it was fitte
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.numerics.stops import ELEMENTS, curve_of, states_of, widths_of
+from tsas_cli.numerics.stops import (
+    ELEMENTS,
+    GAPS,
+    beyond_gap,
+    curve_of,
+    states_of,
+    widths_of,
+    widths_with_gaps,
+)
 from tsas_cli.support.arrays import Floats
 
 
@@ -36,6 +48,14 @@ class DriveLaw(NamedTuple):
     share_4: float = 0.0
     share_5: float = 0.0
     share_6: float = 0.0
+    gap_friction_1_N: float = 0.0
+    gap_friction_2_N: float = 0.0
+    gap_friction_3_N: float = 0.0
+    gap_friction_4_N: float = 0.0
+    gap_share_1: float = 0.0
+    gap_share_2: float = 0.0
+    gap_share_3: float = 0.0
+    gap_share_4: float = 0.0
     curve_1_N: float = 0.0
     curve_2_N: float = 0.0
     curve_3_N: float = 0.0
@@ -44,6 +64,7 @@ class DriveLaw(NamedTuple):
 
 
 FIRST = 3  # of the weights
+LAST = FIRST + 2 * (ELEMENTS + GAPS)
 
 
 def drive_law_force(
@@ -53,11 +74,16 @@ def drive_law_force(
 
     `memory` is that of the elements, updated in place.
     """
-    friction, share = law[FIRST : FIRST + ELEMENTS], law[FIRST + ELEMENTS : FIRST + 2 * ELEMENTS]
-    states = states_of(x if motor_mm is None else motor_mm, widths_of(law.travel_mm), memory)
-    heights = law[FIRST + 2 * ELEMENTS :]
-    force: Floats = friction @ states + (share @ states) * tension
-    return force + curve_of(x, law.low_mm, law.high_mm, heights)
+    widths = np.concatenate((widths_of(law.travel_mm), widths_with_gaps(law.travel_mm)))
+    states = states_of(x if motor_mm is None else motor_mm, widths, memory)
+    states[ELEMENTS:] = beyond_gap(states[ELEMENTS:])
+    weights = np.array(law[FIRST:LAST])
+    friction, share, gap_friction, gap_share = np.split(
+        weights, (ELEMENTS, 2 * ELEMENTS, 2 * ELEMENTS + GAPS)
+    )
+    force: Floats = np.concatenate((friction, gap_friction)) @ states
+    force += (np.concatenate((share, gap_share)) @ states) * tension
+    return force + curve_of(x, law.low_mm, law.high_mm, law[LAST:])
 
 
 DRIVE_LAW = Effect(
@@ -65,7 +91,8 @@ DRIVE_LAW = Effect(
     title="Force at the drive, of unnamed origin",
     acts_on="drive",
     closed_form=True,
-    equation="f_in = T + Σ (friction_k + share_k·T)·s_k + curve(x)",
+    equation="f_in = T + Σ (friction_k + share_k·T)·s_k + Σ (gap_friction_k + gap_share_k·T)·g_k + "
+    "curve(x)",
     doc=__doc__,
     parameters=(
         Parameter("travel_mm", "mm", 1.0, 1.0, 1e-6, 1e4, given=True),
@@ -73,6 +100,8 @@ DRIVE_LAW = Effect(
         Parameter("high_mm", "mm", 1.0, 1.0, -1e5, 1e5, given=True),
         *(Parameter(f"friction_{k}_N", "N", 0.0, 1.0, 0.0, 1e4) for k in range(1, 7)),
         *(Parameter(f"share_{k}", "1", 0.0, 0.1, 0.0, 1.0) for k in range(1, 7)),
+        *(Parameter(f"gap_friction_{k}_N", "N", 0.0, 1.0, 0.0, 1e4) for k in range(1, 5)),
+        *(Parameter(f"gap_share_{k}", "1", 0.0, 0.1, 0.0, 1.0) for k in range(1, 5)),
         *(Parameter(f"curve_{k}_N", "N", 0.0, 1.0, -1e4, 1e4) for k in range(1, 6)),
     ),
     experiment="Nested strokes of the drive without the tendon: what f_in reads is this law alone.",
