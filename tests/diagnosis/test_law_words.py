@@ -46,9 +46,9 @@ def test_what_is_small_beside_the_rest_is_left_out():
 
 
 def test_friction_in_the_sheath_is_said_in_percent():
-    text = said("tendon_law", start_1=0.3, speed_1=-0.1, speed_3=0.2)
+    text = said("tendon_law", start_1=0.3, speed_2=-0.1, speed_3=0.2)
     assert text.startswith("In the sheath friction differs by 30 % after each reversal")
-    assert "friction changes from -10 to 20 % from 1 to 10 mm/s" in text
+    assert "friction changes between -10 and 20 % from 1 to 10 mm/s" in text
 
 
 def test_the_change_after_a_reversal_ends_at_twice_the_weights():

@@ -99,10 +99,11 @@ def test_the_factor_of_the_friction_is_the_sum_of_its_parts():
     assert tendon_law_factor(negative, x, travel, speed)[0] == 0.0
 
 
-def test_a_constant_factor_is_another_friction_coefficient():
-    curve = {f"tendon_law__curve_{k}": 0.4 for k in range(1, 6)}
+def test_a_factor_beyond_the_low_end_is_another_friction_coefficient():
+    """The curve reaches 0.4 below all places of this motion."""
+    curve = {f"tendon_law__curve_{k}": 0.4 for k in range(2, 6)}
+    ranges = {"tendon_law__low_mm": -40.0, "tendon_law__high_mm": 0.0}
     more = GROUP_A._replace(friction_coefficient=1.4 * GROUP_A.friction_coefficient)
-    on_chain = {"presliding__length_mm": 0.0}
-    law = run(**curve)
+    law = run(**curve, **ranges)
     assert law.f_in_N == pytest.approx(simulate(more, DRIVE, on_mesh=True).f_in_N, rel=1e-9)
-    assert np.ptp(law.f_in_N - run(**on_chain).f_in_N) > 1.0
+    assert np.ptp(law.f_in_N - simulate(GROUP_A, DRIVE, on_mesh=True).f_in_N) > 1.0

@@ -94,7 +94,7 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
     change = after_reversal(name, value, travel, float(np.mean(tensions)))
     heights = _heights(name, value)
     if name == "tendon_law":
-        speeds = np.array([value[f"speed_{k}"] for k in range(1, 4)])
+        speeds = np.array([0.0, value["speed_2"], value["speed_3"]])
         parts = _of_friction(travel, change, heights)
         if np.ptp(speeds) > LEAST * max(np.ptp(heights), float(np.abs(change).max())):
             ends = f"{value['slow_mm_per_s']:.2g} to {value['fast_mm_per_s']:.2g} mm/s"
@@ -184,4 +184,6 @@ def _travels(value: Mapping[str, float]) -> Floats:
 
 
 def _heights(name: str, value: Mapping[str, float]) -> Floats:
-    return np.array([value[f"curve_{k}{WHAT[name][1]}"] for k in range(1, KNOTS + 1)])
+    """Return the heights of the curve over the place; that of a factor begins at 0."""
+    names = (f"curve_{k}{WHAT[name][1]}" for k in range(1, KNOTS + 1))
+    return np.array([value.get(name, 0.0) for name in names])

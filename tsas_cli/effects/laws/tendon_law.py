@@ -4,7 +4,8 @@ What one sees: f_in over f_out, a ratio, differs with the speed of the drive, fr
 or with the travel since its reversals, at any tension.
 Equation: μ → μ·(1 + Σ start_k·exp(−τ/w_k) + curve(x) + speed(ln|v|)), τ the travel of the tendon's
 end at the drive since its last reversal, w_k = travel·4^(−k), x its displacement, v its speed; not
-below 0. The paper's μ is constant.
+below 0. μ is the friction far from a reversal at the low end and at low speed, where both curves
+are 0. The paper's μ is constant.
 Mistaken for: a cause. A law describes what no proven cause explains: breakaway, ageing, rolling
 strands, coatings, other laws of speed, and whatever else the friction depends on.
 Not validated: displacements, tensions and speeds beyond those that it was fitted to; controlled
@@ -35,12 +36,10 @@ class TendonLaw(NamedTuple):
     start_2: float = 0.0
     start_3: float = 0.0
     start_4: float = 0.0
-    curve_1: float = 0.0
     curve_2: float = 0.0
     curve_3: float = 0.0
     curve_4: float = 0.0
     curve_5: float = 0.0
-    speed_1: float = 0.0
     speed_2: float = 0.0
     speed_3: float = 0.0
 
@@ -51,7 +50,7 @@ def tendon_law_factor(law: TendonLaw, x: Floats, travel: Floats, speed: Floats) 
     From displacement, travel since the last reversal and speed of the tendon's end at the drive,
     shape (n,) each.
     """
-    starts, curve, speeds = law[5:9], law[9:14], law[14:]
+    starts, curve, speeds = law[5:9], (0.0, *law[9:13]), (0.0, *law[13:])
     factor = 1.0 + curve_of(x, law.low_mm, law.high_mm, curve)
     for k, start in enumerate(starts, 1):
         factor += start * np.exp(-travel / (law.travel_mm * RATIO**k))
@@ -74,8 +73,8 @@ TENDON_LAW = Effect(
         Parameter("slow_mm_per_s", "mm/s", 1.0, 1.0, 1e-9, 1e5, given=True),
         Parameter("fast_mm_per_s", "mm/s", 10.0, 10.0, 1e-9, 1e5, given=True),
         *(Parameter(f"start_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(1, 5)),
-        *(Parameter(f"curve_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(1, 6)),
-        *(Parameter(f"speed_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(1, 4)),
+        *(Parameter(f"curve_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(2, 6)),
+        *(Parameter(f"speed_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(2, 4)),
     ),
     experiment="Short strokes about several places of the drive, at the same tension: ln(f_in/"
     "f_out) over the place and over the travel since the reversal.",
