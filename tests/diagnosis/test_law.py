@@ -55,6 +55,8 @@ def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
     assert "motion are lost at each reversal" in said.sentence
     within = np.array(said.travel_mm)[np.array(said.after_reversal) > 0.9 * lost][0]
     assert within < 2.5 * PLAY_MM
+    assert 0.0 < said.after_reversal_margin[-1] < 0.2 * PLAY_MM
+    assert abs(said.after_reversal[-1] - PLAY_MM) < 2.0 * said.after_reversal_margin[-1]
 
 
 def test_a_sound_rig_has_no_law(tmp_path):

@@ -1,6 +1,7 @@
 """What a law of unnamed origin says, in numbers and in a sentence made from the law itself."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from tsas_cli.numerics.stops import (
 )
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
-from tsas_cli.records.base import Value
+from tsas_cli.records.base import TWO_SIDED, Value
 from tsas_cli.support.arrays import Floats
 
 BUILT_UP = 0.9  # share of the change after a reversal from which it is built up
@@ -44,7 +45,8 @@ def _record(law: Law, name: str, tensions: tuple[float, float]) -> records.Descr
     own = {e.name.split(".")[1]: e for e in law.estimates if e.name.startswith(f"{name}.")}
     value = {parameter: e.value for parameter, e in own.items()}
     channel = CHANGES[name]
-    travel = _travels(value)
+    travel, tension = _travels(value), float(np.mean(tensions))
+    turned = partial(after_reversal, name, travel=travel, tension=tension)
     return records.DescribedLaw(
         law=name,
         title=effect.title,
@@ -58,10 +60,29 @@ def _record(law: Law, name: str, tensions: tuple[float, float]) -> records.Descr
         rmse_after=law.after.rmse[channel],
         what=WHAT[name][0],
         travel_mm=tuple(travel),
-        after_reversal=tuple(after_reversal(name, value, travel, float(np.mean(tensions)))),
+        after_reversal=tuple(turned(value)),
+        after_reversal_margin=tuple(_margin(law, name, turned)),
         place_mm=tuple(np.linspace(value["low_mm"], value["high_mm"], KNOTS)),
         along_stroke=tuple(_heights(name, value)),
+        along_stroke_margin=tuple(_margin(law, name, partial(_heights, name))),
     )
+
+
+def _margin(law: Law, name: str, curve: Callable[[Mapping[str, float]], Floats]) -> Floats:
+    """Return half of the 95 % interval of a curve that is linear in a law's parameters, shape (n,).
+
+    Parameters at a bound stay there.
+    """
+    own = [e for e in law.estimates if e.name.startswith(f"{name}.")]
+    zero = {e.name.split(".")[1]: e.value if e.origin == "given" else 0.0 for e in own}
+    free = {e.name: e.stderr for e in own if e.stderr is not None and not e.at_bound}
+    at = [[u.name for u in law.trial.unknowns].index(full) for full in free]
+    errors = [curve(zero | {full.split(".")[1]: stderr}) for full, stderr in free.items()]
+    if not errors:
+        return np.zeros(curve(zero).size)
+    related = law.trial.correlation()[np.ix_(at, at)]
+    variance = np.einsum("in,ij,jn->n", errors, related, errors)
+    return np.asarray(TWO_SIDED * np.sqrt(np.maximum(variance, 0.0)))
 
 
 def tensions_of(law: Law) -> tuple[float, float]:

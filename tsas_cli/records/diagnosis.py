@@ -65,7 +65,7 @@ class DescribedLaw(Record):
 
     `rivals` are other laws that describe it as well. `after_reversal` is the change of `what` over
     the travel since a reversal, from full slip and at the mean tension; `along_stroke` its curve at
-    the places.
+    the places; their margins are half of the 95 % intervals.
     """
 
     law: str
@@ -81,8 +81,10 @@ class DescribedLaw(Record):
     what: str = ""
     travel_mm: tuple[float, ...] = ()
     after_reversal: tuple[float, ...] = ()
+    after_reversal_margin: tuple[float, ...] = ()
     place_mm: tuple[float, ...] = ()
     along_stroke: tuple[float, ...] = ()
+    along_stroke_margin: tuple[float, ...] = ()
 
 
 class HeldOut(Record):
