@@ -9,8 +9,7 @@ from typing import Literal
 import tomlkit
 from pydantic import BaseModel, ConfigDict
 
-from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.stored_value import StoredValue
+from tsas_cli.identification.estimate import Estimate, StoredValue
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest

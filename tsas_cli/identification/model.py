@@ -10,10 +10,9 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.effects import EFFECTS, Effects
-from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.estimate import Estimate, StoredValue
 from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
-from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
