@@ -121,10 +121,7 @@ class QueryResult:
 def connected() -> "DuckDBPyConnection":
     """Return a connection to a database in memory.
 
-    Raises
-    ------
-    InputError
-        DuckDB is not installed.
+    InputError: DuckDB is not installed.
     """
     try:
         import duckdb
@@ -150,10 +147,7 @@ def run_query(
 
     A minus before a name in `sort` reverses its order; missing values come last.
 
-    Raises
-    ------
-    InputError
-        The query is no condition on these columns, or a column does not exist.
+    InputError: the query is no condition on these columns, or a column does not exist.
     """
     import duckdb
 

@@ -59,10 +59,7 @@ class Tracks:
 def are_tracked(a: Path, b: Path) -> bool:
     """Say whether both are folders of `tsas track`.
 
-    Raises
-    ------
-    InputError
-        Only one of them is.
+    InputError: only one of them is.
     """
     there = [(path / TRACKING_FILE).is_file() for path in (a, b)]
     if any(there) and not all(there):

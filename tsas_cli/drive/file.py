@@ -117,11 +117,8 @@ def _writable(value: object) -> bool:
 def read_drive(path: Path) -> IdentifiedDrive:
     """Read `drive.toml`, or the folder that holds it.
 
-    Raises
-    ------
-    InputError
-        The file is missing, not TOML, of another format or kind, names an unknown parameter, lacks
-        the gain, or a value or its unit is not what it has to be.
+    InputError: the file is missing, not TOML, of another format or kind, names an unknown
+    parameter, lacks the gain, or a value or its unit is not what it has to be.
     """
     path = path / DRIVE_FILE if path.is_dir() else path
     file = parse(_DriveTables, read_toml(path), path)
@@ -141,10 +138,7 @@ def read_drive(path: Path) -> IdentifiedDrive:
 def checked_drive(drive: IdentifiedDrive) -> IdentifiedDrive:
     """Return a drive in memory whose values can be.
 
-    Raises
-    ------
-    InputError
-        As from `read_drive`.
+    InputError: as from `read_drive`.
     """
     where = "the drive in memory"
     for name, value in vars(drive).items():

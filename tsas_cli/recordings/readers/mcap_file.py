@@ -23,10 +23,7 @@ from tsas_cli.recordings.readers.table import ReadOptions, optional
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose messages can be decoded.
 
-    Raises
-    ------
-    InputError
-        There is none.
+    InputError: there is none.
     """
     del options
     mcap = optional("mcap.reader", extra="robots")

@@ -99,10 +99,7 @@ def columns_of(topics: Sequence[Topic], path: Path, **advice: str) -> list[Colum
     The clock of a topic is the stamp in the header of its messages, else when they were published
     or logged; it counts from the first message of the file.
 
-    Raises
-    ------
-    InputError
-        No topic can be decoded; `advice` says what is expected, or what to do.
+    InputError: no topic can be decoded; `advice` says what is expected, or what to do.
     """
     used, unknown = [], []
     for topic in topics:

@@ -28,10 +28,7 @@ _MESSAGES = "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY ti
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose type is defined in the file, or by ROS 2 itself.
 
-    Raises
-    ------
-    InputError
-        There is none.
+    InputError: there is none.
     """
     del options
     address = f"{path.absolute().as_uri()}?mode=ro&immutable=1"

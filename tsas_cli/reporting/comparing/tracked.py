@@ -24,10 +24,7 @@ from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, heig
 def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each section.
 
-    Raises
-    ------
-    InputError
-        A run cannot be read.
+    InputError: a run cannot be read.
     """
     sections = []
     for section in _sections(it):

@@ -62,10 +62,7 @@ def stream_of(inputs: Inputs) -> Stream:
 def write_stream(inputs: Inputs, path: Path, *, step: Callable[[], None] = lambda: None) -> None:
     """Write what there is to see into a file for the Rerun viewer; `step` is called after each run.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read, or `path` exists.
+    InputError: a file cannot be read, or `path` exists.
     """
     stream = stream_of(inputs)
     with to_file(path, stream.name, stream.layout) as recorder:
