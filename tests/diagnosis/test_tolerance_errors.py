@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import tolerance_errors
-from tsas_cli.diagnosis.tolerance_errors import covariance_of_tolerances
+from tsas_cli.diagnosis import tolerances
+from tsas_cli.diagnosis.tolerances import covariance_of_tolerances
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -60,7 +60,7 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
         given.update(names=[u.name for u in unknowns], solution=solution, by_run=by_run)
         return SimpleNamespace(stderr=np.array([7.0, 7.0, 0.5, np.inf]))
 
-    monkeypatch.setattr(tolerance_errors, "with_errors", with_errors)
+    monkeypatch.setattr(tolerances, "with_errors", with_errors)
     J = np.zeros((6, 2))
     J[0, 0] = J[1, 1] = 2.0
     ways = np.zeros((6, 2))

@@ -37,10 +37,7 @@ class Index:
 def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: Steps) -> Index:
     """Return the index of folders; only changed files are read.
 
-    Raises
-    ------
-    InputError
-        A path is no folder.
+    InputError: a path is no folder.
     """
     for folder in folders:
         if not folder.is_dir():

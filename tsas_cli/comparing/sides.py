@@ -71,10 +71,7 @@ def read_side(path: Path | Model) -> Side:
 
     A model in memory is checked like its file.
 
-    Raises
-    ------
-    InputError
-        It is neither, more than one of them, or not whole.
+    InputError: it is neither, more than one of them, or not whole.
     """
     if isinstance(path, Model):
         model = model_of(path)

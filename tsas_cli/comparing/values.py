@@ -82,10 +82,7 @@ def difference(a: AnyEstimate, b: AnyEstimate) -> ValueDifference:
     symmetric intervals of normal errors that is exact; for others Zou and Donner 2008, Statistics
     in Medicine 27:1693, "recovery of variance estimates".
 
-    Raises
-    ------
-    ValueError
-        One of them has no interval.
+    ValueError: one of them has no interval.
     """
     ends = a.value, a.interval_low, a.interval_high, b.value, b.interval_low, b.interval_high
     known = [end for end in ends if end is not None]

@@ -50,10 +50,7 @@ def follow(
 
     Before and after the reference the force is constant at its first and last value.
 
-    Raises
-    ------
-    InputError
-        The reference is shorter than the crossing.
+    InputError: the reference is shorter than the crossing.
     """
     width = max(round(crossing_s / step_s / MEANS), 1)
     if wanted_N.size < MEANS * width:

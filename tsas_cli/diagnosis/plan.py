@@ -85,10 +85,7 @@ class ExperimentPlan:
 def plan_rig(file: RigFile, step: Steps = NO_PROGRESS) -> ExperimentPlan:
     """Return the plan for the runs of a rig file.
 
-    Raises
-    ------
-    InputError
-        None of the runs reaches full slip, or one is too long.
+    InputError: none of the runs reaches full slip, or one is too long.
     """
     step.ahead(1)
     # A manifest needs a run; only its rig is used here.
@@ -107,10 +104,7 @@ def plan_rig(file: RigFile, step: Steps = NO_PROGRESS) -> ExperimentPlan:
 def plan_dataset(counted: DeduplicatedDataset, step: Steps = NO_PROGRESS) -> ExperimentPlan:
     """Return the plan for the runs of a dataset, without duplicate samples.
 
-    Raises
-    ------
-    InputError
-        A recording is invalid, or none reaches full slip.
+    InputError: a recording is invalid, or none reaches full slip.
     """
     step.ahead(1)
     manifest = counted.dataset.manifest

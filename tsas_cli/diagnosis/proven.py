@@ -15,9 +15,9 @@ from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerance_errors import covariance_of_tolerances
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
+    covariance_of_tolerances,
     largest_forces,
     of_others,
     tolerances,

@@ -101,10 +101,7 @@ class RigFile(StrictTable):
 def read_rig_file(path: Path) -> RigFile:
     """Return the content of a file of planned runs, checked.
 
-    Raises
-    ------
-    InputError
-        It is missing, not TOML, or violates the format.
+    InputError: it is missing, not TOML, or violates the format.
     """
     file = parse(RigFile, read_toml(path), path)
     for key, hint in file.rig.unknown_keys().items():

@@ -61,10 +61,7 @@ class DataSheet:
 def drive_sheet(manifest: Manifest) -> DataSheet:
     """Return what the data sheet says; k_p is kL e^{μθ}, the pull in contraction (31).
 
-    Raises
-    ------
-    InputError
-        What follows from it is no property of a drive.
+    InputError: what follows from it is no property of a drive.
     """
     rig = manifest.rig
     sheet = DataSheet(

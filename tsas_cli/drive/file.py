@@ -9,8 +9,7 @@ from typing import Literal
 import tomlkit
 from pydantic import BaseModel, ConfigDict
 
-from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.stored_value import StoredValue
+from tsas_cli.identification.estimate import Estimate, StoredValue
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
@@ -118,11 +117,8 @@ def _writable(value: object) -> bool:
 def read_drive(path: Path) -> IdentifiedDrive:
     """Read `drive.toml`, or the folder that holds it.
 
-    Raises
-    ------
-    InputError
-        The file is missing, not TOML, of another format or kind, names an unknown parameter, lacks
-        the gain, or a value or its unit is not what it has to be.
+    InputError: the file is missing, not TOML, of another format or kind, names an unknown
+    parameter, lacks the gain, or a value or its unit is not what it has to be.
     """
     path = path / DRIVE_FILE if path.is_dir() else path
     file = parse(_DriveTables, read_toml(path), path)
@@ -142,10 +138,7 @@ def read_drive(path: Path) -> IdentifiedDrive:
 def checked_drive(drive: IdentifiedDrive) -> IdentifiedDrive:
     """Return a drive in memory whose values can be.
 
-    Raises
-    ------
-    InputError
-        As from `read_drive`.
+    InputError: as from `read_drive`.
     """
     where = "the drive in memory"
     for name, value in vars(drive).items():

@@ -60,11 +60,8 @@ def drive_runs(
 ) -> list[DriveRun]:
     """Return the runs of a dataset, some of whose rows may be `copied` from other runs.
 
-    Raises
-    ------
-    InputError
-        A channel is missing, has a gap, does not move or keeps one speed; the clock is uneven; a
-        run is too short; or x_in does not follow the motor.
+    InputError: a channel is missing, has a gap, does not move or keeps one speed; the clock is
+    uneven; a run is too short; or x_in does not follow the motor.
     """
     known = copied or {}
     return [_checked(one, hold, known.get(one.run.id, NONE_COPIED)) for one in recordings]

@@ -100,10 +100,7 @@ def compare(
 
     With `nodes` a chain of that many is used in place of the closed form.
 
-    Raises
-    ------
-    InputError
-        The static model with a load that is not a spring, or with a drive by force.
+    InputError: the static model with a load that is not a spring, or with a drive by force.
     """
     refuse_static(run.run, run.drive_column, dynamics)
     response = simulate(

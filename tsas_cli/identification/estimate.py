@@ -1,9 +1,11 @@
 """An estimate: value, interval, unit, bound flag, origin."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Self
 
-from tsas_cli.records.base import value_text
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from tsas_cli.records.base import check_interval, value_text
 
 Origin = Literal["fitted", "data sheet", "default", "given"]
 
@@ -26,3 +28,22 @@ class Estimate:
         """Return value and interval for a printed table; where there is none, its origin."""
         ends = self.interval_low, self.interval_high
         return value_text(self.value, ends, at_bound=self.at_bound, origin=self.origin)
+
+
+class StoredValue(BaseModel):
+    """A value in a file, with its unit, its interval and its origin."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    value: float
+    unit: str
+    origin: Origin = "data sheet"
+    stderr: float | None = Field(default=None, ge=0)
+    interval_low: float | None = None
+    interval_high: float | None = None
+    at_bound: bool = False
+
+    @model_validator(mode="after")
+    def _can_be_an_estimate(self) -> Self:
+        check_interval(self.value, self.interval_low, self.interval_high)
+        return self

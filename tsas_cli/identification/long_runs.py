@@ -133,10 +133,7 @@ class LongRun:
 def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> LongRun | None:
     """Return a run that is too long for memory, without its `copied` rows; else None.
 
-    Raises
-    ------
-    InputError
-        As from `prepare`.
+    InputError: as from `prepare`.
     """
     columns = long_run(dataset.folder, run)
     if columns is None:

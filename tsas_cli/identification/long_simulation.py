@@ -26,10 +26,7 @@ def simulate_long(
 
     The prediction is written into a folder.
 
-    Raises
-    ------
-    InputError
-        There is no folder, or the model is not valid for the run or for pieces.
+    InputError: there is no folder, or the model is not valid for the run or for pieces.
     """
     refuse_static(long.run, long.drive_column, dynamics)
     if folder is None or dynamics == "lugre":

@@ -10,10 +10,9 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.effects import EFFECTS, Effects
-from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.estimate import Estimate, StoredValue
 from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
-from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
@@ -48,10 +47,7 @@ class Model:
     def estimate(self, name: str, run: str | None = None) -> Estimate:
         """Return an estimate for a run, else the shared one.
 
-        Raises
-        ------
-        InputError
-            The model does not have it.
+        InputError: the model does not have it.
         """
         known = {(e.name, e.run): e for e in self.estimates}
         found = known.get((name, run), known.get((name, None)))
@@ -79,10 +75,7 @@ class Model:
     def rig(self, run: Run) -> Rig:
         """Return the rig of a run, calibrated or not; unknown parameters have defaults.
 
-        Raises
-        ------
-        InputError
-            Friction times bend is implausibly large: no tension would be transmitted.
+        InputError: friction times bend is implausibly large: no tension would be transmitted.
         """
         values = {p.name: self.value(p.name, run.id) for p in NOMINAL}
         if values["preload_N"] is None and run.preload_N is not None:
@@ -116,10 +109,7 @@ def check_wrap(friction: float, bend: float, where: str) -> None:
 def model_of(given: Model | Path) -> Model:
     """Return a model in memory, or that of a file; both are checked alike.
 
-    Raises
-    ------
-    InputError
-        As from `read_model`.
+    InputError: as from `read_model`.
     """
     if not isinstance(given, Model):
         return read_model(given)
@@ -135,10 +125,7 @@ def model_of(given: Model | Path) -> Model:
 def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
     """Return a model, or that of a file, completed by the manifest's data sheet.
 
-    Raises
-    ------
-    InputError
-        As from `read_model`.
+    InputError: as from `read_model`.
     """
     stated = data_sheet(manifest)
     return stated if given is None else model_of(given).over(stated)
@@ -238,12 +225,9 @@ def write_model(
 def read_model(path: Path) -> Model:
     """Return the model of a `model.toml` or `model-extended.toml`.
 
-    Raises
-    ------
-    InputError
-        The file is missing, not TOML, of another format, or has an unknown or duplicate parameter,
-        one of a single run that all runs share, one for all runs and for a single one, or an
-        implausible value.
+    InputError: the file is missing, not TOML, of another format, or has an unknown or duplicate
+    parameter, one of a single run that all runs share, one for all runs and for a single one, or an
+    implausible value.
     """
     file = _read(path)
     values: list[_Value] = []
@@ -263,10 +247,7 @@ def read_model(path: Path) -> Model:
 def read_fitted_to(path: Path) -> FittedTo | None:
     """Return the ranges of what a model was fitted to, None where its file does not say them.
 
-    Raises
-    ------
-    InputError
-        As from `read_model`, but for the values.
+    InputError: as from `read_model`, but for the values.
     """
     return _read(path).fitted_to
 

@@ -150,11 +150,8 @@ def prepare(
     `session_start` is the start of the dataset's first run, where the manifest has it. Measurements
     in rows that are `copied` from another run are left out.
 
-    Raises
-    ------
-    InputError
-        The run has no column that can drive the tendon, lacks the one that drives its load, or has
-        no channel to compare a model with.
+    InputError: the run has no column that can drive the tendon, lacks the one that drives its load,
+    or has no channel to compare a model with.
     """
     run, columns = recording.run, recording.columns
     driving = driving_columns(run, list(columns))
@@ -216,10 +213,7 @@ def _span(values: Floats | None) -> tuple[float, float] | None:
 def driving_columns(run: Run, columns: Sequence[str]) -> list[str]:
     """Return the columns that drive the tendon, and its load where it is driven.
 
-    Raises
-    ------
-    InputError
-        A driving column is missing, or both ends have a given force.
+    InputError: a driving column is missing, or both ends have a given force.
     """
     drive = next((name for name in ("x_in_mm", "f_in_N") if name in columns), None)
     if drive is None:

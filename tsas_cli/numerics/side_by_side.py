@@ -31,10 +31,7 @@ def each(
 def threads() -> int:
     """Return how many threads share such calls.
 
-    Raises
-    ------
-    InputError
-        The environment variable is not a whole number.
+    InputError: the environment variable is not a whole number.
     """
     asked = os.environ.get(THREADS) or str(os.cpu_count() or 1)
     if not asked.isdecimal():

@@ -89,10 +89,7 @@ def simulate_pieces(
     `drives` are one run's samples in order, with times since the start of the run; the fields
     besides the samples are those of the first one.
 
-    Raises
-    ------
-    ValueError
-        The dynamic model, which cannot be split, or a channel's delay longer than a piece.
+    ValueError: the dynamic model, which cannot be split, or a channel's delay longer than a piece.
     """
     if dynamics == "lugre":
         raise ValueError("the dynamic model cannot be simulated in pieces")

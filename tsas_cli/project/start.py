@@ -30,10 +30,8 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], MapProposal
     The sources are copied into `raw/`, a folder with its name. Files are added to an existing
     folder one by one: after a kill, the same call writes the missing ones.
 
-    Raises
-    ------
-    InputError
-        A file exists with other content, a source cannot be read, or two have the same name.
+    InputError: a file exists with other content, a source cannot be read, or two have the same
+    name.
     """
     name = printable(folder.resolve().name) or "bench"
     quoted = tomlkit.item(name).as_string()

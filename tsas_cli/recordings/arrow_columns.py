@@ -12,10 +12,7 @@ from tsas_cli.support.arrays import Floats
 def floats_from(column: pa.ChunkedArray) -> Floats:
     """Return a column of numbers as float64, shape (n,), null as NaN.
 
-    Raises
-    ------
-    ArrowInvalid, ArrowNotImplementedError
-        The column is not numeric.
+    ArrowInvalid, ArrowNotImplementedError: the column is not numeric.
     """
     whole = column.cast(pa.float64(), safe=False).combine_chunks()
     if not len(whole):

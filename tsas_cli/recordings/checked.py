@@ -21,10 +21,8 @@ ParquetSource: TypeAlias = Path | pa.NativeFile
 def checked_file(folder: Location, run: Run) -> ParquetSource:
     """Return the source that Parquet is read from, after its checksum matches the manifest.
 
-    Raises
-    ------
-    InputError
-        The file is missing, leaves its folder or has another checksum, or cannot be fetched.
+    InputError: the file is missing, leaves its folder or has another checksum, or cannot be
+    fetched.
     """
     if isinstance(folder, Address):
         path = folder / run.file
@@ -48,10 +46,7 @@ def checked_file(folder: Location, run: Run) -> ParquetSource:
 def local_file(folder: Path, run: Run) -> Path:
     """Return a run's file in a local folder.
 
-    Raises
-    ------
-    InputError
-        The file is missing, or a link leads out of the folder.
+    InputError: the file is missing, or a link leads out of the folder.
     """
     path = folder / run.file
     if not path.is_file():

@@ -28,11 +28,8 @@ def run_conditions(
     converted groups, the table entry of the run's id. A comma is a decimal mark; an ambiguous one
     (1,250 may be thousands) needs `decimal`.
 
-    Raises
-    ------
-    InputError
-        A pattern does not match, a group is missing, no number or ambiguous by a factor of 1000, or
-        a unit does not fit.
+    InputError: a pattern does not match, a group is missing, no number or ambiguous by a factor of
+    1000, or a unit does not fit.
     """
     folder = path.absolute().parent.name
     groups = _groups(run_map.from_file_name, f"{folder}/{path.name}", path)
@@ -116,10 +113,7 @@ def _plain(text: str) -> float | int | str:
 def at_most(seconds: float) -> Iterator[None]:
     """Run the block with a time limit; without one on Windows and outside the main thread.
 
-    Raises
-    ------
-    TimeoutError
-        The block took longer.
+    TimeoutError: the block took longer.
     """
 
     def late(number: int, frame: FrameType | None) -> None:

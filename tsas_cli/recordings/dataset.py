@@ -47,10 +47,7 @@ class Dataset:
     def only(self, ids: Iterable[str]) -> "Dataset":
         """Return the dataset restricted to these runs.
 
-        Raises
-        ------
-        InputError
-            There is no such run, or none is chosen.
+        InputError: there is no such run, or none is chosen.
         """
         known = [run.id for run in self.manifest.run]
         chosen = tuple(ids)
@@ -69,10 +66,7 @@ class Dataset:
     def under(self, **conditions: float) -> "Dataset":
         """Return the dataset with these conditions set for every run.
 
-        Raises
-        ------
-        InputError
-            There is no such condition, or a value is not allowed.
+        InputError: there is no such condition, or a value is not allowed.
         """
         for name in conditions:
             if name not in CONDITIONS:
@@ -94,10 +88,7 @@ class Dataset:
     def __getitem__(self, run: str) -> Recording:
         """Return the recording of a run.
 
-        Raises
-        ------
-        InputError
-            There is no such run, or its file is wrong (`read_recording`).
+        InputError: there is no such run, or its file is wrong (`read_recording`).
         """
         entry = self.only([run]).runs[0]
         return read_recording(self.folder, entry).read_only()
@@ -138,9 +129,6 @@ def read_from(path: Path, home: Path) -> dict[str, str]:
 def read_dataset(folder: Location) -> Dataset:
     """Return a dataset in a local folder, or at an address.
 
-    Raises
-    ------
-    InputError
-        The folder holds no manifest, or one that format 1 does not allow.
+    InputError: the folder holds no manifest, or one that format 1 does not allow.
     """
     return Dataset(folder, read_manifest(folder))

@@ -37,10 +37,7 @@ class Ingested:
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
     """Return the source files, and those below the source folders that fit a pattern ("*.csv").
 
-    Raises
-    ------
-    InputError
-        A source does not exist, or a folder holds no such file.
+    InputError: a source does not exist, or a folder holds no such file.
     """
     found: list[Path] = []
     for source in sources:
@@ -75,10 +72,7 @@ def ingest_files(
     `step` is called twice per file: when it is opened and when its run is written. Text tables and
     Parquet are read, converted and written in parts.
 
-    Raises
-    ------
-    InputError
-        A file does not match the map, or two files have the same run id.
+    InputError: a file does not match the map, or two files have the same run id.
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}

@@ -114,10 +114,7 @@ class IngestMap(StrictTable):
 def read_map(path: Path) -> IngestMap:
     """Return a validated map.
 
-    Raises
-    ------
-    InputError
-        The file is missing, is not TOML, is no valid map, or has open questions.
+    InputError: the file is missing, is not TOML, is no valid map, or has open questions.
     """
     content = read_toml(path)
     open_keys = list(_questions(content))

@@ -150,10 +150,7 @@ class Manifest(_ManifestTable):
 def read_manifest(folder: Location) -> Manifest:
     """Return the validated `dataset.toml` of a folder.
 
-    Raises
-    ------
-    InputError
-        The manifest is missing, is not TOML, or violates format 1.
+    InputError: the manifest is missing, is not TOML, or violates format 1.
     """
     path = folder / MANIFEST_FILE
     if not path.is_file():
@@ -170,10 +167,7 @@ def read_manifest(folder: Location) -> Manifest:
 def read_toml(path: Location) -> Raw:
     """Return the content of a TOML file.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not TOML, or exceeds a limit.
+    InputError: the file cannot be read, is not TOML, or exceeds a limit.
     """
     try:
         text = (
@@ -196,10 +190,7 @@ def read_toml(path: Location) -> Raw:
 def parse(model: type[T], content: Raw, path: object) -> T:
     """Return the validated content of a file; all its errors become one line.
 
-    Raises
-    ------
-    InputError
-        A key is missing, unknown or invalid.
+    InputError: a key is missing, unknown or invalid.
     """
     try:
         read = model.model_validate(content, context={"file": path})

@@ -93,10 +93,7 @@ def check_size(
     The columns `names` are to be read, at once if `whole`; `size` is that of the file [bytes], by
     default that of `path`.
 
-    Raises
-    ------
-    InputError
-        It does; or the columns exceed the memory, if they are read whole.
+    InputError: it does; or the columns exceed the memory, if they are read whole.
     """
     of_file = cast("Path", path).stat().st_size if size is None else size
     expanded = Expanded(path, of_file, limits.PARQUET_EXPANSION)

@@ -51,10 +51,7 @@ class Piece:
 def long_run(folder: Location, run: Run) -> RunColumns | None:
     """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet.
 
-    Raises
-    ------
-    InputError
-        Its file, columns or units violate the manifest or format 1.
+    InputError: its file, columns or units violate the manifest or format 1.
     """
     if isinstance(folder, Path) and not _is_long(folder / run.file):
         return None
@@ -87,11 +84,8 @@ def pieces(
 
     With `strict=False`, time may stop or decrease, and values may be implausible.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, a column is not numeric or holds an implausible value, or time
-        does not increase.
+    InputError: the file cannot be read, a column is not numeric or holds an implausible value, or
+    time does not increase.
     """
     buffered: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0

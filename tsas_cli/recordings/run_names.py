@@ -12,11 +12,8 @@ _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for 
 def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> None:
     """Refuse an id that is no valid file name.
 
-    Raises
-    ------
-    ValueError
-        It is empty, not printable, too long, or a Windows device; it has a slash, or a blank at
-        either end.
+    ValueError: it is empty, not printable, too long, or a Windows device; it has a slash, or a
+    blank at either end.
     """
     bad = _SLASHES + (_ON_WINDOWS if on_windows else "")
     unusable = name in {"", ".", ".."} or any(c in name for c in bad) or not name.isprintable()

@@ -19,10 +19,7 @@ _SHOWN_BY = {
 def unrecorded(dataset: Dataset) -> Iterator[str]:
     """Yield a sentence for each missing displacement or tension: what cannot be judged without it.
 
-    Raises
-    ------
-    InputError
-        The file of a run is missing or damaged.
+    InputError: the file of a run is missing or damaged.
     """
     columns = [set(open_run(dataset.folder, run).names) for run in dataset.runs]
     for name, cannot in _SHOWN_BY.items():

@@ -49,10 +49,7 @@ class WrittenRuns(Mapping[str, Recording]):
 def result_file(folder: Path, run: str) -> Path:
     """Return the file of a stage's result for a run.
 
-    Raises
-    ------
-    InputError
-        The run's id leads out of the folder, or a link does.
+    InputError: the run's id leads out of the folder, or a link does.
     """
     path = folder / "runs" / f"{run}.parquet"
     try:
@@ -73,10 +70,7 @@ def names_of(path: Path) -> list[str]:
 def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
     """Return columns of such a file by name, shape (n,) each, null as NaN.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read or lacks a column.
+    InputError: the file cannot be read or lacks a column.
     """
     with reading(path), open_parquet(path) as file:
         check_size(file, path, names, whole=True)

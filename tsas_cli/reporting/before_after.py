@@ -26,10 +26,7 @@ _VISIBLE = 0.01  # residual over the channel's range, to show in its whole loop
 def pictures(inputs: Inputs) -> tuple[Picture, ...]:
     """Return the loop and its enlargement, or a second channel's; none without a diagnosis.
 
-    Raises
-    ------
-    InputError
-        A recording or what the diagnosis has written of it cannot be read.
+    InputError: a recording or what the diagnosis has written of it cannot be read.
     """
     found = best_fits(inputs)
     if found is None:

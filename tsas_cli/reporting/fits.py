@@ -62,10 +62,7 @@ def best_fits(inputs: Inputs) -> tuple[ShownFit, ShownFit | None] | None:
 
     f_in comes first where its gain is at least half of the largest one. None without a diagnosis.
 
-    Raises
-    ------
-    InputError
-        A recording or what the diagnosis has written of it cannot be read.
+    InputError: a recording or what the diagnosis has written of it cannot be read.
     """
     gains = {
         (fit.channel, fit.run): fit.gain

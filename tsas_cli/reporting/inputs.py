@@ -120,10 +120,7 @@ class Inputs:
     def series(self, run: str, rows: int, column: str, stage: type[StageFile] | Path) -> Floats:
         """Return a column of a run of so many samples, NaN for gaps, by a stage or from its folder.
 
-        Raises
-        ------
-        InputError
-            The file cannot be read, or does not belong to this recording.
+        InputError: the file cannot be read, or does not belong to this recording.
         """
         path = result_file(stage if isinstance(stage, Path) else self.folders[stage], run)
         values = columns_of(path, (column,))[column]
@@ -133,10 +130,7 @@ class Inputs:
     def written_columns(self, run: str, stage: type[StageFile] | Path) -> frozenset[str]:
         """Return the columns that a stage, or its folder, has of a run, none without the run.
 
-        Raises
-        ------
-        InputError
-            The file cannot be read.
+        InputError: the file cannot be read.
         """
         path = result_file(stage if isinstance(stage, Path) else self.folders[stage], run)
         return frozenset(names_of(path) if path.is_file() else ())
@@ -147,11 +141,8 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
 
     `several` simulations may be given, else one.
 
-    Raises
-    ------
-    InputError
-        A folder is of no known kind, a kind is a duplicate, no dataset can be found, a stage has
-        read other recordings than the dataset holds, or tracked runs are not in it.
+    InputError: a folder is of no known kind, a kind is a duplicate, no dataset can be found, a
+    stage has read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders, {SimulationFile.FILE} if several else set())
     given = [
@@ -183,10 +174,7 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
 def read_stage(kind: type[Stage], folder: Path) -> Stage:
     """Read what a stage has written; control characters in its texts are made visible.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or does not say what such a file says.
+    InputError: the file cannot be read, or does not say what such a file says.
     """
     path = folder / kind.FILE
     content = read_json(path)

@@ -38,10 +38,7 @@ _OPTIONS = (
 def browser() -> str:
     """Return the path of the first of `BROWSERS` that is there.
 
-    Raises
-    ------
-    InputError
-        None is.
+    InputError: none is.
     """
     for name in BROWSERS:
         if path := shutil.which(name):
@@ -56,10 +53,7 @@ def browser() -> str:
 def print_page(html: str, pdf: Path) -> None:
     """Print a page into a file, on A4, with its headings as the outline.
 
-    Raises
-    ------
-    InputError
-        No browser is there, or it fails.
+    InputError: no browser is there, or it fails.
     """
     program = browser()
     with tempfile.TemporaryDirectory(prefix="tsas-pdf-", ignore_cleanup_errors=True) as name:

@@ -36,10 +36,7 @@ class Simulated:
     def predicted(self, inputs: Inputs, recording: Recording, column: str) -> Floats | None:
         """Return a channel of a run as predicted, shape (n,), None where it is not.
 
-        Raises
-        ------
-        InputError
-            The file cannot be read, or does not belong to this recording.
+        InputError: the file cannot be read, or does not belong to this recording.
         """
         name, run = nominal_name(column) if self.nominal else column, recording.run.id
         if name not in inputs.written_columns(run, self.folder):

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.comparing import stage, tracked_stage
+from tsas_cli.comparing import stage, tracked
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.compare import compare as compare_sides
 from tsas_cli.comparing.tracked import Tracks, are_tracked, compare_tracked
@@ -28,7 +28,7 @@ class CompareResult(Result):
     def tables(self) -> list[Table]:
         """Return the values, effects and errors of both sides."""
         if isinstance(self.both, Tracks):
-            return tracked_stage.tables(self.both)
+            return tracked.tables(self.both)
         return stage.tables(self.both)
 
     def sentences(self) -> list[str]:
@@ -88,7 +88,7 @@ def compare(
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
         record: ComparisonFile = (
-            tracked_stage.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)
+            tracked.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)
         )
         if folder is not None:
             record.write(folder)

@@ -45,11 +45,9 @@ def new_folder(
     `stage` writes it, as its JSON names it; with `force` an earlier output of the same stage is
     replaced. The folder may not be, contain or lie inside one of the call's `inputs`.
 
-    Raises
-    ------
-    InputError
-        `path` exists and is not an empty folder, and `force` is not set; or, with `force`, it is no
-        earlier output of the same stage, an input, or the current folder; or it is not writable.
+    InputError: `path` exists and is not an empty folder, and `force` is not set; or, with `force`,
+    it is no earlier output of the same stage, an input, or the current folder; or it is not
+    writable.
     """
     refuse = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
     with _new(path, refuse, folder=True, force=force) as temporary:
@@ -104,11 +102,8 @@ def new_file(
     4 KiB; an empty mark allows any file, since the path belongs to the program. The file may not
     be one of the call's `inputs` or lie inside one.
 
-    Raises
-    ------
-    InputError
-        `path` exists and `force` is not set; or, with `force`, it is no earlier output or an input;
-        or it is a folder or not writable.
+    InputError: `path` exists and `force` is not set; or, with `force`, it is no earlier output or
+    an input; or it is a folder or not writable.
     """
     refuse = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
     with _new(path, refuse, folder=False, force=force) as temporary:
@@ -139,10 +134,7 @@ def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -
 def own_file(path: Path) -> Iterator[Path]:
     """Yield as `new_file` does, for a file whose path belongs to the program: it is replaced.
 
-    Raises
-    ------
-    InputError
-        It is a folder, or not writable.
+    InputError: it is a folder, or not writable.
     """
     with new_file(path, mark=b"", inputs=(), force=True) as temporary:
         yield temporary
@@ -169,10 +161,8 @@ def json_text(content: Any) -> str:
 def read_json(path: Path) -> Any:
     """Return the content of a JSON file.
 
-    Raises
-    ------
-    InputError
-        The file is missing or unreadable, is not JSON, has a duplicate key, or exceeds a limit.
+    InputError: the file is missing or unreadable, is not JSON, has a duplicate key, or exceeds a
+    limit.
     """
     try:
         memory.fits(path, limits.JSON_EXPANDS * path.stat().st_size)

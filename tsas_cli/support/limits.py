@@ -135,10 +135,7 @@ def too_deep(path: object) -> InputError:
 def lines(stream: TextIO, path: Path) -> Iterator[str]:
     """Yield the lines of a text table.
 
-    Raises
-    ------
-    InputError
-        A line exceeds the limit.
+    InputError: a line exceeds the limit.
     """
     row = 0
     while line := stream.readline(LINE + 1):

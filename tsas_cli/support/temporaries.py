@@ -34,10 +34,7 @@ def temporary_for(path: Path) -> Iterator[Path]:
 
     Temporary files of killed processes in that folder are removed first.
 
-    Raises
-    ------
-    OSError
-        The folder is not writable.
+    OSError: the folder is not writable.
     """
     sweep(path.parent)
     lock, descriptor = _own_lock(path)
@@ -52,10 +49,7 @@ def temporary_for(path: Path) -> Iterator[Path]:
 def place_file(new: Path, path: Path, *, replace: bool) -> None:
     """Rename a file to its final name.
 
-    Raises
-    ------
-    FileExistsError
-        The name exists, and `replace` is not set.
+    FileExistsError: the name exists, and `replace` is not set.
     """
     _to_disk(new)
     if replace:
@@ -75,10 +69,7 @@ def place_file(new: Path, path: Path, *, replace: bool) -> None:
 def place_folder(new: Path, path: Path, *, replace: bool) -> None:
     """Rename a folder to its final name; the replaced one is removed afterwards.
 
-    Raises
-    ------
-    FileExistsError
-        The name exists and is no empty folder, and `replace` is not set.
+    FileExistsError: the name exists and is no empty folder, and `replace` is not set.
     """
     _to_disk(new)
     old = new.with_name(new.name.removesuffix(NEW) + OLD)

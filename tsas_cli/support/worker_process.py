@@ -21,10 +21,7 @@ class WorkerProcess:
     def __init__(self, *, heard: bool, **environment: str) -> None:
         """Start it, with more environment variables; if `heard`, its last words are kept.
 
-        Raises
-        ------
-        OSError
-            No process can be started.
+        OSError: no process can be started.
         """
         # Until the process ends.
         self.stderr: IO[bytes] = (
@@ -46,10 +43,7 @@ class WorkerProcess:
     def call(self, work: str, *arguments: Any) -> Any:
         """Return the result of a function, `module:function`.
 
-        Raises
-        ------
-        EOFError
-            The process has died, with how it ended.
+        EOFError: the process has died, with how it ended.
         """
         assert self.process.stdin is not None  # noqa: S101 # both are pipes
         assert self.process.stdout is not None  # noqa: S101

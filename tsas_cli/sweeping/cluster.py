@@ -39,11 +39,8 @@ def on_cluster(
     function to call, `module:function`, `address` what `dask scheduler` prints, `shared` a file
     that every worker has to see, to check the shared file system.
 
-    Raises
-    ------
-    InputError
-        Dask is not installed, no scheduler responds at the address or it ends, or a worker is
-        missing, has other versions, or does not see the file.
+    InputError: dask is not installed, no scheduler responds at the address or it ends, or a worker
+    is missing, has other versions, or does not see the file.
     """
     with _connected(address) as client:
         _refuse_workers(client, address, shared)

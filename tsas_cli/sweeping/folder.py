@@ -28,10 +28,8 @@ def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
 
     Temporary files of killed workers are removed before and after.
 
-    Raises
-    ------
-    InputError
-        Another sweep writes to it, it holds something else or an input, or it cannot be written.
+    InputError: another sweep writes to it, it holds something else or an input, or it cannot be
+    written.
     """
     text_name(out.absolute())
     refuse_kind(out, folder=True)

@@ -23,10 +23,7 @@ def in_processes(
     worker dies is repeated once by a new one. If the loop over the outcomes ends early, the workers
     are killed.
 
-    Raises
-    ------
-    InputError
-        No further process can be started.
+    InputError: no further process can be started.
     """
     crew = _Crew(work)
     pool = ThreadPoolExecutor(max(1, min(workers, len(texts))))

@@ -27,10 +27,7 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Sw
 
     A pattern such as `rigs/*` selects the folders that hold a `dataset.toml`.
 
-    Raises
-    ------
-    InputError
-        A folder holds no dataset, or a pattern matches none.
+    InputError: a folder holds no dataset, or a pattern matches none.
     """
     found: dict[Path, SweepSource] = {}
     for name in names:

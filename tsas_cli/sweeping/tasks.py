@@ -39,11 +39,8 @@ class Task:
 def tasks_of(plan: SweepPlan, base: Path, options: Options) -> list[Task]:
     """Return the tasks of a plan, dataset by dataset.
 
-    Raises
-    ------
-    InputError
-        A dataset or file does not exist, a name is unknown, a value is invalid, or tasks are
-        duplicate.
+    InputError: a dataset or file does not exist, a name is unknown, a value is invalid, or tasks
+    are duplicate.
     """
     sources: list[SweepSource | None] = [None]
     if plan.datasets:

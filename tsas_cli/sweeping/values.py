@@ -47,10 +47,7 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
 
     `options` holds the type of each keyword of the stage's call.
 
-    Raises
-    ------
-    InputError
-        A name is unknown, a value is invalid, or a file does not exist.
+    InputError: a name is unknown, a value is invalid, or a file does not exist.
     """
     found, of_runs = Values(), "model" in options and "plant" not in options
     for name, value in given.items():
@@ -151,10 +148,7 @@ def _number(name: str, value: Any) -> float:
 def with_settings(path: Path | None, changes: Mapping[str, Any]) -> Raw:
     """Return the content of a settings file, or of none, with some dotted keys replaced.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or a part of a dotted key is no table.
+    InputError: the file cannot be read, or a part of a dotted key is no table.
     """
     content = {} if path is None else read_toml(path)
     for key, value in changes.items():

@@ -48,11 +48,8 @@ class Condition:
 def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
     """Return the condition that options such as `friction_coefficient=0.16@10` describe.
 
-    Raises
-    ------
-    InputError
-        One is no NAME=VALUE[@SECONDS], names an unknown quantity, has a value that is not allowed,
-        or they begin at more than one time within the run.
+    InputError: one is no NAME=VALUE[@SECONDS], names an unknown quantity, has a value that is not
+    allowed, or they begin at more than one time within the run.
     """
     changes = tuple(_change(option, where) for option in options)
     times = sorted({c.from_s for c in changes if c.from_s > 0.0})

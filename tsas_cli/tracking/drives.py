@@ -14,10 +14,7 @@ def known_drive(given: IdentifiedDrive | Path | None, settings: DriveSettings) -
 
     Without any it is kinematics, 60 im/(2π r1) (Yang 2025, Eq. 48).
 
-    Raises
-    ------
-    InputError
-        The file is no `drive.toml`, or a value of the drive cannot be.
+    InputError: the file is no `drive.toml`, or a value of the drive cannot be.
     """
     if given is None:
         return settings.kinematic()

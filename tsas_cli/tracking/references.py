@@ -51,11 +51,8 @@ def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
     `name` is a shape, or a Parquet file with `time_s` and `f_out_ref_N` (or else `f_out_N`),
     linear between its samples.
 
-    Raises
-    ------
-    InputError
-        There is no such shape or file, the file lacks a column or has gaps, or the force is not
-        positive somewhere.
+    InputError: there is no such shape or file, the file lacks a column or has gaps, or the force is
+    not positive somewhere.
     """
     if name in SHAPES:
         time_s: Floats = np.arange(round(form.duration_s / step_s) + 1, dtype=np.float64) * step_s

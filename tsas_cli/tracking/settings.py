@@ -110,10 +110,7 @@ class Settings(StrictTable):
 def read_settings(given: Path | Mapping[str, Any] | None) -> Settings:
     """Read a settings file, or take its content; without one the paper's rig.
 
-    Raises
-    ------
-    InputError
-        It cannot be read, or says something that is unknown or not allowed.
+    InputError: it cannot be read, or says something that is unknown or not allowed.
     """
     if given is None:
         return Settings()

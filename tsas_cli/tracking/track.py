@@ -109,12 +109,9 @@ def run_loop(
 
     `dynamics` is the plant's; the controller's model is quasi-static.
 
-    Raises
-    ------
-    InputError
-        The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
-        follows that nevertheless). The plant changes after the run's end. Or the tendon cannot be
-        followed.
+    InputError: the loop is unstable: x_in has run away, or the motor swings from limit to limit
+    (`relay` follows that nevertheless). The plant changes after the run's end. Or the tendon cannot
+    be followed.
     """
     step_s, m = settings.step_s, wanted_N.size
     change_at = round(plant.change_s / step_s) if plant.later else -1

@@ -36,10 +36,7 @@ class Claim:
 def claims_of(path: Path) -> Iterator[Claim]:
     """Yield the checksums that a file records of others; none if tsas has not written it.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or is not in the format of its name.
+    InputError: the file cannot be read, or is not in the format of its name.
     """
     if path.name == SUMS:
         yield from _of_sums(path)

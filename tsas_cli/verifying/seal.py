@@ -53,10 +53,7 @@ def with_seal(text: str, files: Iterable[tuple[Location, str]], page: Path) -> s
 def sealed(path: Path) -> Seal | None:
     """Return the seal of a page, or None if it is no page of tsas.
 
-    Raises
-    ------
-    InputError
-        The page cannot be read, or its seal is broken.
+    InputError: the page cannot be read, or its seal is broken.
     """
     try:
         content = path.read_bytes()

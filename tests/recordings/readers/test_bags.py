@@ -96,4 +96,4 @@ def test_forces_and_torques_of_ros_have_units(kind, field, unit):
     first, second = field.split(".", 1)
     message = {first: {second: 1.0}}
     topic = Topic("/t", kind, lambda: iter([(0, message)]))
-    assert [(c.name, c.unit) for c in columns_of([topic])] == [(f"/t.{field}", unit)]
+    assert [(c.name, c.unit) for c in columns_of([topic], FILE)] == [(f"/t.{field}", unit)]

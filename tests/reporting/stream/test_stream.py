@@ -25,8 +25,8 @@ from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stream import write_stream
-from tsas_cli.reporting.stream.overview import plain_text
 from tsas_cli.reporting.stream.recorder import ROWS
+from tsas_cli.reporting.stream.stream import plain_text
 from tsas_cli.support.errors import InputError
 
 SAMPLES = 2 * ROWS + 100

@@ -25,10 +25,7 @@ class Expanded:
     def add(self, more: int, *, what: str = "") -> None:
         """Count one item of so many bytes.
 
-        Raises
-        ------
-        InputError
-            The file expands to more than a recording of its size can hold.
+        InputError: the file expands to more than a recording of its size can hold.
         """
         self.items += 1
         if self.items > min(limits.ITEMS, max(1000, self.of_file // 8)):

@@ -44,10 +44,7 @@ class Opened:
 def open_file(path: Path) -> Opened:
     """Return a file of any supported format, opened with the options that it requires.
 
-    Raises
-    ------
-    InputError
-        The format is unknown, or the file is damaged or does not hold exactly one table.
+    InputError: the format is unknown, or the file is damaged or does not hold exactly one table.
     """
     required, asked = _table(path)
     try:

@@ -78,10 +78,7 @@ class MapProposal:
 def propose(files: Sequence[Path]) -> MapProposal:
     """Return the map proposed for files.
 
-    Raises
-    ------
-    InputError
-        None of them can be read.
+    InputError: none of them can be read.
     """
     opened, different = _first_that_opens(files)
     matching: list[Path] = []

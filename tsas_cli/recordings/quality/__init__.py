@@ -78,10 +78,7 @@ class Report:
 def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     """Return the findings of `check_runs`, and those on the whole dataset.
 
-    Raises
-    ------
-    InputError
-        No run can be read.
+    InputError: no run can be read.
     """
     of_runs = check_runs(dataset, step)
     of_all = [
@@ -97,10 +94,7 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
 
     An unreadable run is a finding (`unreadable`), as long as another run can be read.
 
-    Raises
-    ------
-    InputError
-        No run can be read.
+    InputError: no run can be read.
     """
     results = [
         _attributed(result, check.code, None)

@@ -59,11 +59,8 @@ SUFFIXES = (*_READERS, *converted.SUFFIXES)
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
     """Return the requested columns of one file.
 
-    Raises
-    ------
-    InputError
-        The suffix is unknown, the file is empty or damaged, or a requested column is missing or not
-        numeric.
+    InputError: the suffix is unknown, the file is empty or damaged, or a requested column is
+    missing or not numeric.
     """
     return whole(batches(path, options, wanted))
 
@@ -73,10 +70,7 @@ def batches(
 ) -> Iterator[ColumnTable]:
     """Yield the requested columns in parts of `BATCH_ROWS` rows, or whole for some formats.
 
-    Raises
-    ------
-    InputError
-        As from `read`; a fault in a later part is raised with that part.
+    InputError: as from `read`; a fault in a later part is raised with that part.
     """
     with _checked(path, options) as (module, file):
         if module in _IN_PARTS:

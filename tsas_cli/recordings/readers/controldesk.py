@@ -17,10 +17,7 @@ from tsas_cli.support.errors import InputError
 def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
     """Return the struct that holds X and Y with data, or None.
 
-    Raises
-    ------
-    InputError
-        There are several.
+    InputError: there are several.
     """
     if _is_capture(content):
         return content
@@ -43,10 +40,7 @@ def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
     """Return the channels of a capture, with their clocks in s.
 
-    Raises
-    ------
-    InputError
-        A channel, when it is loaded, differs in length from its clock.
+    InputError: a channel, when it is loaded, differs in length from its clock.
     """
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
     channels = [

@@ -31,11 +31,8 @@ class JoinedFile(StrictTable):
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of numbers of all files as `part.column`, with the clock of their file.
 
-    Raises
-    ------
-    InputError
-        The list or a file is wrong, a file is not in the list's folder, or its clock states no unit
-        or counts from its own first date and the list no offset.
+    InputError: the list or a file is wrong, a file is not in the list's folder, or its clock states
+    no unit or counts from its own first date and the list no offset.
     """
     del options
     parts = {

@@ -10,10 +10,7 @@ from tsas_cli.support.errors import InputError
 def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     """Write the lines as one JSON list into a folder; return its path.
 
-    Raises
-    ------
-    InputError
-        The file is not UTF-8.
+    InputError: the file is not UTF-8.
     """
     del options, known
     made = folder / "lines.json"

@@ -21,10 +21,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     map (nested with dots). A key `columns` beside the rows names their columns; else they are
     numbered. Records in records are named by their paths.
 
-    Raises
-    ------
-    InputError
-        It is no such table.
+    InputError: it is no such table.
     """
     above, content = _descend(read_json(path), options.table, path)
     names, column = _columns(content, above.get("columns"), path)
@@ -35,10 +32,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
 def tables(path: Path) -> list[str]:
     """Return the keys of rows, records or columns, nested with dots.
 
-    Raises
-    ------
-    InputError
-        The file is not JSON, or nested too deep.
+    InputError: the file is not JSON, or nested too deep.
     """
     return list(_tables(read_json(path), ""))
 

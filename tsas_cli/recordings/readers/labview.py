@@ -15,10 +15,7 @@ _SEPARATORS = {"Tab": "\t", "Comma": ","}
 def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     """Write the samples with names and units as text with tabs into a folder; return its path.
 
-    Raises
-    ------
-    InputError
-        It is no such file, or its segments have different channels.
+    InputError: it is no such file, or its segments have different channels.
     """
     del known
     made = folder / "samples.tsv"

@@ -32,10 +32,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
     `table` in the map, names are relative to that variable.
 
-    Raises
-    ------
-    InputError
-        The file is damaged, or there are several captures.
+    InputError: the file is damaged, or there are several captures.
     """
     content = _inside(_content(path), options.table, path)
     capture = find_capture(content, path)

@@ -7,44 +7,35 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.messages import Message, Topic, columns_of
+from tsas_cli.recordings.readers.messages import (
+    Decode,
+    Message,
+    Topic,
+    UnknownTypeError,
+    columns_of,
+    decoder,
+)
 from tsas_cli.recordings.readers.offered import Offered
-from tsas_cli.recordings.readers.ros_types import Decode, UnknownTypeError, decoder
 from tsas_cli.recordings.readers.table import ReadOptions, optional
-from tsas_cli.support.errors import InputError
 
 
 @contextmanager
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose messages can be decoded.
 
-    Raises
-    ------
-    InputError
-        There is none.
+    InputError: there is none.
     """
     del options
     mcap = optional("mcap.reader", extra="robots")
     with path.open("rb") as stream:
         file = mcap.make_reader(stream)
         summary = file.get_summary()
-        topics, unknown = [], []
+        topics = []
         for channel in summary.channels.values():
-            try:
-                decode = _decode(channel, summary.schemas.get(channel.schema_id))
-            except UnknownTypeError as error:
-                unknown.append(f"{channel.topic} ({error})")
-            else:
-                kind = summary.schemas[channel.schema_id].name if channel.schema_id else ""
-                messages = partial(_messages, file, channel, decode)
-                topics.append(Topic(channel.topic, kind, messages))
-        if not topics:
-            raise InputError(
-                "holds no messages that can be decoded" + "".join(f": {u}" for u in unknown[:3]),
-                where=path,
-                expected="messages of ROS 1 or 2, or in JSON",
-            )
-        yield Offered(columns_of(topics))
+            schema = summary.schemas.get(channel.schema_id)
+            kind = schema.name if schema else ""
+            topics.append(Topic(channel.topic, kind, partial(_messages, file, channel, schema)))
+        yield Offered(columns_of(topics, path, expected="messages of ROS 1 or 2, or in JSON"))
 
 
 def _decode(channel: Any, schema: Any) -> Decode:
@@ -57,7 +48,8 @@ def _decode(channel: Any, schema: Any) -> Decode:
     return decoder(schema.name, text, ros1=encoding == "ros1")
 
 
-def _messages(file: Any, channel: Any, decode: Decode) -> Iterator[Message]:
+def _messages(file: Any, channel: Any, schema: Any) -> Iterator[Message]:
+    decode = _decode(channel, schema)
     for _, found, message in file.iter_messages(topics=[channel.topic]):
         if found.id == channel.id:
             yield message.publish_time, decode(message.data)

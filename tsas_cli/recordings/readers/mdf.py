@@ -33,12 +33,9 @@ _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
     """Return the requested channels of an MDF file; its master channel is `time`.
 
-    Raises
-    ------
-    InputError
-        asammdf is not installed, the file is damaged, a channel is missing or not numeric, the
-        master is requested but no time, or the channels' masters differ and cannot be resampled
-        (no times in one unit, or the map does not set `resample = true`).
+    InputError: asammdf is not installed, the file is damaged, a channel is missing or not numeric,
+    the master is requested but no time, or the channels' masters differ and cannot be resampled (no
+    times in one unit, or the map does not set `resample = true`).
     """
     with _opened(path) as file:
         return _table(file, options, wanted, path)

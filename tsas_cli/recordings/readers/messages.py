@@ -1,15 +1,58 @@
 """Topics of messages, as robots record them: each field is a column with the clock of its topic."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tsas_cli.recordings.readers.offered import Column
 from tsas_cli.recordings.readers.records import flat
+from tsas_cli.recordings.readers.table import optional
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.errors import InputError
+
+_NAME = re.compile(r"\w+(/(msg|action))?/\w+", flags=re.ASCII)
+Decode = Callable[[bytes], Mapping[str, Any]]
+
+
+class UnknownTypeError(Exception):
+    """A type of messages is neither defined in the file nor one of ROS."""
+
+
+@cache
+def decoder(kind: str, definition: str, *, ros1: bool) -> Decode:
+    """Return the function that decodes messages of a type.
+
+    Parameters
+    ----------
+    kind
+        The type, `sensor_msgs/msg/JointState`.
+    definition
+        Its text in the language of `.msg` files with all that it refers to; may be empty.
+
+    Raises
+    ------
+    UnknownTypeError
+        The type is not defined.
+    """
+    typesys = optional("rosbags.typesys", extra="robots")
+    if not _NAME.fullmatch(kind):  # it becomes part of a program
+        raise UnknownTypeError(kind[:80])
+    stores = typesys.Stores
+    store = typesys.get_typestore(stores.ROS1_NOETIC if ros1 else stores.ROS2_HUMBLE)
+    name = kind if kind.count("/") == 2 else kind.replace("/", "/msg/")
+    if definition:
+        defined = typesys.get_types_from_msg(definition, name)
+        store.register({n: d for n, d in defined.items() if n not in store.fielddefs})
+    if name not in store.fielddefs:
+        raise UnknownTypeError(name)
+    decode = store.deserialize_ros1 if ros1 else store.deserialize_cdr
+    return lambda data: vars(decode(data, name))
+
 
 _UNITS = {"force": "N", "torque": "N m"}
 _STAMP = "header.stamp."
@@ -50,13 +93,23 @@ class Topic:
         return (sent if sent and all(sent) else logged), fields
 
 
-def columns_of(topics: Sequence[Topic]) -> list[Column]:
-    """Return the columns of numbers, `/topic.field.field`.
+def columns_of(topics: Sequence[Topic], path: Path, **advice: str) -> list[Column]:
+    """Return the columns of numbers, `/topic.field.field`, of the topics that can be decoded.
 
     The clock of a topic is the stamp in the header of its messages, else when they were published
     or logged; it counts from the first message of the file.
+
+    InputError: no topic can be decoded; `advice` says what is expected, or what to do.
     """
-    used = [topic for topic in topics if topic.first]
+    used, unknown = [], []
+    for topic in topics:
+        try:
+            used += [topic] if topic.first else []
+        except UnknownTypeError as error:
+            unknown.append(f"{topic.name} ({error})")
+    if len(unknown) == len(topics):
+        said = "".join(f": {one}" for one in unknown[:3])
+        raise InputError(f"holds no messages that can be decoded{said}", where=path, **advice)
     zero_ns = min((next(topic.messages())[0] for topic in used), default=0)
     return [
         Column(

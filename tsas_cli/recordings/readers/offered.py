@@ -64,10 +64,7 @@ class Offered:
 def names(path: Path, module: str, kind: str, options: ReadOptions) -> list[str]:
     """Return the names of a file's columns; `module` has a function `offered` for its format.
 
-    Raises
-    ------
-    InputError
-        The file is damaged, or the package for its format is not installed.
+    InputError: the file is damaged, or the package for its format is not installed.
     """
     with _opened(path, module, kind, options) as offered:
         return offered.names
@@ -80,11 +77,8 @@ def read(
 
     Dates become seconds since the first one of their column, durations become seconds.
 
-    Raises
-    ------
-    InputError
-        As from `names`; or a column is missing or not numeric, the columns hold more than a file
-        of this size can, or their clocks differ and `resample` is not set.
+    InputError: as from `names`; or a column is missing or not numeric, the columns hold more than a
+    file of this size can, or their clocks differ and `resample` is not set.
     """
     with _opened(path, module, kind, options) as offered:
         at = resolve(wanted, offered.names, path)

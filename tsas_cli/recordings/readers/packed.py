@@ -22,11 +22,8 @@ _PART = 1 << 20  # bytes at a time
 def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     """Unpack the file of a `known` suffix inside `path` into a folder; return its path.
 
-    Raises
-    ------
-    InputError
-        It is damaged, encrypted, holds no or several known files, or unpacks to more than a
-        recording can hold.
+    InputError: it is damaged, encrypted, holds no or several known files, or unpacks to more than a
+    recording can hold.
     """
     del options
     packing = path.suffix.lower()

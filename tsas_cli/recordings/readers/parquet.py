@@ -29,10 +29,7 @@ def batches(
 
     Dates become seconds since the first one in their column, durations become seconds.
 
-    Raises
-    ------
-    InputError
-        The file is damaged, or a column is missing or not numeric.
+    InputError: the file is damaged, or a column is missing or not numeric.
     """
     del options
     with reading(path), open_parquet(path) as file:

@@ -6,9 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.messages import Message, Topic, columns_of
+from tsas_cli.recordings.readers.messages import Message, Topic, columns_of, decoder
 from tsas_cli.recordings.readers.offered import Offered
-from tsas_cli.recordings.readers.ros_types import Decode, decoder
 from tsas_cli.recordings.readers.table import ReadOptions, optional
 
 
@@ -18,13 +17,13 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     del options
     rosbag = optional("rosbags.rosbag1", extra="robots")
     with rosbag.Reader(path) as bag:
-        topics = []
-        for one in bag.connections:
-            decode = decoder(one.msgtype, one.msgdef.data, ros1=True)
-            topics.append(Topic(one.topic, one.msgtype, partial(_messages, bag, one, decode)))
-        yield Offered(columns_of(topics))
+        topics = [
+            Topic(one.topic, one.msgtype, partial(_messages, bag, one)) for one in bag.connections
+        ]
+        yield Offered(columns_of(topics, path))
 
 
-def _messages(bag: Any, connection: Any, decode: Decode) -> Iterator[Message]:
+def _messages(bag: Any, connection: Any) -> Iterator[Message]:
+    decode = decoder(connection.msgtype, connection.msgdef.data, ros1=True)
     for _, time_ns, data in bag.messages(connections=[connection]):
         yield time_ns, decode(data)

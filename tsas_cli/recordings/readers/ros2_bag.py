@@ -7,11 +7,14 @@ from contextlib import closing, contextmanager
 from functools import partial
 from pathlib import Path
 
-from tsas_cli.recordings.readers.messages import Message, Topic, columns_of
+from tsas_cli.recordings.readers.messages import (
+    Message,
+    Topic,
+    columns_of,
+    decoder,
+)
 from tsas_cli.recordings.readers.offered import Offered
-from tsas_cli.recordings.readers.ros_types import Decode, UnknownTypeError, decoder
 from tsas_cli.recordings.readers.table import ReadOptions
-from tsas_cli.support.errors import InputError
 
 _TOPICS = "SELECT id, name, type FROM topics WHERE serialization_format = 'cdr' ORDER BY id"
 _TEXTS = (
@@ -25,10 +28,7 @@ _MESSAGES = "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY ti
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose type is defined in the file, or by ROS 2 itself.
 
-    Raises
-    ------
-    InputError
-        There is none.
+    InputError: there is none.
     """
     del options
     address = f"{path.absolute().as_uri()}?mode=ro&immutable=1"
@@ -37,25 +37,21 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
             texts = dict(file.execute(_TEXTS))
         except sqlite3.OperationalError:  # bags hold definitions since Iron
             texts = {}
-        topics, unknown = [], []
-        for number, name, kind in file.execute(_TOPICS).fetchall():
-            try:
-                decode = decoder(kind, texts.get(kind, ""), ros1=False)
-            except UnknownTypeError as error:
-                unknown.append(f"{name} ({error})")
-            else:
-                topics.append(Topic(name, kind, partial(_messages, file, number, decode)))
-        if not topics:
-            raise InputError(
-                "holds no messages that can be decoded" + "".join(f": {u}" for u in unknown[:3]),
-                where=path,
-                remedy="convert it where its types are installed: "
-                f"echo 'output_bags: [{{uri: made, storage_id: mcap, all: true}}]' > made.yaml && "
-                f"ros2 bag convert -i {shlex.quote(str(path.parent))} -o made.yaml",
-            )
-        yield Offered(columns_of(topics))
+        topics = [
+            Topic(name, kind, partial(_messages, file, number, kind, texts.get(kind, "")))
+            for number, name, kind in file.execute(_TOPICS).fetchall()
+        ]
+        remedy = (
+            "convert it where its types are installed: "
+            f"echo 'output_bags: [{{uri: made, storage_id: mcap, all: true}}]' > made.yaml && "
+            f"ros2 bag convert -i {shlex.quote(str(path.parent))} -o made.yaml"
+        )
+        yield Offered(columns_of(topics, path, remedy=remedy))
 
 
-def _messages(file: sqlite3.Connection, number: int, decode: Decode) -> Iterator[Message]:
+def _messages(
+    file: sqlite3.Connection, number: int, kind: str, definition: str
+) -> Iterator[Message]:
+    decode = decoder(kind, definition, ros1=False)
     for time_ns, data in file.execute(_MESSAGES, (number,)):
         yield time_ns, decode(data)

@@ -16,10 +16,7 @@ _FAULTS = ("#N/A", "#DIV/0!", "#VALUE!", "#REF!", "#NUM!", "#NAME?", "#NULL!")  
 def tables(path: Path) -> list[str]:
     """Return the names of the sheets with a row of numbers, the longest first.
 
-    Raises
-    ------
-    InputError
-        The file is damaged, or python-calamine is not installed.
+    InputError: the file is damaged, or python-calamine is not installed.
     """
     sheets = _sheets(path)
     found = [name for name in sheets if _has_numbers(sheets[name])]
@@ -29,11 +26,8 @@ def tables(path: Path) -> list[str]:
 def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     """Write a sheet as text with tabs into a folder; return its path. Rows keep their numbers.
 
-    Raises
-    ------
-    InputError
-        As from `tables`; or there are several sheets of numbers and the map names none, or there is
-        none of that name.
+    InputError: as from `tables`; or there are several sheets of numbers and the map names none, or
+    there is none of that name.
     """
     del known
     sheets = _sheets(path)

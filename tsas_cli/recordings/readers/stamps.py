@@ -24,10 +24,7 @@ def is_stamp(text: object) -> bool:
 def from_text(cells: Sequence[str | None]) -> npt.NDArray[Any]:
     """Return cells as datetime64 or timedelta64, shape (n,); an empty cell is NaT.
 
-    Raises
-    ------
-    ValueError
-        A cell is no stamp, or is one of another kind than the first.
+    ValueError: a cell is no stamp, or is one of another kind than the first.
     """
     import pandas as pd
 

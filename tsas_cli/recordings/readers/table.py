@@ -129,10 +129,7 @@ def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
 def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> Floats:
     """Return values as float64; null becomes NaN. `first` is the number of the first row.
 
-    Raises
-    ------
-    InputError
-        A value is not numeric, or the values are complex, dates or durations.
+    InputError: a value is not numeric, or the values are complex, dates or durations.
     """
     if (
         isinstance(values, np.ndarray) and values.dtype.kind in "cmM"
@@ -208,10 +205,7 @@ def _listed(names: Sequence[str]) -> str:
 def optional(module: str, *, extra: str) -> ModuleType:
     """Import a package that comes with an extra of tsas.
 
-    Raises
-    ------
-    InputError
-        It is not installed.
+    InputError: it is not installed.
     """
     try:
         return import_module(module)

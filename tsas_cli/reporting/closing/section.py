@@ -1,9 +1,10 @@
 """What a diagnosis is worth in tracking: hidden differences, named, and tracked with each model."""
 
-from tsas_cli.records.closing import ClosingFile
-from tsas_cli.reporting.closing import cases, errors
-from tsas_cli.reporting.content import Section
+from tsas_cli.records.closing import ClosedCase, ClosingFile, Named
+from tsas_cli.reporting.closing import errors
+from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import as_printed
 
 _HOW = (
     "A plant differs from what the controller knows. It is recorded while it tracks with the model "
@@ -30,7 +31,7 @@ def section(inputs: Inputs) -> Section | None:
         "closing",
         "Does a better model track better?",
         (_HOW, _SHARED),
-        tables=(cases.table(closing),),
+        tables=(_hidden_and_named(closing),),
         parts=(
             Section(
                 "closing-rmse",
@@ -42,3 +43,22 @@ def section(inputs: Inputs) -> Section | None:
             Section("closing-table", "The same errors in numbers", tables=(errors.table(closing),)),
         ),
     )
+
+
+def _hidden_and_named(closing: ClosingFile) -> Table:
+    """Return the _hidden_and_named, one row for each case."""
+    rows = tuple(
+        (case.case, case.title, _hidden(case), case.verdict, _named(case.named))
+        for case in closing.cases
+    )
+    header = ("case", "what differs", "hidden", "verdict", "named")
+    return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
+
+
+def _hidden(case: ClosedCase) -> str:
+    return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
+
+
+def _named(named: tuple[Named, ...]) -> str:
+    causes = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in named)
+    return ", ".join(causes) or "nothing"

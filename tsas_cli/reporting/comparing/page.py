@@ -2,13 +2,23 @@
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
 
 from tsas_cli.comparing.compare import Comparison
+from tsas_cli.comparing.predictions import Both, channels
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.stage import tables
-from tsas_cli.reporting.comparing import maps, residuals, values
-from tsas_cli.reporting.content import Section, Table
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.records.comparison import shared_name
+from tsas_cli.reporting.comparing import values
+from tsas_cli.reporting.content import Group, Picture, Section, Table
+from tsas_cli.reporting.diagnosis.maps import Panel, pictures
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.rendered import rendered
+from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 _SAID = 3  # findings that stand in the summary
 _VALUES = (
@@ -46,9 +56,9 @@ def _sections(it: Comparison) -> Iterator[Section]:
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
         yield Section("errors", "Errors per run", tuple(_held_to(it)), tables=errors)
     if it.maps:
-        yield maps.section(it)
+        yield _maps(it)
     if it.shared:
-        yield residuals.section(it)
+        yield _residuals(it)
     yield _repeat(it)
 
 
@@ -85,4 +95,71 @@ def repeat_section(command: Sequence[str], files: tuple[tuple[str, str, str], ..
         ("This command makes the same page from the same files.",),
         tables=(Table("Files read", ("side", "file", "SHA-256"), files),),
         commands=(shlex.join([*command, "--out", "compared"]),),
+    )
+
+
+_MAPS = (
+    "Measured minus simulated in units of the channel's noise, in the same bins for both: the mean "
+    "in each, and bars of one standard deviation. Noise alone has its mean at zero and bars as "
+    "long as the band."
+)
+_OWN = "No recording is in both, so that each side is shown on its own recordings."
+_NOTHING = "Over no signal does the error of either side stand out of the noise."
+
+
+def _maps(it: Comparison) -> Section:
+    """Return the _maps of the residual maps."""
+    panels = [
+        Panel(channel, signal, bins, it.maps["b"][channel][signal])
+        for channel, signals in it.maps["a"].items()
+        for signal, bins in signals.items()
+    ]
+    shown = pictures(panels, key="map", names=("A", "B"))
+    intro = () if it.shared else (_OWN,)
+    return Section("maps", "Where the errors are", (*intro, _MAPS if shown else _NOTHING),
+                   pictures=shown)  # fmt: skip
+
+
+_MOST_RUNS = 10
+
+
+def _residuals(it: Comparison) -> Section:
+    """Return the _residuals of the residuals, one group per run that both answer to."""
+    left = len(it.shared) - _MOST_RUNS
+    more = f" The first {_MOST_RUNS} of {len(it.shared)} runs are shown." if left > 0 else ""
+    groups = tuple(
+        Group(f"Run {shared_name(*both.ids)}", pictures)
+        for number, both in enumerate(it.shared[:_MOST_RUNS])
+        if (pictures := _pictures(both, number))
+    )
+    what = "Measured minus simulated. Noise alone leaves 95 % between the dashed lines."
+    return Section("residuals", "Residuals over time", (what + more,), groups=groups)
+
+
+def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
+    if both.a is None or both.b is None:
+        return ()
+    a, b = both.a, both.b
+    panels, said = [], []
+    for name in channels(both):
+        errors = a.errors.get(name), b.errors.get(name)
+        if any(error is None or not np.isfinite(error).any() for error in errors):
+            continue
+        unit = BY_NAME[name].unit
+        label = f"{name.rsplit('_', 1)[0]} [{unit}]"
+        time_s, noise = a.run.time_s, a.noise(name)
+        panels.append(Residuals(label, time_s, a.errors[name], b.errors[name], noise))
+        said.append(f"{name} A {plain(a.rmse(name), 3)}, B {plain(b.rmse(name), 3)} {unit}")
+    if not panels:
+        return ()
+    run = shared_name(*both.ids)
+    return (
+        picture(
+            partial(draw_two_residuals, panels=panels),
+            key=f"residuals-{number}",
+            alt=f"Run {run}: measured minus simulated over time, of A and of B. "
+            f"Root mean square: {'; '.join(said)}.",
+            caption=f"RMSE: {'; '.join(said)}.",
+            height_in=height_in(len(panels)),
+        ),
     )

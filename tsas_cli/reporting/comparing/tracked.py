@@ -3,8 +3,14 @@
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from tsas_cli.comparing.tracked import TRACKING_FILE, ControllerPair, Tracks
-from tsas_cli.comparing.tracked_stage import findings, notes, tables
+from tsas_cli.comparing.tracked import (
+    TRACKING_FILE,
+    ControllerPair,
+    Tracks,
+    findings,
+    notes,
+    tables,
+)
 from tsas_cli.recordings.written import columns_of, result_file
 from tsas_cli.reporting.comparing.page import repeat_section
 from tsas_cli.reporting.content import Picture, Section, Table
@@ -18,10 +24,7 @@ from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, heig
 def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each section.
 
-    Raises
-    ------
-    InputError
-        A run cannot be read.
+    InputError: a run cannot be read.
     """
     sections = []
     for section in _sections(it):

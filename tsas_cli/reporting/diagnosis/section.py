@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.content import Section, missing
-from tsas_cli.reporting.diagnosis import candidates, causes, gains, laws, maps, similarity
+from tsas_cli.reporting.diagnosis import candidates, causes, gains, maps, similarity
 from tsas_cli.reporting.diagnosis.words import signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
@@ -29,7 +29,7 @@ def section(inputs: Inputs) -> Section:
         (_verdict(diagnosis),),
         parts=(
             *causes.parts(diagnosis.named, inputs),
-            *laws.parts(diagnosis, inputs),
+            *causes.law_parts(diagnosis, inputs),
             *causes.parts(diagnosis.stand_ins, inputs),
             *closing(diagnosis),
             *(replace(part, folded=True) for part in evidence if part is not None),

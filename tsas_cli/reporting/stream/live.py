@@ -94,10 +94,7 @@ class LiveStream:
 def live_stream(address: str, name: str) -> Iterator[LiveStream]:
     """Yield a stream into the viewer at `address`; see `to_viewer`.
 
-    Raises
-    ------
-    InputError
-        The viewer does not take it.
+    InputError: the viewer does not take it.
     """
     with TemporaryDirectory(prefix="tsas-live-") as folder, to_viewer(address, name) as recorder:
         stream = LiveStream(recorder, Path(folder))

@@ -26,10 +26,7 @@ def to_file(path: Path, name: str, layout: Blueprint | None = None) -> Iterator[
 
     The viewer calls the recording `name`, and opens with `layout` where it is known from the start.
 
-    Raises
-    ------
-    InputError
-        The file is there, or cannot be written; Rerun is switched off.
+    InputError: the file is there, or cannot be written; Rerun is switched off.
     """
     with new_file(path, mark=b"", inputs=()) as temporary, _strict():
         stream = _opened(name, layout)
@@ -53,10 +50,7 @@ def to_file(path: Path, name: str, layout: Blueprint | None = None) -> Iterator[
 def to_viewer(address: str, name: str) -> Iterator[Recorder]:
     """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`.
 
-    Raises
-    ------
-    InputError
-        It does not take what it is sent; Rerun is switched off.
+    InputError: it does not take what it is sent; Rerun is switched off.
     """
     with _strict():
         stream = _opened(name, None)
@@ -75,10 +69,7 @@ def is_finished(path: Path) -> bool:
     Only the heads of its parts are read, however large it is. Rerun's own `rerun rrd verify` lets
     empty files pass.
 
-    Raises
-    ------
-    InputError
-        It is no stream, holds none, or is cut off within a part.
+    InputError: it is no stream, holds none, or is cut off within a part.
     """
     try:
         with warnings.catch_warnings():

@@ -78,10 +78,7 @@ class Recorder:
     def settle(self) -> None:
         """Wait until what was recorded is written: what waits for it is kept in memory.
 
-        Raises
-        ------
-        InputError
-            The file or the viewer does not take it.
+        InputError: the file or the viewer does not take it.
         """
         try:
             self.stream.flush(timeout_sec=SLOWEST_S)

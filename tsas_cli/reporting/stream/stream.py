@@ -1,21 +1,28 @@
 """What a person looks at, from what the stages wrote: into one file, or to a viewer."""
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import rerun as rr
 from rerun.blueprint import Blueprint
 
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
+from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.channels import record_channels, record_tracking
 from tsas_cli.reporting.stream.events import record_faults, record_phases
 from tsas_cli.reporting.stream.layout import OVERVIEW, layout_of
 from tsas_cli.reporting.stream.opened import to_file
-from tsas_cli.reporting.stream.overview import overview
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tendon import record_tendon
+from tsas_cli.support.errors import printable
 
 STREAM_FILE = "stream.rrd"
 CONTENT = (record_channels, record_tracking, record_phases, record_faults, record_tendon)
@@ -55,11 +62,54 @@ def stream_of(inputs: Inputs) -> Stream:
 def write_stream(inputs: Inputs, path: Path, *, step: Callable[[], None] = lambda: None) -> None:
     """Write what there is to see into a file for the Rerun viewer; `step` is called after each run.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read, or `path` exists.
+    InputError: a file cannot be read, or `path` exists.
     """
     stream = stream_of(inputs)
     with to_file(path, stream.name, stream.layout) as recorder:
         stream.record(recorder, step)
+
+
+_SPECIAL = re.compile(r"([\\`*_{}\[\]<>()#+\-!|~&$^])")
+
+
+def overview(inputs: Inputs) -> str:
+    """Return what the recordings are, the answer and its numbers, and what to keep in mind."""
+    manifest = None if inputs.dataset is None else inputs.dataset.manifest
+    title = "Recordings" if manifest is None else manifest.name
+    about = "" if manifest is None else manifest.description
+    said = (f"- {plain_text(point)}" for point in _points(inputs))
+    lines = [f"# {plain_text(title)}", plain_text(about), *_first_screen(inputs), *said]
+    return "\n\n".join(filter(None, lines))
+
+
+def plain_text(text: str) -> str:
+    """Return text of which no letter is read as Markdown or HTML."""
+    return _SPECIAL.sub(r"\\\1", printable(text))
+
+
+def _first_screen(inputs: Inputs) -> Iterator[str]:
+    """Yield the first screen of the page."""
+    first = glance(inputs)
+    if first is None:
+        return
+    yield f"**{plain_text(first.kind)}: {plain_text(first.verdict)}**"
+    yield plain_text(first.numbers)
+    for fact in first.facts:
+        number = " → ".join(filter(None, (fact.before, fact.value)))
+        note = f" ({plain_text(fact.note)})" if fact.note else ""
+        yield f"- {plain_text(f'{fact.label}: {number}')}{note}"
+
+
+def _points(inputs: Inputs) -> Iterator[str]:
+    if diagnosis := inputs.get(DiagnosisFile):
+        yield from (diagnosis.reason, f"Next: {diagnosis.next_experiment}")
+    if tracking := inputs.get(TrackingFile):
+        yield from tracking.notes
+    if simulation := inputs.get(SimulationFile):
+        yield from simulation.notes
+    if calibration := inputs.get(CalibrationFile):
+        yield from calibration.cannot_tell
+    if check := inputs.get(CheckFile):
+        for found in check.findings:
+            where = f"run {found.run}, " if found.run else ""
+            yield f"{found.severity}, {where}{found.code}: {found.sentence}"

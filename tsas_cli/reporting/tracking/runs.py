@@ -55,10 +55,7 @@ class RunsUnderCondition:
 def read_conditions(inputs: Inputs, tracking: TrackingFile) -> tuple[RunsUnderCondition, ...]:
     """Read what the plots need, in the order of the file.
 
-    Raises
-    ------
-    InputError
-        A run cannot be read, or lacks a column.
+    InputError: a run cannot be read, or lacks a column.
     """
     folder = inputs.folders[TrackingFile]
     found: dict[str, list[TrackedRun]] = {}

@@ -40,10 +40,7 @@ class Child:
     def wait(self, at_most_s: float = math.inf) -> None:
         """Return when the viewer has been closed, or after some seconds.
 
-        Raises
-        ------
-        InputError
-            It has failed.
+        InputError: it has failed.
         """
         until = time.monotonic() + at_most_s
         while self.process.poll() is None and time.monotonic() < until:
@@ -69,10 +66,7 @@ def program() -> Path:
 
     The script `rerun` beside Python only calls it: who ends the script leaves it running.
 
-    Raises
-    ------
-    InputError
-        The package or its program is not installed.
+    InputError: the package or its program is not installed.
     """
     spec = find_spec("rerun_cli")
     folders = [] if spec is None else list(spec.submodule_search_locations or ())
@@ -91,10 +85,7 @@ def program() -> Path:
 def viewer_child(arguments: Sequence[str], *, port: int) -> Iterator[Child]:
     """Start the viewer, wait until its port answers, and end it when the block ends.
 
-    Raises
-    ------
-    InputError
-        It is not installed, fails at its start, or does not answer.
+    InputError: it is not installed, fails at its start, or does not answer.
     """
     call = [str(program()), *arguments]
     if sys.platform == "linux":

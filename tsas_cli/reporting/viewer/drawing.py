@@ -18,10 +18,7 @@ ADAPTER = re.compile(r'backend: (\w+), device_type: (\w+), name: "([^"]*)"')
 def drawn_with() -> str:
     """Return what the viewer draws with, for a person: "Vulkan on …".
 
-    Raises
-    ------
-    InputError
-        It is not installed, or cannot draw.
+    InputError: it is not installed, or cannot draw.
     """
     with tempfile.TemporaryDirectory(prefix="tsas-draw-") as folder:
         picture = Path(folder) / "picture.png"

@@ -12,10 +12,7 @@ LAST = 65535
 def free_ports(count: int, first: int | None = None) -> tuple[int, ...]:
     """Return ports on 127.0.0.1 that nothing listens on: any, or `first` and those after it.
 
-    Raises
-    ------
-    InputError
-        One of those asked for is in use, or may not be had.
+    InputError: one of those asked for is in use, or may not be had.
     """
     wanted = [0] * count if first is None else range(first, first + count)
     with ExitStack() as held:  # all at once, so that no two are the same

@@ -21,10 +21,8 @@ def stream_of(
     A folder that holds a stream shows that; several folders make one of their own, and `step` is
     called after each run.
 
-    Raises
-    ------
-    InputError
-        A path is missing, no stream and no folder of a stage, or a file stands among others.
+    InputError: a path is missing, no stream and no folder of a stage, or a file stands among
+    others.
     """
     local = [path for path in paths if isinstance(path, Path)]
     for path in local:

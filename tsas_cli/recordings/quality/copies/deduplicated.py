@@ -31,10 +31,7 @@ class DeduplicatedDataset:
 def without_duplicates(dataset: Dataset) -> DeduplicatedDataset:
     """Return a dataset without duplicate samples.
 
-    Raises
-    ------
-    InputError
-        A run cannot be read, or two runs hold the same samples under different conditions.
+    InputError: a run cannot be read, or two runs hold the same samples under different conditions.
     """
     by_run: dict[str, list[Copy]] = {}
     for copy in find_copies(dataset).copies:
