@@ -17,7 +17,7 @@ HOSTILE = "<script>$x$"
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def predicted(tmp_path_factory):
     """Two models that predict the rougher rig, in three runs that differ in their noise."""
     root = tmp_path_factory.mktemp("prediction")
     models = [calibrated(root, rig, seed=seed) for seed, rig in ((1, NOMINAL), (2, ROUGH))]
@@ -26,8 +26,12 @@ def folder(tmp_path_factory):
         for k, (name, rig) in enumerate((("a", NOMINAL), (HOSTILE, ROUGH)))
     ]
     write_dataset(root / "new", runs, name="bench & <b>")
-    tsas.predict(models, root / "new", out=root / "predicted")
-    return root / "predicted"
+    return tsas.predict(models, root / "new", out=root / "predicted")
+
+
+@pytest.fixture(scope="module")
+def folder(predicted):
+    return predicted.out
 
 
 @pytest.fixture(scope="module")
@@ -49,13 +53,11 @@ def test_the_loops_are_drawn_under_the_tables(folder, outline):
     ]
 
 
-def test_the_run_whose_predictions_differ_most_comes_first(folder):
-    prediction = tsas.predict(  # each model is right in one run; the other one then misses more
-        [folder.parent / "calibrated-1", folder.parent / "calibrated-2"], folder.parent / "new"
-    ).record
+def test_the_run_whose_predictions_differ_most_comes_first(predicted, folder):
+    """Each model is right in one run; the other one then misses more."""
     ratios = {
         row.run: max(row.ratio, 1.0 / row.ratio)
-        for row in prediction.channels
+        for row in predicted.record.channels
         if (row.channel, row.model) == ("f_in_N", "B")
     }
     first = max(ratios, key=ratios.get)

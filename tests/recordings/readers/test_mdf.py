@@ -117,7 +117,7 @@ def test_complex_samples_are_refused(tmp_path):
         ask(path, "force")
 
 
-@pytest.mark.parametrize("kept", [0, 1, 64, 200, 0.5, 0.99])
+@pytest.mark.parametrize("kept", [0, 200, 0.99])
 def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, capfd, kept):
     content = path.read_bytes()
     path.write_bytes(content[: kept if isinstance(kept, int) else int(kept * len(content))])
