@@ -35,11 +35,12 @@ def folder(predicted):
 
 
 @pytest.fixture(scope="module")
-def outline(folder):
-    return Outline(page(read_inputs([folder])))
+def text(folder):
+    return page(read_inputs([folder]))
 
 
-def test_the_loops_are_drawn_under_the_tables(folder, outline):
+def test_the_loops_are_drawn_under_the_tables(folder, text):
+    outline = Outline(text)
     assert outline.headings.count(1) == 1
     assert len(outline.ids) == len(set(outline.ids))
     said = [svg["aria-label"] for svg in outline.pictures if "measured and predicted" in str(svg)]
@@ -64,8 +65,7 @@ def test_the_run_whose_predictions_differ_most_comes_first(predicted, folder):
     assert section(read_inputs([folder])).groups[0].name == f"Run {first}"
 
 
-def test_names_from_files_show_as_text_and_the_call_is_repeated(folder):
-    text = page(read_inputs([folder]))
+def test_names_from_files_show_as_text_and_the_call_is_repeated(text):
     assert not re.search(r"https?://(?!www\.w3)|@import|<script", without_script(text))
     assert "&lt;script&gt;$x$" in text
     assert re.search(r"tsas predict \S+calibrated-1 \S+calibrated-2 \S+new --out", text)
