@@ -124,7 +124,7 @@ def test_a_stage_that_is_asked_to_end_cleans_up(dataset, tmp_path, number):
         assert process.stdout.readline() == "inside\n"
         assert len(list(tmp_path.iterdir())) == 3  # the dataset, a lock, what is on its way
         process.send_signal(number)
-        _, said = process.communicate(timeout=30)
+        _, said = process.communicate(timeout=120)
     assert (process.returncode, said) == (130, "")
     assert [p.name for p in tmp_path.iterdir()] == ["dataset"]
 
