@@ -40,7 +40,7 @@ LONGEST = (
     *("studies/challenge/rig/test_hidden", "stages/test_python_page", "diagnosis/test_plan"),
     *("stages/test_identify_harmonic_drive", "numerics/test_compiled", "stages/test_api"),
     *("identification/test_calibration", "studies/challenge/test_make", "docs/test_examples"),
-    *("identification/test_phases", "studies/challenge/test_same_numbers"),
+    *("studies/challenge/test_same_numbers", "reporting/test_prediction"),
     *("numerics/test_conditioning_pieces", "commands/test_sweep", "fuzz/test_search"),
     *("pipelines/test_pipelines", "storage/test_wrong"),
 )
