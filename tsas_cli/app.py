@@ -32,7 +32,7 @@ from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
-from tsas_cli.support.stopping import EXIT_CODE, stopped_once
+from tsas_cli.support.stopping import EXIT_CODE
 
 # Errors of the system: a full or failing disk, too many open files.
 REFUSALS = frozenset(
@@ -93,7 +93,6 @@ def run() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _open_closed_streams()
     _use_utf_8()
-    stopped_once()
     try:
         code = app(prog_name="tsas", standalone_mode=False)  # a stop becomes an exit code there
         sys.stdout.flush()
