@@ -32,7 +32,7 @@ from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
-from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
+from tsas_cli.support.stopping import EXIT_CODE
 
 # Errors of the system: a full or failing disk, too many open files.
 REFUSALS = frozenset(
@@ -94,8 +94,7 @@ def run() -> None:
     _open_closed_streams()
     _use_utf_8()
     try:
-        with cleaned_up_when_stopped():  # typer converts it to an exit code
-            code = app(prog_name="tsas", standalone_mode=False)
+        code = app(prog_name="tsas", standalone_mode=False)  # a stop becomes an exit code there
         sys.stdout.flush()
     except InputError as error:
         code = _stop(error.line(), 2)

@@ -60,11 +60,7 @@ def test_it_writes_what_is_documented(strict, folder, tmp_path):
     assert all(path.endswith(allowed) for path in nulls(summary))
     for p in summary["parameters"]:
         assert (p["stderr"] is None) == (p["interval_low"] is None) == (p["origin"] != "fitted")
-
-
-def test_the_model_holds_the_same_numbers_as_the_json(strict, folder, tmp_path):
-    summary = json.loads(strict("calibrate", folder, "--out", tmp_path / "o", "--json").stdout)
-    model = tomllib.loads((tmp_path / "o" / "model.toml").read_text(encoding="utf-8"))
+    model = tomllib.loads((tmp_path / "out" / "model.toml").read_text(encoding="utf-8"))
     for p in summary["parameters"]:
         table = model["parameters"] if p["run"] is None else model["runs"][p["run"]]
         assert table[p["name"]]["value"] == p["value"]

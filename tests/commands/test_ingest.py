@@ -82,16 +82,6 @@ def test_the_map_can_choose_among_a_folders_files(bench, ingest):
     assert len(read_dataset(bench / "out").manifest.run) == 1
 
 
-def test_an_existing_dataset_stays_without_force(bench, ingest):
-    ingest("a.csv")
-    before = (bench / "out" / "dataset.toml").read_bytes()
-    done = ingest("a.csv")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "--force" in done.stderr
-    assert (bench / "out" / "dataset.toml").read_bytes() == before
-    assert ingest("a.csv", "--force").returncode == 0
-
-
 def test_two_files_with_one_id_are_refused_and_both_named(bench, ingest):
     (bench / "other").mkdir()
     (bench / "other" / "a.csv").write_text(CSV)

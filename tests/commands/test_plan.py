@@ -10,6 +10,7 @@ import tsas_cli.app
 from tsas_cli.diagnosis import plan as planning
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.effects import EFFECTS
+from tsas_cli.support.files import sha256_of
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors
@@ -39,6 +40,7 @@ def is_documented(summary, rig_file, out):
     assert set(summary) == documented() - {"dataset"}
     assert summary["rig"]["name"] == "bench-42"
     assert (out / summary["rig"]["file"]).resolve() == rig_file.resolve()
+    assert summary["rig"]["sha256"] == sha256_of(rig_file)
     parameters = [(row["effect"], row["parameter"]) for row in summary["effects"]]
     assert parameters == [(e.name, p.name) for e in EFFECTS for p in e.parameters if not p.shape]
     for row in summary["effects"]:

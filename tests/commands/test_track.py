@@ -201,19 +201,3 @@ def test_an_unstable_loop_is_one_line_with_its_time_and_state(strict, quick, tmp
     assert done.stderr.startswith("tsas: controller pid: the loop is unstable: from 0 s on the mot")
     assert done.stderr.count("\n") == 1
     assert sorted(p.name for p in tmp_path.iterdir()) == ["settings.toml"]
-
-
-def test_a_folder_that_is_there_is_not_overwritten(track, quick, tmp_path):
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "mine.txt").write_text("mine", encoding="utf-8")
-    with pytest.raises(InputError, match="out"):
-        track("--settings", quick())
-    assert [p.name for p in out.iterdir()] == ["mine.txt"]
-    (out / "mine.txt").unlink()
-    first = track("--settings", quick())
-    with pytest.raises(InputError, match="--force"):
-        track("--settings", quick(), "--seed", "7")
-    assert json.loads((out / "tracking.json").read_text(encoding="utf-8")) == first
-    again = track("--settings", quick(), "--seed", "7", "--force")
-    assert json.loads((out / "tracking.json").read_text(encoding="utf-8")) == again != first

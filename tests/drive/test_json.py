@@ -1,12 +1,11 @@
 """What is written of a drive: kinematics, poles, response, structures, runs and its diagnosis."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tests.drive.verdicts import TOLD, cause, terms, verdict
+from tests.drive.verdicts import TOLD, cause, verdict
 from tsas_cli.drive import json as dj
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.frequency_response import FrequencyResponse
@@ -115,46 +114,6 @@ def test_the_turn_is_told_by_the_first_frequency_that_is_excited(monkeypatch):
     late = seen(frequency, np.full(5, -1j), [False, False, False, True, True])
     far = dj.response(late, DriveValues(0.02)).measured.phase_deg
     np.testing.assert_allclose(far, -450.0)  # beside −540°
-
-
-def test_structures_are_listed_with_the_chosen_one(monkeypatch):
-    chosen = terms("lag", "play")
-    asked = []
-
-    def structures(gear):
-        asked.append(gear)
-        return [terms("play"), chosen]
-
-    monkeypatch.setattr(dj, "structures", structures)
-
-    def trial(names):
-        return SimpleNamespace(mean_square=4.0, solution=SimpleNamespace(converged=True))
-
-    search = SimpleNamespace(trial=trial, mean_square=lambda names: 9.0)
-    simple, lag = dj.structure_rows(search, chosen)
-    assert asked == [terms("play")]
-    assert (simple.name, lag.name) == ("integrator", "integrator with lag")
-    assert (simple.chosen, lag.chosen) == (False, True)
-    assert lag.parameters - simple.parameters == 1
-    assert (lag.held_out_times_noise, lag.times_noise) == (3.0, 2.0)
-
-
-def test_each_run_has_the_errors_of_both():
-    run = SimpleNamespace(
-        id="a",
-        x_in=np.array([1.0, 2.0]),
-        u=SimpleNamespace(step_s=0.004),
-        noise_mm=0.1,
-        counts=np.ones(2, dtype=bool),
-        at_rest=True,
-    )
-    search = SimpleNamespace(bench=SimpleNamespace(runs=[run]))
-    found = dj.run_rows(search, [np.array([4.0, -2.0])], [np.array([2.0, 9.0])])["a"]
-    assert found.rmse == pytest.approx(math.sqrt((9.0 + 16.0) / 2.0))
-    assert found.rmse_nominal == pytest.approx(5.0)
-    assert (found.samples, found.rate_Hz, found.noise) == (2, 250.0, 0.1)
-    with pytest.raises(ValueError, match="zip"):
-        dj.run_rows(search, [np.zeros(2)] * 2, [np.zeros(2)])
 
 
 def test_a_drive_as_tables():

@@ -1,56 +1,19 @@
-"""What acts at the load, against the balance of forces there."""
+"""What acts at the load over time; its laws at a sample: physics/slip/test_small_chains.py."""
 
 import math
 
 import numpy as np
 import pytest
 
-from tests.effects.runs import A, run
+from tests.effects.runs import run
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.slip.ends import SLIPS_ALONG_S
 
 KL = GROUP_A.load_stiffness_N_per_mm
-MOVING_UP = slice(400, 700)
-MOVING_DOWN = slice(1000, 1300)
 
 
 def spring_of(answer):
     return 25.0 + KL * answer.x_out_mm
-
-
-@pytest.mark.parametrize(("part", "sign"), [(MOVING_UP, 1.0), (MOVING_DOWN, -1.0)])
-def test_friction_behind_the_sensor_is_felt_by_it(part, sign):
-    answer = run({"load_friction.after_sensor_N": 2.0})
-    np.testing.assert_allclose((answer.f_out_N - spring_of(answer))[part], sign * 2.0, rtol=1e-8)
-    np.testing.assert_allclose(np.log(answer.f_in_N / answer.f_out_N)[part], sign * A, rtol=1e-8)
-
-
-@pytest.mark.parametrize(("part", "sign"), [(MOVING_UP, 1.0), (MOVING_DOWN, -1.0)])
-def test_friction_before_the_sensor_is_felt_by_the_drive_alone(part, sign):
-    answer = run({"load_friction.before_sensor_N": 2.0})
-    np.testing.assert_allclose(answer.f_out_N[part], spring_of(answer)[part], rtol=1e-9)
-    behind_sheath = (answer.f_out_N[part] + sign * 2.0) * math.exp(sign * A)
-    np.testing.assert_allclose(answer.f_in_N[part], behind_sheath, rtol=1e-9)
-
-
-def test_a_load_that_sticks_lets_its_sensor_fall_by_twice_the_friction():
-    answer = run({"load_friction.after_sensor_N": 2.0})
-    standing = np.flatnonzero(answer.x_out_mm == answer.x_out_mm[700])
-    assert standing.size > 10
-    fallen = answer.f_out_N[700] - answer.f_out_N[standing]
-    assert fallen.max() == pytest.approx(4.0, abs=0.5)
-    assert fallen.max() <= 4.0 + 1e-9
-    assert (np.diff(fallen) >= -1e-9).all()
-
-
-@pytest.mark.parametrize("part", [MOVING_UP, MOVING_DOWN])
-def test_a_spring_that_bends(part):
-    values = {"quadratic_per_mm": 0.02, "cubic_per_mm2": -0.001}
-    answer = run({f"load_spring_nonlinearity.{name}": value for name, value in values.items()})
-    x = answer.x_out_mm
-    force = 25.0 + KL * x * (1.0 + 0.02 * x - 0.001 * x * x)
-    np.testing.assert_allclose(answer.f_out_N[part], force[part], rtol=1e-8)
-    assert np.abs(force - spring_of(answer))[part].max() > 1.0
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ Without friction the tendon is a spring: K (x_in − x) = kL x + the element's f
 import numpy as np
 import pytest
 
-from tests.effects.runs import run
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
@@ -38,16 +37,6 @@ def test_a_damped_load_comes_late(dynamics):
     np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (rate * t - exact), atol=0.1)
 
 
-@pytest.mark.parametrize("speed", [2.0, 8.0])
-def test_a_damper_at_the_load_is_felt_by_its_sensor(speed):
-    answer = run({"load_damping.coefficient_N_s_per_mm": 0.2}, speed=speed)
-    for part, sign in ((slice(500, 690), 1.0), (slice(1100, 1390), -1.0)):
-        v_out = np.gradient(answer.x_out_mm[part], 0.02 / speed)
-        assert (sign * v_out > 0.5 * speed).all()
-        spring = 25.0 + KL * answer.x_out_mm[part]
-        np.testing.assert_allclose(answer.f_out_N[part], spring + 0.2 * v_out, atol=1e-6)
-
-
 def elastoplastic(x, force, travel):
     """Return an element's force for an input, sample by sample: back inside its limits."""
     z = [0.0]
@@ -71,17 +60,6 @@ def test_an_element_that_yields_makes_a_loop_of_its_own(dynamics):
     np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - answer.x_out_mm), atol=0.02)
 
 
-def test_an_element_makes_a_load_stiffer_until_it_yields():
-    """On a soft tendon: K/(K + kL + force/travel) of x_in, beyond it K/(K + kL)."""
-    x_in, values = np.linspace(0.0, 12.0, 601), {"force_N": 6.0, "travel_mm": 1.5}
-    named = {f"load_hysteresis.{name}": value for name, value in values.items()}
-    x = softly(named, x_in, 0.01 * np.arange(601), "slip").x_out_mm
-    slopes = np.diff(x) / np.diff(x_in)
-    first, last = x < 1.4, x > 1.6
-    np.testing.assert_allclose(slopes[first[1:]], K / (K + KL + 4.0), rtol=1e-5)
-    np.testing.assert_allclose(slopes[last[:-1]], K / (K + KL), rtol=1e-5)
-
-
 @BOTH
 def test_a_load_that_relaxes_falls_back_by_an_exponential(dynamics):
     """A ramp, then rest: K (x_in − x) = kL x + k w with dw/dt = dx/dt − w/τ, solved for x.
@@ -103,20 +81,6 @@ def test_a_load_that_relaxes_falls_back_by_an_exponential(dynamics):
     np.testing.assert_allclose(answer.x_out_mm, x, atol=5e-3)
     np.testing.assert_allclose(answer.f_out_N, 40.0 + KL * x + k * (x - y), atol=0.02)
     assert answer.f_out_N.max() - answer.f_out_N[-1] > 1.0
-
-
-def test_a_load_that_relaxes_loses_energy_in_each_cycle():
-    """π X² k ωτ/(1 + (ωτ)²) for an amplitude X of x_out, most where ωτ is 1."""
-    share, time_s, omega = 0.8, 0.2, 5.0
-    t = np.linspace(0.0, 4.0 * 2.0 * np.pi / omega, 4001)
-    x_in = 6.0 - 6.0 * np.cos(omega * t)
-    values = {"load_relaxation.share": share, "load_relaxation.time_s": time_s}
-    answer = softly(values, x_in, t, "slip")
-    cycle = slice(3000, 4001)
-    x, f_out = answer.x_out_mm[cycle], answer.f_out_N[cycle]
-    turns = omega * time_s
-    lost = np.pi * (0.5 * np.ptp(x)) ** 2 * share * KL * turns / (1.0 + turns**2)
-    assert np.trapezoid(f_out, x) == pytest.approx(lost, rel=1e-3)
 
 
 def test_a_load_without_times_is_relaxed():

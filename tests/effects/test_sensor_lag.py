@@ -56,15 +56,6 @@ def test_one_channel_is_filtered_and_no_other(channel, unit):
         np.testing.assert_allclose(getattr(read, name), expected, atol=1e-10)
 
 
-def test_a_slow_motion_is_late_by_the_lag():
-    late = {"channel_delay.f_in_delay_s": LAG}
-    apart = [
-        np.abs(run(v).f_in_N - run({}).f_in_N)[50:650].max()
-        for v in ({"sensor_lag.f_in_lag_s": LAG}, late)
-    ]
-    assert apart[0] == pytest.approx(apart[1], rel=0.01)
-
-
 def test_without_times_nothing_is_filtered():
     rig = with_values(GROUP_A, {"sensor_lag.f_in_lag_s": LAG})
     without = simulate(GROUP_A, DriveInput(UP_AND_DOWN))

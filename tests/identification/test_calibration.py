@@ -71,14 +71,6 @@ def test_what_cannot_be_told_is_said():
     assert ("x_in_zero_mm", "a") not in found(result)
 
 
-def test_without_a_bend_friction_stands_for_the_product():
-    run = recorded(TRUE, total_bend_rad=None)
-    result = calibrate_runs(manifest(run), [run])
-    friction = found(result)["friction_coefficient", None]
-    assert friction.value == pytest.approx(0.135 * math.pi, rel=2e-3)
-    assert any("product of friction and bend" in s for s in result.cannot_tell)
-
-
 def test_a_right_model_is_not_accused_and_a_wrong_one_is():
     right = recorded(TRUE)
     assert not any(
@@ -121,20 +113,6 @@ def test_the_dead_band_s_bias_is_expected():
         assert expected[phase] < 0.97 * 175.1
     assert measured["contraction"].value == pytest.approx(2.287, abs=2e-3)
     assert measured["loosening"].value == pytest.approx(1.050, abs=2e-3)
-
-
-def test_a_measured_load_takes_the_place_of_the_spring():
-    """Friction and tendon come out the same when the tension or displacement at the load drives."""
-    for load, channels in (
-        ("force", ("f_in_N", "f_out_N", "x_out_mm")),
-        ("displacement", ("f_in_N", "f_out_N", "x_out_mm")),
-    ):
-        run = prepared(TRUE, sine(rate_Hz=250.0), channels=channels, load=load)
-        estimates = found(calibrate_runs(manifest(run), [run]))
-        assert estimates["friction_coefficient", None].value == pytest.approx(0.135, rel=5e-3)
-        tendon = estimates["tendon_stiffness_N", None].value
-        assert tendon == pytest.approx(TRUE.axial_stiffness, rel=0.03)
-        assert ("load_stiffness_N_per_mm", None) not in estimates
 
 
 def test_tension_transfer_is_the_capstan_s():

@@ -30,20 +30,24 @@ def errors_of(run):
     return run_errors(run, fitted_samples(run, rig), rig), rig
 
 
-@pytest.mark.parametrize("motion", [sine(), triangle()], ids=["sine", "triangle"])
-def test_the_tension_is_uncertain_after_a_reversal_and_sure_in_slip(motion):
+RATE_HZ = 250.0
+FINE = Sensors(rate_Hz=RATE_HZ)
+
+
+@pytest.mark.parametrize("make", [sine, triangle])
+def test_the_tension_is_uncertain_after_a_reversal_and_sure_in_slip(make):
     """A turning point off by a micrometre moves the tension after it by newtons."""
-    run = prepared(Rig(), motion)
+    run = prepared(Rig(), make(rate_Hz=RATE_HZ), sensors=FINE)
     errors, _ = errors_of(run)
     weights = errors.weights["f_in_N"] / run.noise["f_in_N"]
     turn = int(run.conditioned["x_in_mm"].reversals[1])
     assert weights[turn + 1 : turn + 6].max() > 4.0
-    assert weights[turn - 1500 : turn - 500].max() < 1.05
+    assert weights[turn - 375 : turn - 125].max() < 1.05
 
 
-@pytest.mark.parametrize("motion", [sine(), nested()], ids=["sine", "nested"])
-def test_a_true_model_s_errors_are_about_one(motion):
-    run = prepared(Rig(), motion, seed=3)
+@pytest.mark.parametrize("make", [sine, nested])
+def test_a_true_model_s_errors_are_about_one(make):
+    run = prepared(Rig(), make(rate_Hz=RATE_HZ), sensors=FINE, seed=3)
     errors, rig = errors_of(run)
     for found in errors.errors(rig).values():
         assert np.sqrt(np.mean(found**2)) < 1.3
@@ -82,7 +86,7 @@ def test_a_reversal_taken_for_noise_is_known_to_be_possible(seed):
 
 def test_a_run_that_is_done_with_leaves_memory_at_once():
     """Else thousands of calibrations in one process would wait for the collector of cycles."""
-    errors, rig = errors_of(prepared(Rig(), sine()))
+    errors, rig = errors_of(prepared(Rig(), sine(rate_Hz=RATE_HZ), sensors=FINE))
     errors.errors(rig)
     gone = weakref.ref(errors)
     gc.disable()

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tsas_cli.numerics.turning_points import turning_points
@@ -54,7 +54,6 @@ def test_a_signal_that_does_not_move_is_one_stroke(
     assert found(values, 0.1) == expected
 
 
-@settings(deadline=None)
 @given(
     st.lists(st.integers(-100, 100), min_size=2, max_size=60),
     st.integers(1, 60),

@@ -50,7 +50,7 @@ def refused(done, bench):
     return bool(done.returncode)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(setting=st.sampled_from(["DATASET", "OUT"]), name=odd_names(), environment=st.booleans())
 def test_a_pipeline_takes_a_name_or_refuses_it(clone, setting, name, environment):
     bench, home = clone()
@@ -70,7 +70,7 @@ def test_a_pipeline_takes_a_name_or_refuses_it(clone, setting, name, environment
     assert nothing_ran(bench.folder)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(
     setting=st.sampled_from(["TSAS_DATA", "REAL", "REAL_OUT"]),
     name=odd_names(),
@@ -90,7 +90,7 @@ def test_public_recordings_lie_where_a_name_says(clone, setting, name, environme
 
 
 @pytest.mark.parametrize(("target", "setting"), OUTPUTS)
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(name=odd_names(), environment=st.booleans())
 @example(name=f"a$(shell >{RAN})", environment=False)
 def test_an_output_has_a_name_or_is_refused(clone, target, setting, name, environment):

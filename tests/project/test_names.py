@@ -63,7 +63,7 @@ def test_a_file_is_no_code_whether_it_came_with_the_project_or_later(tmp_path, r
 
 
 @needs_make
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=6)
 @given(name=odd_names(), sources=st.sets(odd_names(end=".csv"), min_size=1, max_size=8))
 def test_a_new_project_is_made_and_run_under_any_name(folder, recording, name, sources):
     home = folder()
@@ -85,7 +85,6 @@ def test_a_new_project_is_made_and_run_under_any_name(folder, recording, name, s
     assert nothing_ran(home)
 
 
-@settings(deadline=None)
 @given(name=odd_names())
 def test_the_map_of_an_empty_project_is_a_map_under_any_name(folder, name):
     assume(name != "?" and "\udcff" not in name)  # which asks; which is no text, and refused
@@ -100,7 +99,7 @@ def test_the_map_of_an_empty_project_is_a_map_under_any_name(folder, name):
 
 
 @needs_make
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=6)
 @given(
     first=st.sets(odd_names(), min_size=1, max_size=8),
     later=st.sets(odd_names(), min_size=1, max_size=8),
@@ -124,7 +123,7 @@ def test_a_file_that_comes_or_goes_is_noticed_under_any_name(folder, first, late
 
 
 @needs_make
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=15)
 @given(setting=st.sampled_from(sorted(SETTINGS)), name=odd_names())
 @example(setting="MAP", name="map (2)")
 @example(setting="RAW", name="(")
@@ -204,7 +203,7 @@ def test_a_makefile_may_build_a_name_of_others(tmp_path):
 
 
 @needs_make
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=8)
 @given(name=odd_names())
 def test_a_quoted_run_among_the_options_reaches_the_program_as_it_is(folder, name):
     name = name.replace("\n", "")  # which ends a command for make

@@ -24,7 +24,6 @@ from tsas_cli.reporting.closing.errors import MODELS, draw_dots
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.support.errors import InputError
 from tsas_studies.closing import cases as closing
 from tsas_studies.closing.close_loop import chosen
 
@@ -184,25 +183,3 @@ def test_beside_tracked_runs_the_page_shows_both(folder, tmp_path):
     tracked = make_tracking(tmp_path / "tracked", ("pid",))
     titles = headings(page(read_inputs([tracked, folder])), 2)
     assert titles[:3] == ["Does a better model track better?", "Tracking", "Recordings"]
-
-
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
-        (lambda c: c.pop("cases"), "cases is missing"),
-        (lambda c: c.update(cases=[]), "cases"),
-        (lambda c: c["cases"][0]["controllers"][0]["models"].pop("data sheet"), "data sheet"),
-        (
-            lambda c: c["cases"][0]["controllers"][0]["models"]["true"]["rmse_N"].update(mean=0.0),
-            "true.rmse_N.mean",
-        ),
-        (lambda c: c.update(format=2), "format"),
-    ],
-)
-def test_a_file_that_is_not_whole_is_refused(tmp_path, spoil, said):
-    folder = make_closing(tmp_path / "loop")
-    content = json.loads((folder / "closing.json").read_text())
-    spoil(content)
-    (folder / "closing.json").write_text(json.dumps(content))
-    with pytest.raises(InputError, match=re.escape(said)):
-        read_inputs([folder])

@@ -215,27 +215,6 @@ def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
     assert "These inputs hardly show load_inertia at" in text
 
 
-@pytest.mark.parametrize("key", ["reason", "next_experiment"])
-@pytest.mark.usefixtures("undrawn")
-def test_sentences_from_the_file_show_as_text(dataset, tmp_path, key):
-    text = written(make_diagnosis(dataset, tmp_path / "d", "undecided", **{key: "<i>`a`\x07"}))
-    assert "&lt;i&gt;<code>a</code>\\x07" in text
-
-
-def test_names_from_the_file_show_as_text_and_need_not_be_in_the_catalogue(dataset, tmp_path):
-    content = json.loads(
-        (make_diagnosis(dataset, tmp_path / "d", "ambiguous") / "diagnosis.json").read_text()
-    )
-    content["named"][0] |= {"effect": "<b>", "title": "", "equation": "", "rivals": ["<u>", "<s>"]}
-    content["channels"] = {"<c>_N": content["channels"]["f_in_N"]}
-    content["residual_map"]["before"] = {"<c>_N": content["residual_map"]["before"]["f_in_N"]}
-    content["candidates"][0]["effects"] = ["<e>"]
-    (tmp_path / "d" / "diagnosis.json").write_text(json.dumps(content))
-    text = written(tmp_path / "d")
-    assert headings(text, 3)[0] == "<b>, or one of 2 others"
-    assert not re.search("<[busce]>", text)
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_the_commands_repeat_the_diagnosis(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided")

@@ -9,6 +9,7 @@ import pytest
 from tests.reporting.pages import PAGES, chromium
 
 expect = pytest.importorskip("playwright.sync_api").expect
+expect.set_options(timeout=40_000)  # ms, on a machine that is busy
 PHONE, DESK = 390, 1280
 EACH_TIME = {*((kind, PHONE, "dark") for kind in PAGES), ("pipeline", DESK, "light")}
 LOOKS = [

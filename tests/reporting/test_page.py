@@ -126,13 +126,6 @@ def test_nothing_is_asked_from_the_network(whole):
     assert not re.search(r"https?:|import|fetch|XMLHttp|eval|innerHTML", script_of(whole))
 
 
-def test_names_from_files_show_as_text(whole):
-    assert "&lt;script&gt;$x$" in whole
-    assert "bench &amp; &lt;b&gt;" in whole
-    assert "Steps &lt;vary&gt;\\x07 by 12 %." in whole
-    assert "The &lt;sheath&gt; is silent." in whole
-
-
 def test_the_numbers_of_the_stages_stand_on_the_page(whole):
     for text in ("2.338", "2.291 to 2.385", "0.1251", "0.1230 to 0.1272", "0.993", "data sheet"):
         assert f">{text}</td>" in whole

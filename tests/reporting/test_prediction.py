@@ -17,7 +17,7 @@ HOSTILE = "<script>$x$"
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def predicted(tmp_path_factory):
     """Two models that predict the rougher rig, in three runs that differ in their noise."""
     root = tmp_path_factory.mktemp("prediction")
     models = [calibrated(root, rig, seed=seed) for seed, rig in ((1, NOMINAL), (2, ROUGH))]
@@ -26,16 +26,21 @@ def folder(tmp_path_factory):
         for k, (name, rig) in enumerate((("a", NOMINAL), (HOSTILE, ROUGH)))
     ]
     write_dataset(root / "new", runs, name="bench & <b>")
-    tsas.predict(models, root / "new", out=root / "predicted")
-    return root / "predicted"
+    return tsas.predict(models, root / "new", out=root / "predicted")
 
 
 @pytest.fixture(scope="module")
-def outline(folder):
-    return Outline(page(read_inputs([folder])))
+def folder(predicted):
+    return predicted.out
 
 
-def test_the_loops_are_drawn_under_the_tables(folder, outline):
+@pytest.fixture(scope="module")
+def text(folder):
+    return page(read_inputs([folder]))
+
+
+def test_the_loops_are_drawn_under_the_tables(folder, text):
+    outline = Outline(text)
     assert outline.headings.count(1) == 1
     assert len(outline.ids) == len(set(outline.ids))
     said = [svg["aria-label"] for svg in outline.pictures if "measured and predicted" in str(svg)]
@@ -49,21 +54,18 @@ def test_the_loops_are_drawn_under_the_tables(folder, outline):
     ]
 
 
-def test_the_run_whose_predictions_differ_most_comes_first(folder):
-    prediction = tsas.predict(  # each model is right in one run; the other one then misses more
-        [folder.parent / "calibrated-1", folder.parent / "calibrated-2"], folder.parent / "new"
-    ).record
+def test_the_run_whose_predictions_differ_most_comes_first(predicted, folder):
+    """Each model is right in one run; the other one then misses more."""
     ratios = {
         row.run: max(row.ratio, 1.0 / row.ratio)
-        for row in prediction.channels
+        for row in predicted.record.channels
         if (row.channel, row.model) == ("f_in_N", "B")
     }
     first = max(ratios, key=ratios.get)
     assert section(read_inputs([folder])).groups[0].name == f"Run {first}"
 
 
-def test_names_from_files_show_as_text_and_the_call_is_repeated(folder):
-    text = page(read_inputs([folder]))
+def test_names_from_files_show_as_text_and_the_call_is_repeated(text):
     assert not re.search(r"https?://(?!www\.w3)|@import|<script", without_script(text))
     assert "&lt;script&gt;$x$" in text
     assert re.search(r"tsas predict \S+calibrated-1 \S+calibrated-2 \S+new --out", text)

@@ -30,7 +30,7 @@ def test_an_error_stops_the_stage_and_says_how_to_go_on(pounds, tmp_path, stage)
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("stage", ["calibrate", "diagnose"])
+@pytest.mark.parametrize("stage", ["calibrate", pytest.param("diagnose", marks=pytest.mark.large)])
 def test_an_accepted_error_stands_in_the_result_and_on_top_of_the_page(pounds, tmp_path, stage):
     result = getattr(tsas, stage)(pounds, out=tmp_path / "out", despite="unit")
     (error,) = result.record.despite

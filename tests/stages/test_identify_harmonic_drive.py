@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +9,6 @@ import pytest
 from tests.counted import Counted
 from tests.drives import DATA_SHEET, LAGGING, SPRUNG, STIFF, drive_dataset
 from tsas_cli.drive.estimates import DataSheet
-from tsas_cli.identification.estimate import Estimate
-from tsas_cli.recordings.manifest import Run
 from tsas_cli.stages import identify_harmonic_drive as drive_stage
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 from tsas_studies.challenge.rig.drive import Gear
@@ -90,6 +87,8 @@ def test_sentence_json_and_tables_name_the_same_of_a_stiff_drive(tmp_path):
     result = identify_harmonic_drive(made)
     found = result.summary["diagnosis"]
     assert [c["effect"] for c in found["named"]] == ["channel_delay"]
+    _, _, structures = next(iter(result.tables()))
+    assert [row[0] for row in structures if row[3] == "chosen"] == ["integrator with lag"]
     (table,) = [rows for title, _, rows in result.tables() if title == "causes"]
     assert {row[0] for row in table} == {"channel_delay"}
     assert "It lacks: a first-order lag of the motor. With it" in found["reason"]
@@ -98,6 +97,12 @@ def test_sentence_json_and_tables_name_the_same_of_a_stiff_drive(tmp_path):
     assert "has a resonance at 18.3 Hz, which these recordings do not show" in note
     before, after = (found["channels"]["x_in_mm"][key] for key in ("rmse_before", "rmse_after"))
     assert after < 0.2 * before
+    for recording in made:
+        simulated = result[recording.run.id].columns
+        told = result.summary["runs"][recording.run.id]
+        for key, column in (("rmse", "x_in_mm"), ("rmse_nominal", "x_in_nominal_mm")):
+            error = recording.columns["x_in_mm"] - simulated[column]
+            assert told[key] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -151,35 +156,3 @@ def test_what_the_data_sheet_gives_is_given():
         "turntable_radius_mm": (27.1, "data sheet"),
         "inertia_N_mm_s2": (0.13, "data sheet"),
     }
-
-
-def test_simulated_runs_stand_beside_each_other():
-    """Each run by the final and by the nominal terms, under its own name."""
-    values = {"final": 10.0, "nominal": 20.0}
-    runs = [SimpleNamespace(time_s=np.arange(2.0)), SimpleNamespace(time_s=np.arange(3.0))]
-    bench = SimpleNamespace(runs=runs, simulated=lambda r, value: np.full(r + 2, value + r))
-    search = SimpleNamespace(bench=bench, trial=lambda t: SimpleNamespace(values=values[t]))
-    fitted = drive_stage._simulated(search, "final")
-    nominal = drive_stage._simulated(search, "nominal")
-    entries = [Run(id=i, file=i, sha256="0" * 64) for i in ("a", "b")]
-    found = drive_stage._recordings(entries, search, fitted, nominal)
-    assert list(found) == ["a", "b"]
-    assert found["b"].run.id == "b"
-    columns = {name: values.tolist() for name, values in found["b"].columns.items()}
-    assert columns == {
-        "time_s": [0.0, 1.0, 2.0],
-        "x_in_mm": [11.0] * 3,
-        "x_in_nominal_mm": [21.0] * 3,
-    }
-    with pytest.raises(ValueError, match="zip"):
-        drive_stage._recordings(entries[:1], search, fitted, nominal)
-
-
-def test_a_drive_is_made_of_what_is_finite(monkeypatch):
-    monkeypatch.setattr(drive_stage, "drive_of", dict)
-    known = {
-        "gain": Estimate("gain", 0.02, "", "fitted"),
-        "frequency": Estimate("frequency", math.inf, "Hz", "fitted"),
-    }
-    result = drive_stage.DriveResult({}, None, None, known, {})
-    assert result.drive == {"gain": 0.02}

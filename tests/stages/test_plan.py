@@ -1,56 +1,13 @@
-"""A plan as a stage: what it writes, as JSON and as tables."""
+"""A plan as JSON and as tables."""
 
-import json
 import math
 
 import pytest
 
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
-from tests.diagnosis.test_rig_file import TEXT
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun
 from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.stages import plan as plan_stage
-from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import sha256_of
-
-NOTHING = ExperimentPlan((), (), (), ("nobody knows.",))
-
-
-@pytest.fixture
-def rig(tmp_path, monkeypatch):
-    asked = []
-    monkeypatch.setattr(plan_stage, "plan_rig", lambda file, step: asked.append(file) or NOTHING)
-    path = tmp_path / "rig.toml"
-    path.write_text(TEXT, encoding="utf-8")
-    return path, asked
-
-
-def test_a_rig_file_is_planned_and_written(rig, tmp_path):
-    path, asked = rig
-    result = plan_stage.plan(path, out=tmp_path / "deep" / "out")
-    assert [file.name for file in asked] == ["bench"]
-    written = json.loads((tmp_path / "deep" / "out" / "plan.json").read_text())
-    assert written == result.summary
-    assert (written["format"], written["stage"]) == (1, "plan")
-    assert written["rig"] == {
-        "name": "bench",
-        "file": "../../rig.toml",
-        "sha256": sha256_of(path),
-    }
-    assert result.plan is NOTHING
-    assert "nobody knows." in repr(result)
-
-
-def test_without_a_folder_nothing_is_written_and_with_one_nothing_is_overwritten(rig, tmp_path):
-    path, _ = rig
-    before = sorted(tmp_path.rglob("*"))
-    assert plan_stage.plan(path).out is None
-    assert sorted(tmp_path.rglob("*")) == before
-    plan_stage.plan(path, out=tmp_path / "out")
-    with pytest.raises(InputError):
-        plan_stage.plan(path, out=tmp_path / "out")
-    plan_stage.plan(path, out=tmp_path / "out", force=True)
-
 
 HIDDEN = ExperimentPlan(
     (

@@ -40,7 +40,7 @@ def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
     monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{free_port()}")
     before = time.monotonic()
     assert "s3://a/b/dataset.toml: the storage cannot be reached" in line_of("s3://a/b")
-    assert time.monotonic() - before < 10
+    assert time.monotonic() - before < 40
 
 
 def test_a_server_that_never_answers(keys, monkeypatch):
@@ -49,7 +49,7 @@ def test_a_server_that_never_answers(keys, monkeypatch):
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
         before = time.monotonic()
         assert "the storage cannot be reached" in line_of("s3://a/b")
-        assert time.monotonic() - before < 8
+        assert time.monotonic() - before < 20
 
 
 def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
@@ -58,7 +58,7 @@ def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
         before = time.monotonic()
         assert "the storage cannot be reached (FSTimeoutError)" in line_of("s3://a/b")
-        assert time.monotonic() - before < 8
+        assert time.monotonic() - before < 20
 
 
 def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):

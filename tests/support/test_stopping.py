@@ -35,9 +35,15 @@ def test_a_stage_that_is_stopped_has_not_done_its_work(number):
         signal.raise_signal(number)
 
 
+def ended(folder, program):
+    """Return the exit code of a program that stops itself, run as a module."""
+    (folder / "stopped.py").write_text(program)
+    return subprocess.run([sys.executable, "-m", "stopped"], cwd=folder, check=False).returncode
+
+
 def test_a_stop_while_text_is_executed_ends_with_the_exit_code_and_not_by_a_signal(tmp_path):
     """A library that makes a class from text is at it when the signal comes."""
-    (tmp_path / "stopped.py").write_text("""
+    program = """
 import signal, sys
 from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
 try:
@@ -45,9 +51,37 @@ try:
         exec("signal.raise_signal(signal.SIGTERM)")
 except KeyboardInterrupt:
     sys.exit(EXIT_CODE)
-""")
-    done = subprocess.run([sys.executable, "-m", "stopped"], cwd=tmp_path, check=False)
-    assert done.returncode == 130
+"""
+    assert ended(tmp_path, program) == 130
+
+
+@pytest.mark.parametrize("code", [0, 130])
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_second_stop_while_the_program_ends_changes_no_exit_code(tmp_path, code, number):
+    """At exit, and when Python takes its modules apart; a viewer that is closed ends with 0."""
+    program = f"""
+import atexit, os, signal, sys
+from tsas_cli.support.stopping import stopped_once, until_stopped
+
+def again(kill=os.kill, me=os.getpid(), number=signal.{number}):
+    kill(me, number)
+
+class Late:
+    def __del__(self, again=again):
+        again()
+
+sys.late = Late()
+stopped_once()
+atexit.register(again)
+try:
+    if {code}:
+        again()
+    with until_stopped():
+        again()
+except KeyboardInterrupt:
+    sys.exit({code})
+"""
+    assert ended(tmp_path, program) == code
 
 
 def test_handlers_are_as_before():

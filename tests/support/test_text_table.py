@@ -8,7 +8,7 @@ import termios
 from collections import Counter
 from itertools import chain
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tsas_cli.support.text_table import table_text
@@ -61,7 +61,6 @@ def test_a_table_is_folded_for_the_terminal_and_no_value_is_lost() -> None:
     assert words.count("no") == 12
 
 
-@settings(deadline=None)
 @given(
     st.integers(1, 6).flatmap(
         lambda n: st.lists(

@@ -80,7 +80,7 @@ def test_who_stops_reading_answers_ends_the_workers_at_once(tmp_path):
             next(outcomes)
         while len(list(tmp_path.iterdir())) < 4:
             time.sleep(0.01)
-    assert time.monotonic() - start < 60.0
+    assert time.monotonic() - start < 300.0
     for mark in tmp_path.iterdir():
         with pytest.raises(ProcessLookupError):
             os.kill(int(mark.name.split("-")[1]), 0)

@@ -57,10 +57,9 @@ def test_a_full_disk_is_one_line_and_leaves_the_earlier_output(dataset, tsas, mo
     assert tsas("check", dataset, "--rrd", "--out", place / "out", "--force").returncode == 0
 
 
-@pytest.mark.parametrize("most", [100, 2000])
-def test_a_file_that_may_not_grow_is_one_line(dataset, tsas, tmp_path, most):
+def test_a_file_that_may_not_grow_is_one_line(dataset, tsas, tmp_path):
     def limited():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 
     out = tmp_path / "out"
     done = tsas("simulate", dataset, "--out", out, preexec_fn=limited)
@@ -125,7 +124,7 @@ def test_a_stage_that_is_asked_to_end_cleans_up(dataset, tmp_path, number):
         assert process.stdout.readline() == "inside\n"
         assert len(list(tmp_path.iterdir())) == 3  # the dataset, a lock, what is on its way
         process.send_signal(number)
-        _, said = process.communicate(timeout=30)
+        _, said = process.communicate(timeout=120)
     assert (process.returncode, said) == (130, "")
     assert [p.name for p in tmp_path.iterdir()] == ["dataset"]
 

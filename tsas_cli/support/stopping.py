@@ -1,11 +1,13 @@
 """Ctrl-C and other stop signals: the normal end of a command that only displays something."""
 
+import atexit
 import math
 import signal
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that closes
 SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
@@ -42,27 +44,52 @@ def cleaned_up_when_stopped() -> Iterator[None]:
         yield
 
 
+def stopped_once() -> None:
+    """Handle every stop signal like Ctrl-C until the process ends; the exit code is the first's.
+
+    Signals that arrive when Python takes its modules apart, after all that is done at exit, would
+    end the process by themselves: they are ignored.
+    """
+    atexit.register(_ignore)
+    _handle(Interrupted)
+
+
+def _ignore() -> None:
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+
+
 @contextmanager
 def _raising(kind: type[BaseException]) -> Iterator[None]:
-    """Raise `kind` at a signal; further signals within `CLEANUP_S` do not disturb the clean-up.
-
-    A library may swallow the exception, for example in a destructor: a later signal raises it
-    again.
-    """
-    received_s = -math.inf
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal received_s
-        del number, frame
-        now_s = time.monotonic()
-        if now_s - received_s > CLEANUP_S:
-            received_s = now_s
-            raise kind
-
-    handled = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
-    before = {number: signal.signal(number, stop) for number in handled}
+    """Raise `kind` at a signal in the block, and leave the handlers as they were."""
+    before = _handle(kind)
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+class _Received:
+    """When this process has received its last stop signal, whatever block it was in."""
+
+    last_s = -math.inf
+
+
+def _handle(kind: type[BaseException]) -> dict[signal.Signals, Any]:
+    """Raise `kind` at signals from now on; return the handlers of before.
+
+    Further signals within `CLEANUP_S` do not disturb the clean-up. A library may swallow the
+    exception, for example in a destructor: a later signal raises it again.
+    """
+    _Received.last_s = -math.inf
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        now_s = time.monotonic()
+        if now_s - _Received.last_s > CLEANUP_S:
+            _Received.last_s = now_s
+            raise kind
+
+    handled = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+    return {number: signal.signal(number, stop) for number in handled}

@@ -137,7 +137,7 @@ def test_the_process_ends_with_the_one_that_started_it(path):
         text=True,
         check=True,
     )
-    for _ in range(100):
+    for _ in range(400):
         try:
             os.kill(int(done.stdout), 0)
         except ProcessLookupError:

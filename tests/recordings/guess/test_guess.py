@@ -292,7 +292,6 @@ STEMS = {
 
 @settings(
     max_examples=settings.default.max_examples * 6 // 10,
-    deadline=None,
     suppress_health_check=list(HealthCheck),
 )
 @given(data=st.data())
@@ -399,7 +398,6 @@ _SOME = ("time_s", "x_in_mm", "f_in_N")
 
 @settings(
     max_examples=settings.default.max_examples * 6 // 10,
-    deadline=None,
     suppress_health_check=list(HealthCheck),
 )
 @given(data=st.data())

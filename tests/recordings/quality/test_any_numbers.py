@@ -26,7 +26,6 @@ RAW = {
 
 @settings(
     max_examples=settings.default.max_examples * 6 // 10,
-    deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

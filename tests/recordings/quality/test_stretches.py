@@ -43,10 +43,12 @@ def summary(report):
 
 
 @pytest.mark.parametrize(
-    ("shape", "load"),
-    list(product(("sine", "triangle", "dwells", "nested"), ("spring", "force", "displacement"))),
+    ("shape", "load", "parts"),
+    [
+        *product(("sine", "triangle", "dwells", "nested"), ("spring", "force"), [10]),
+        *(("nested", load, 3) for load in ("spring", "displacement")),
+    ],
 )
-@pytest.mark.parametrize("parts", [3, 10])
 def test_nothing_is_reported_about_an_ordinary_recording(check, shape, load, parts):
     assert (
         summary(check(columns(Bench(shape=shape, load=load, seed=3, **NOISY)), load, parts)) == []

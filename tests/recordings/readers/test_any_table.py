@@ -10,7 +10,6 @@ ONE_FOLDER = HealthCheck.function_scoped_fixture  # each example writes its file
 
 @settings(
     max_examples=settings.default.max_examples * 3,
-    deadline=None,
     suppress_health_check=[ONE_FOLDER],
 )
 @given(known=plain_tables())
@@ -18,7 +17,7 @@ def test_text_json_and_parquet(tmp_path, known):
     check(known, tmp_path)
 
 
-@settings(deadline=None, suppress_health_check=[ONE_FOLDER])
+@settings(suppress_health_check=[ONE_FOLDER])
 @given(data=st.data())
 def test_matlab_and_mdf(tmp_path, data):
     check(data.draw(foreign_tables(tmp_path)), tmp_path)

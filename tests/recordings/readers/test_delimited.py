@@ -145,7 +145,7 @@ def test_the_wrong_encoding_is_reported(ask):
         ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")
 
 
-@settings(max_examples=settings.default.max_examples // 2, deadline=None)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(
     rows=st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), min_size=1, max_size=30),
     marks=st.sampled_from(

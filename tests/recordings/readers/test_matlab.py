@@ -138,7 +138,7 @@ def test_a_missing_channel_lists_those_that_are_there(path):
 
 
 @pytest.mark.parametrize("write", [plain_5, plain_73])
-@pytest.mark.parametrize("kept", [0, 1, 100, 300, 600, 0.5, 0.98])
+@pytest.mark.parametrize("kept", [0, 300, 0.98])
 def test_a_file_that_is_cut_short_is_one_line(path, write, kept):
     write(path)
     content = path.read_bytes()

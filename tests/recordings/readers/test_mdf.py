@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from asammdf import MDF, Signal
 
+import tsas_cli as tsas
 from tsas_cli.recordings.readers import mdf, read
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
@@ -116,8 +117,8 @@ def test_complex_samples_are_refused(tmp_path):
         ask(path, "force")
 
 
-@pytest.mark.parametrize("kept", [0, 1, 64, 200, 0.5, 0.99])
-def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, tsas, kept):
+@pytest.mark.parametrize("kept", [0, 200, 0.99])
+def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, capfd, kept):
     content = path.read_bytes()
     path.write_bytes(content[: kept if isinstance(kept, int) else int(kept * len(content))])
     map_path = path.with_name("map.toml")
@@ -125,10 +126,10 @@ def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, tsas, kept)
         '[dataset]\nname = "m"\n[columns]\ntime_s = {source = "time"}\n'
         'x_in_mm = {source = "place"}\nf_in_N = {source = 1}\n'
     )
-    done = tsas("ingest", path, "--map", map_path, "--out", path.with_name("out"))
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == 1
-    assert str(path) in done.stderr
+    with pytest.raises(InputError) as raised:
+        tsas.ingest(path, map=map_path, out=path.with_name("out"))
+    assert raised.value.line().startswith(f"{path}: ")
+    assert capfd.readouterr() == ("", "")
 
 
 def test_the_missing_package_is_named(path, monkeypatch):

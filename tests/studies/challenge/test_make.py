@@ -69,11 +69,6 @@ def test_the_product_reads_a_case(sealed):
             assert np.diff(recording.time_s) == pytest.approx(0.04)
 
 
-def test_the_same_cases_give_the_same_bytes_in_any_order(sealed, tmp_path):
-    make(tmp_path, CASES, rate_Hz=25.0)
-    assert files(tmp_path) == files(sealed)
-
-
 def test_the_truth_shows_in_the_recordings(sealed):
     """Where nothing is hidden the load spring's line and the capstan ratio are the answers'."""
     answers = json.loads((sealed / "answers.json").read_text(encoding="utf-8"))["cases"]
@@ -121,15 +116,15 @@ def test_wear_over_the_session_is_counted_from_the_first_run():
         assert np.array_equal(plain.columns["f_in_N"], later.columns["f_in_N"]) is same
 
 
-def test_several_seeds_make_one_set_of_the_same_cases(sealed, tmp_path):
+def test_a_case_has_the_same_bytes_in_any_set_and_order(sealed, tmp_path):
     other = tuple(case for case in cases(6) if case.name == "nothing 1")
-    make(tmp_path, (*other, CASES[0]), rate_Hz=25.0)
+    make(tmp_path, (*other, *CASES[:2]), rate_Hz=25.0)
     assert read_truth(tmp_path).seed == (5, 6)
     content = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))
-    assert sorted(case["seed"] for case in content["cases"].values()) == [5, 6]
+    assert sorted(case["seed"] for case in content["cases"].values()) == [5, 5, 6]
     both, of_five = files(tmp_path / "cases"), files(sealed / "cases")
     shared = both.keys() & of_five.keys()
-    assert {name.parts[0] for name in both} > {name.parts[0] for name in shared} != set()
+    assert len({name.parts[0] for name in shared}) == 2
     assert all(both[name] == of_five[name] for name in shared)
 
 

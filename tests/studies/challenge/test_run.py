@@ -11,10 +11,16 @@ from tsas_studies.challenge.entry import read_entry
 from tsas_studies.challenge.run import case_folders, run_cases
 from tsas_studies.challenge.stages import run_set
 
-NAMES = ("dies", "fails", "refuses", "silent", "well")
+NAMES = ("dies", "fails", "refuses", "silent", "threads", "well")
 
 
-def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
+def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path, monkeypatch):
+    """Each has one thread, and modules of its own: a re.py of somebody's lies beside the set."""
+    for name in ("OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"):
+        monkeypatch.delenv(name, raising=False)
+    for name in ("re", "signal", "json"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
+    monkeypatch.chdir(tmp_path)
     sealed = write_set(tmp_path / "set", {name: case() for name in NAMES})
     (sealed / "answers.json").unlink()  # a run does not need them
     steps = []
@@ -23,11 +29,13 @@ def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
     )
     assert len(steps) == len(NAMES)
     assert log == json.loads((tmp_path / "entry" / "entry.json").read_text(encoding="utf-8"))
-    assert log["answered"] == 1
-    assert log["no_answer"].keys() == {"dies", "fails", "refuses", "silent"}
+    assert (log["answered"], log["tool"]) == (1, "tool")
+    assert log["no_answer"].keys() == {*NAMES} - {"well"}
     assert log["no_answer"]["dies"] == "the process died"
     assert log["no_answer"]["fails"] == "ZeroDivisionError: division by zero"
     assert log["no_answer"]["refuses"] == "a.parquet: no such run"
+    assert log["no_answer"]["threads"] == "RuntimeError: 1 threads"
+    assert not {"OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"} & os.environ.keys()  # of the caller
     assert "diagnosis.json: cannot be read" in log["no_answer"]["silent"]
     entry = read_entry(tmp_path / "entry", NAMES)
     assert entry.no_answer == log["no_answer"]
@@ -35,6 +43,15 @@ def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
     well = json.loads((tmp_path / "entry" / "well" / "diagnosis.json").read_text(encoding="utf-8"))
     assert 0.0 <= well.pop("seconds") < 60.0
     assert well == diagnosis("backlash")
+
+
+def test_an_entry_is_not_overwritten_unasked(tmp_path):
+    sealed = write_set(tmp_path / "set", {"silent": case()})
+    (tmp_path / "entry").mkdir()
+    (tmp_path / "entry" / "mine").touch()
+    with pytest.raises(InputError, match="already exists"):
+        run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    assert [path.name for path in (tmp_path / "entry").iterdir()] == ["mine"]
 
 
 @pytest.mark.parametrize("linked", ["cases", "cases/a", "cases/a/dataset"])
@@ -54,24 +71,3 @@ def test_a_set_without_cases(tmp_path):
 def test_somebody_has_to_do_the_work(tmp_path):
     with pytest.raises(InputError, match="workers is 0; expected 1 or more"):
         run_set(tmp_path, out=tmp_path / "entry", workers=0)
-
-
-def test_a_case_has_one_thread_and_modules_of_its_own_and_nothing_is_overwritten_unasked(
-    tmp_path, monkeypatch
-):
-    """A folder of recordings may hold a re.py or a signal.py of somebody's own."""
-    for name in ("OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"):
-        monkeypatch.delenv(name, raising=False)
-    sealed = write_set(tmp_path / "set", {"threads": case()})
-    for name in ("re", "signal", "json"):
-        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
-    monkeypatch.chdir(tmp_path)
-    log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
-    assert log["no_answer"] == {"threads": "RuntimeError: 1 threads"}
-    assert "OPENBLAS_NUM_THREADS" not in os.environ  # of the caller
-    assert "PYTHONSAFEPATH" not in os.environ
-    assert log["tool"] == "tool"
-    with pytest.raises(InputError, match="already exists"):
-        run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
-    again = run_cases(sealed, tmp_path / "entry", workers=1, force=True, diagnose=tool)
-    assert again["no_answer"] == log["no_answer"]

@@ -15,7 +15,7 @@ from tsas_studies.challenge.entry import read_entry
 from tsas_studies.challenge.run import TOOLS
 from tsas_studies.challenge.targets import TARGETS
 from tsas_studies.challenge.truth import read_truth
-from tsas_studies.commands.challenge import Conditions, Kind, Tool, make, score
+from tsas_studies.commands.challenge import Conditions, Kind, Tool, make, run, score
 
 DOCS = (Path(__file__).parents[3] / "docs" / "challenge.md").read_text(encoding="utf-8")
 
@@ -30,28 +30,23 @@ def entry(tmp_path):
     return write_entry(tmp_path / "mine", {"a": diagnosis("backlash"), "b": diagnosis()})
 
 
-def test_what_is_printed_is_what_is_written(strict, sealed, entry, tmp_path):
+def test_what_is_printed_is_what_is_written_and_documented(strict, sealed, entry, tmp_path):
     done = strict("challenge", "score", sealed, entry, "--out", tmp_path / "out", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     content = json.loads((tmp_path / "out" / "score.json").read_text(encoding="utf-8"))
     assert json.loads(done.stdout) == content
     (mine,) = content["entries"].values()
     assert mine["cases"]["a"] == {"outcome": "exact", "named_falsely": []}
+    section = DOCS.split("## score.json")[1].split("\n## ")[0]
+    told = set(re.findall(r"`(\w+)`", section))
+    assert content.keys() | content["answers"].keys() | mine.keys() <= told
+    (figure,) = re.findall(r"`\{(.*?)\}`", section)
+    assert list(mine["figures"][0]) == figure.split(", ")
     text = strict("challenge", "score", sealed, entry)
     assert (text.returncode, text.stderr) == (0, "")
     assert re.search(
         r"the worst effect +≥ 95 % for each effect +1 of 1, backlash +yes", text.stdout
     )
-
-
-def test_score_json_is_as_documented(strict, sealed, entry):
-    content = json.loads(strict("challenge", "score", sealed, entry, "--json").stdout)
-    section = DOCS.split("## score.json")[1].split("\n## ")[0]
-    told = set(re.findall(r"`(\w+)`", section))
-    (mine,) = content["entries"].values()
-    assert content.keys() | content["answers"].keys() | mine.keys() <= told
-    (figure,) = re.findall(r"`\{(.*?)\}`", section)
-    assert list(mine["figures"][0]) == figure.split(", ")
 
 
 def test_the_documented_targets_are_those_that_count():
@@ -104,23 +99,19 @@ def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, t
         make(tmp_path / "set", seed=17, rate=25.0)
 
 
-def test_several_seeds_are_one_set(monkeypatch, capsys, tmp_path):
-    few = {seed: cases.cases(seed)[78:79] for seed in (17, 18)}
+def test_cases_of_one_kind_and_condition_of_several_seeds_are_a_set(monkeypatch, capsys, tmp_path):
+    few = {
+        seed: [c for c in cases.cases(seed) if c.kind == "pair" or c.name.startswith("nothing 10")]
+        for seed in (17, 18)
+    }
     monkeypatch.setattr(cases, "cases", few.__getitem__)
-    make(tmp_path / "set", seed=17, seeds=2, rate=25.0)
+    chosen = {"kind": "nothing", "conditions": "realistic", "rate": 25.0}
+    make(tmp_path / "set", seed=17, seeds=2, **chosen)
     assert "2 cases of seeds 17 to 18" in capsys.readouterr().out
     assert read_truth(tmp_path / "set").seed == (17, 18)
-    right = {name: diagnosis(unexplained=True) for name in read_truth(tmp_path / "set").cases}
-    score(tmp_path / "set", [write_entry(tmp_path / "entry", right)])
-    assert "set of seeds 17, 18: 2 unknown" in capsys.readouterr().out
-
-
-def test_cases_of_one_kind_are_a_set(monkeypatch, capsys, tmp_path):
-    few = [c for c in cases.cases(17)[:79] if c.kind in ("nothing", "pair")][-2:]
-    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
-    make(tmp_path / "set", seed=17, kind="nothing", rate=25.0, as_json=True)
-    summary = json.loads(capsys.readouterr().out)
-    assert summary["cases"] == {"nothing": len([c for c in few if c.kind == "nothing"])}
+    said = {name: diagnosis() for name in read_truth(tmp_path / "set").cases}
+    score(tmp_path / "set", [write_entry(tmp_path / "entry", said)])
+    assert "set of seeds 17, 18: 2 realistic nothing" in capsys.readouterr().out
     with pytest.raises(InputError, match="no case is of this kind"):
         make(tmp_path / "none", seed=17, small=True, kind="pair", rate=25.0)
     assert not (tmp_path / "none").exists()
@@ -132,24 +123,17 @@ def test_every_kind_can_be_asked_for():
     assert set(get_args(Conditions)) == {c.conditions for c in listed}
 
 
-def test_cases_under_the_same_conditions_are_a_set(monkeypatch, capsys, tmp_path):
-    few = [c for c in cases.cases(17) if c.name.startswith("nothing 10")]
-    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
-    make(tmp_path / "set", seed=17, conditions="realistic", rate=25.0, as_json=True)
-    assert json.loads(capsys.readouterr().out)["cases"] == {"realistic nothing": 1}
-    assert len(few) == 3
-
-
 def test_every_tool_can_be_asked_for():
     assert list(get_args(Tool)) == list(TOOLS)
     section = DOCS.split("## Baselines")[1].split("\n## ")[0]
     assert all(f"| `{name}` |" in section for name in TOOLS if name != "diagnose")
 
 
-@pytest.mark.parametrize("command", ["run", "score"])
-def test_a_folder_that_is_no_set(strict, command, entry, tmp_path):
-    more = [entry] if command == "score" else ["--out", tmp_path / "out"]
-    done = strict("challenge", command, tmp_path / "none", *more)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "`tsas challenge make`" in done.stderr
+def test_a_folder_that_is_no_set(entry, tmp_path):
+    for call in (
+        lambda: run(tmp_path / "none", out=tmp_path / "out"),
+        lambda: score(tmp_path / "none", [entry], out=tmp_path / "out"),
+    ):
+        with pytest.raises(InputError, match="`tsas challenge make`"):
+            call()
     assert not (tmp_path / "out").exists()

@@ -152,8 +152,13 @@ SENSORS = {
 }
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
-@pytest.mark.parametrize("shape", ["sine", "dwells", "nested", "triangle"])
+@pytest.mark.parametrize(
+    ("shape", "sensors"),
+    [
+        *(("dwells", sensors) for sensors in SENSORS),
+        *((shape, "coarse") for shape in ("sine", "nested", "triangle")),
+    ],
+)
 def test_true_repeats_are_never_accused(tmp_path, shape, sensors):
     """Five runs of one command, begun at the same moment of the clock."""
     runs = {f"r{k}": recorded(10 + k, shape=shape, **SENSORS[sensors]) for k in range(5)}

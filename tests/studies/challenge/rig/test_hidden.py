@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS
 
-RIG, SENSORS, MOTION = Rig(cells=20), Sensors(rate_Hz=100.0), nested(speed_mm_s=13.0, rate_Hz=100.0)
+RIG, SENSORS, MOTION = Rig(cells=20), Sensors(rate_Hz=80.0), nested(speed_mm_s=13.0, rate_Hz=80.0)
 NEUTRAL = {e.name: {p.name: p.neutral for p in e.parameters} for e in EFFECTS}
 SHAPES = {p.name: p.upper for e in EFFECTS for p in e.parameters if p.shape}
 
@@ -41,23 +39,6 @@ def test_neutral_changes_nothing_to_the_last_bit(name):
     columns = recorded(*hide(name, parameters, RIG, SENSORS))
     for column, values in PLAIN.items():
         np.testing.assert_array_equal(columns[column], values)
-
-
-@pytest.mark.parametrize(
-    ("name", "parameter", "value"),
-    [
-        (name, parameter, 1.1 if "gain" in parameter else 0.05)
-        for name, places in CATALOGUE.items()
-        for parameter in places
-        if parameter not in SHAPES and parameter != "mass_kg"
-    ]
-    + [("load_inertia", "mass_kg", 5.0)],
-)
-def test_every_parameter_acts(name, parameter, value):
-    rig, sensors = hide(name, {parameter: value}, RIG, replace(SENSORS))
-    columns = recorded(rig, sensors)
-    assert any(np.any(columns[c] != PLAIN[c]) for c in ("x_out_mm", "f_in_N", "f_out_N"))
-    np.testing.assert_array_equal(columns["x_in_mm"], PLAIN["x_in_mm"])
 
 
 def shown(sized):

@@ -17,49 +17,6 @@ def run(motion=MOTION, rig=RIG, **options):
     return simulate(replace(rig, load_end=LoadEnd(**options)), motion).columns
 
 
-def moving(columns):
-    """Samples in which the load moves, with the direction."""
-    v = np.gradient(columns["x_out_mm"], columns["time_s"])
-    return (np.abs(v) > 1.0) & (columns["time_s"] > 0.5), np.sign(v)
-
-
-def test_the_spring_is_a_cubic():
-    columns = run(quadratic_per_mm=0.02, cubic_per_mm2=-0.001)
-    x = columns["x_out_mm"]
-    np.testing.assert_allclose(
-        columns["f_out_N"], F0 + KL * x * (1.0 + 0.02 * x - 0.001 * x**2), atol=1e-6
-    )
-
-
-@pytest.mark.parametrize("settling", [0.0, 0.3])
-def test_the_anchor_gives_way(settling):
-    columns = run(anchor_rate_N_per_s=0.5, anchor_settling_per_s=settling)
-    t = columns["time_s"]
-    lost = 0.5 * (-np.expm1(-settling * t) / settling if settling else t)
-    np.testing.assert_allclose(columns["f_out_N"], F0 - lost + KL * columns["x_out_mm"], atol=1e-6)
-
-
-def test_friction_after_the_sensor_is_felt_by_it_and_before_it_by_the_tendon():
-    after, before = run(friction_after_N=1.2), run(friction_before_N=1.2)
-    moves, direction = moving(after)
-    line = F0 + KL * after["x_out_mm"]
-    np.testing.assert_allclose((after["f_out_N"] - line)[moves], 1.2 * direction[moves], atol=1e-3)
-    np.testing.assert_allclose(before["f_out_N"], F0 + KL * before["x_out_mm"], atol=1e-6)
-    for name in ("x_out_mm", "f_in_N"):
-        np.testing.assert_allclose(after[name], before[name], atol=1e-9)
-    i = 450  # near the end of the first pull
-    assert after["f_in_N"][i] == pytest.approx(after["f_out_N"][i] * math.exp(A), rel=1e-4)
-
-
-def test_a_closed_loop_of_the_load_costs_twice_friction_times_stroke():
-    columns = run(friction_after_N=1.2, motion=through([10.0, 2.0, 10.0, 2.0], rate_Hz=200.0))
-    x, f = columns["x_out_mm"], columns["f_out_N"]
-    top = np.flatnonzero(columns["x_in_mm"] > 10.0 - 1e-9)
-    loop = slice(top[0], top[-1] + 1)
-    work = np.trapezoid(f[loop], x[loop])
-    assert work == pytest.approx(2.0 * 1.2 * np.ptp(x[loop]), rel=0.01)
-
-
 def test_a_mass_needs_force_to_be_accelerated():
     """At 30 mm/s² a load that has stopped swinging follows with 30 mm/s² less the stretch."""
     t = clock(0.9, 400.0)

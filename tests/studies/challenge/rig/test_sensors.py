@@ -39,13 +39,6 @@ def test_slow_noise_has_its_size_and_memory():
     assert np.corrcoef(values[:-50], values[50:])[0, 1] == pytest.approx(math.exp(-1.0), abs=0.05)
 
 
-def test_a_late_channel_shows_what_was():
-    late = Sensors(x_in_mm=Sensor(delay_s=0.02), f_in_N=Sensor())
-    columns = measure(ramp(), late, seed=1)
-    assert columns["x_in_mm"][1000] == pytest.approx(2.0 * (1.0 - 0.02))
-    assert columns["f_in_N"][1000] == pytest.approx(32.0)
-
-
 def test_jitter_shows_in_motion_only_and_the_clock_stays_even():
     def spread(speed):
         sensors = Sensors(jitter_s=1e-4, x_in_mm=Sensor(), f_in_N=Sensor())

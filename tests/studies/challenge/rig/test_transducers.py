@@ -21,13 +21,6 @@ def test_no_transducer_changes_nothing():
     assert through_it(signal) is signal
 
 
-def test_a_lag_is_a_first_order_low_pass_from_rest():
-    """Of a ramp v t it reads v (t − τ + τ exp(−t/τ))."""
-    ramp = 30.0 + 2.0 * T
-    late = through_it(ramp, lag_s=0.05)
-    np.testing.assert_allclose(late, 30.0 + 2.0 * (T - 0.05 * (1.0 - np.exp(-T / 0.05))), atol=1e-9)
-
-
 def test_a_butterworth_filter_halves_the_power_at_its_cut_off():
     sine = 30.0 + np.sin(2.0 * np.pi * 8.0 * T)
     out = through_it(sine, filter_s=1.0 / (2.0 * np.pi * 8.0))
@@ -76,28 +69,3 @@ def test_each_channel_has_its_own_transducer():
     columns = measure(run, quiet(f_out_transducer=Transducer(lag_s=0.1)), seed=0)
     np.testing.assert_array_equal(columns["f_in_N"], run.columns["f_in_N"])
     assert columns["f_out_N"][-1] == pytest.approx(20.0 + T[-1] - 0.1)
-
-
-def test_crosstalk_adds_the_other_force_and_not_its_own_crosstalk():
-    run = clean(np.full(T.size, 40.0), np.full(T.size, 20.0))
-    columns = measure(run, quiet(f_in_of_f_out=0.05, f_out_of_f_in=0.1), seed=0)
-    assert columns["f_in_N"] == pytest.approx(41.0)
-    assert columns["f_out_N"] == pytest.approx(24.0)
-
-
-@pytest.mark.parametrize(
-    ("options", "expected"),
-    [
-        ({"curvature": 1e-3}, lambda f: f + 1e-3 * f**2),
-        ({"gain_rate_per_s": 0.01}, lambda f: f * (1.0 + 0.01 * T)),
-        (
-            {"wave": 0.2, "wave_period": 8.0, "wave_phase_rad": 0.5},
-            lambda f: f + 0.2 * np.sin(2.0 * np.pi * f / 8.0 + 0.5),
-        ),
-    ],
-)
-def test_scales_that_are_bent_drift_or_go_round(options, expected):
-    f_in = 40.0 + 20.0 * np.sin(T)
-    sensors = Sensors(rate_Hz=400.0, x_out_mm=Sensor(), f_out_N=Sensor(), f_in_N=Sensor(**options))
-    columns = measure(clean(f_in, f_in), sensors, seed=0)
-    np.testing.assert_allclose(columns["f_in_N"], expected(f_in), atol=1e-9)
