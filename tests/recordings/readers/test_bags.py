@@ -97,4 +97,6 @@ def test_forces_and_torques_of_ros_have_units(kind, field, unit):
     first, second = field.split(".", 1)
     message = {first: {second: 1.0}}
     topic = Topic("/t", kind, lambda: iter([(0, message)]))
-    assert [(c.name, c.unit) for c in columns_of([topic], Path("a.mcap"))] == [(f"/t.{field}", unit)]
+    assert [(c.name, c.unit) for c in columns_of([topic], Path("a.mcap"))] == [
+        (f"/t.{field}", unit)
+    ]
