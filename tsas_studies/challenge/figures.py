@@ -14,6 +14,7 @@ from tsas_studies.challenge.targets import SIZES, TARGETS, Target
 from tsas_studies.challenge.truth import OUTSIDE
 
 RECOGNISED = ("recognised", "right kind")
+LARGE_GAIN = 0.8  # share of what is attainable on held-out data
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,16 @@ def _beyond(judged: Iterable[Judged]) -> list[ScoreRate]:
             "beyond_recognised",
             "not in the catalogue: said so, or right in kind",
             _share(beyond, *RECOGNISED),
+        ),
+        ScoreRate(
+            "beyond_gain",
+            f"not in the catalogue: {100 * LARGE_GAIN:g} % of the attainable reduction",
+            rate(j.gain >= LARGE_GAIN for j in beyond if j.gain is not None),
+        ),
+        ScoreRate(
+            "beyond_place",
+            "not in the catalogue: described, at the right place",
+            rate(j.right_place for j in beyond if j.right_place is not None),
         ),
         *(
             ScoreRate(

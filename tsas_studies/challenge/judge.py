@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from tsas_studies.challenge.entry import Entry, SubmittedDiagnosis
+from tsas_studies.challenge.right_kind import RIGHT_LAW
 from tsas_studies.challenge.truth import BEYOND, CATALOGUE, TrueCase, Truth
 
 NO_ANSWER = "no answer"
@@ -100,6 +101,23 @@ class Judged:
                 interval = None if estimate is None else estimate.interval
                 found.append(None if interval is None else interval[0] <= truth <= interval[1])
         return found
+
+    @property
+    def right_place(self) -> bool | None:
+        """Whether the laws that describe the cause, or rivals of theirs, act where it does.
+
+        None where no law describes it, or it has no such place.
+        """
+        right = RIGHT_LAW.get(self.case.unknown or "")
+        if right is None or self.diagnosis is None or not self.diagnosis.laws:
+            return None
+        said = {
+            name
+            for law in self.diagnosis.laws
+            for r in (law.law, *law.rivals)
+            for name in r.split("+")
+        }
+        return bool(right & said)
 
     @property
     def gain(self) -> float | None:

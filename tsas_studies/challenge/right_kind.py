@@ -1,4 +1,4 @@
-"""Which effects are a fair description of a cause that is not in the catalogue.
+"""Which effects, and which laws, are a fair description of a cause that is not in the catalogue.
 
 Right in kind is a name of the same place and of the same dependence by another law: it sends nobody
 to another part of the rig. A cause that is not listed has no fair name.
@@ -45,4 +45,21 @@ RIGHT_KIND: Mapping[str, frozenset[str]] = {
         "warm_friction": ("friction_drift",),
         "end_stop": ("load_spring_nonlinearity",),
     }.items()
+}
+
+# At which places a law of unnamed origin can say what such a cause does; a cause that follows time
+# alone has none.
+_ON_FRICTION = (
+    "uneven_friction", "rational_stribeck", "root_stribeck", "log_speed_friction",
+    "ageing_friction", "breakaway_friction", "round_presliding", "strand_roll",
+    "position_dependent_friction", "shifting_sheath",
+)  # fmt: skip
+RIGHT_LAW: Mapping[str, frozenset[str]] = {
+    **dict.fromkeys(_ON_FRICTION, frozenset({"tendon_law"})),
+    **dict.fromkeys(
+        ("pulley_friction", "drive_damping", "drive_inertia"), frozenset({"drive_law"})
+    ),
+    **dict.fromkeys(
+        ("encoder_play", "skewed_laser", "position_sensor_ripple"), frozenset({"load_law"})
+    ),
 }

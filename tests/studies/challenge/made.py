@@ -50,6 +50,22 @@ def diagnosis(*names, verdict=None, unexplained=False, channels=None, **more):
     } | more
 
 
+def described(name, *rivals):
+    """Return the content of a law of unnamed origin."""
+    return {
+        "law": name,
+        "title": "",
+        "equation": "",
+        "sentence": "",
+        "parameters": {},
+        "rivals": rivals,
+        "channel": "f_in_N",
+        "unit": "N",
+        "rmse_before": 1.0,
+        "rmse_after": 0.2,
+    }
+
+
 def write_set(folder: Path, cases) -> Path:
     """Write answers.json and an empty dataset folder for every case."""
     for name in cases:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.studies.challenge.made import case, diagnosis, estimate, named
+from tests.studies.challenge.made import case, described, diagnosis, estimate, named
 from tsas_studies.challenge.entry import SubmittedDiagnosis
 from tsas_studies.challenge.judge import Judged
 from tsas_studies.challenge.truth import TrueCase
@@ -137,6 +137,21 @@ def test_both_effects_of_a_pair_are_covered():
         named("backlash", play_mm=estimate(0.12, "mm", 0.01)),
     )
     assert judged(PAIR, said).covered == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("hidden", "laws", "right"),
+    [
+        ("pulley_friction", [described("drive_law")], True),
+        ("pulley_friction", [described("load_law")], False),
+        ("pulley_friction", [described("load_law", "drive_law+tendon_law")], True),
+        ("pulley_friction", [], None),
+        ("thermal_offset", [described("drive_law")], None),
+    ],
+)
+def test_the_place_of_a_law_is_right_where_the_cause_acts_there(hidden, laws, right):
+    truth = case(kind="near", unknown=hidden)
+    assert judged(truth, diagnosis(verdict="described", laws=laws)).right_place is right
 
 
 def channel(before, after, best):

@@ -5,7 +5,15 @@ import shutil
 
 import pytest
 
-from tests.studies.challenge.made import case, diagnosis, estimate, named, write_entry, write_set
+from tests.studies.challenge.made import (
+    case,
+    described,
+    diagnosis,
+    estimate,
+    named,
+    write_entry,
+    write_set,
+)
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.score import score_entries
 from tsas_studies.challenge.sums import sums_of
@@ -58,7 +66,7 @@ SAID = {
     "d2": diagnosis("drive_ripple"),
     "e1": diagnosis("backlash", named("drive_friction", "presliding")),
     "e2": diagnosis("backlash", "free_tendon"),
-    "f1": diagnosis("drive_friction"),
+    "f1": diagnosis("drive_friction", laws=[described("drive_law")]),
     "g1": diagnosis(verdict="unexplained"),
     "h1": diagnosis("force_sensor_offset", verdict="partly"),
     "h2": diagnosis("sensor_lag"),
@@ -108,6 +116,8 @@ def test_every_figure_is_the_one_counted_by_hand(sealed, entry):
         "beyond_wrong": (1, 3),
         "beyond_unwarned": (1, 3),
         "beyond_recognised": (2, 4),
+        "beyond_gain": (0, 1),
+        "beyond_place": (1, 1),
         "unknown_recognised": (1, 3),
         "near_recognised": (1, 1),
         "fault_wrong": (2, 3),
@@ -126,6 +136,8 @@ def test_every_figure_is_the_one_counted_by_hand(sealed, entry):
         "realistic_beyond_wrong": (1, 1),
         "realistic_beyond_unwarned": (0, 1),
         "realistic_beyond_recognised": (1, 1),
+        "realistic_beyond_gain": (0, 0),
+        "realistic_beyond_place": (0, 0),
         "realistic_unknown_recognised": (0, 0),
         "realistic_near_recognised": (1, 1),
         "realistic_right_refused": (1, 1),
@@ -153,6 +165,8 @@ def test_the_targets_are_held_against_the_worst_effect(sealed, entry):
         "beyond_wrong": False,
         "beyond_unwarned": False,
         "beyond_recognised": False,
+        "beyond_gain": False,
+        "beyond_place": True,
         "fault_wrong": False,
         "fault_unwarned": False,
         "right_refused": True,
