@@ -25,7 +25,7 @@ def greet(name: str) -> None:
 
 app()
 """
-TSAS = "from tsas_cli.app import main; main()"  # what the installed `tsas` does
+TSAS = "from tsas_cli.__main__ import main; main()"  # what the installed `tsas` does
 
 
 def measure() -> Iterator[Row]:

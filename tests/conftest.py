@@ -14,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.warm import Warm, environment
+from tsas_cli.__main__ import main
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
 
@@ -95,6 +96,21 @@ def strict(
     """Run the command line in a process of its own with every warning an error."""
     monkeypatch.setenv("PYTHONWARNINGS", "error")
     return tsas
+
+
+@pytest.fixture
+def here(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[object, str, str]]:
+    """Run the command line in this process: its exit code, its output, and its messages."""
+
+    def run(*words: object) -> tuple[object, str, str]:
+        monkeypatch.setattr("sys.argv", ["tsas", *map(str, words)])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return end.value.code or 0, *capsys.readouterr()
+
+    return run
 
 
 @pytest.fixture

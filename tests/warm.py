@@ -62,7 +62,7 @@ class Warm:
 
     def close(self) -> None:
         """End it."""
-        self.process.communicate(timeout=30)
+        self.process.communicate(timeout=300)
 
 
 def _end(main: Callable[[], None]) -> None:

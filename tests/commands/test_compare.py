@@ -1,11 +1,11 @@
 import json
 import shutil
+from functools import partial
 
 import pytest
 
 from tests.commands.documented import documented
 from tests.comparing.made import NOMINAL, ROUGH, calibrated
-from tsas_cli.__main__ import main
 
 
 @pytest.fixture(scope="module")
@@ -17,15 +17,9 @@ def root(tmp_path_factory):
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, root):
-    def call(*words):
-        monkeypatch.setattr("sys.argv", ["tsas", "compare", *map(str, words)])
-        monkeypatch.chdir(root)
-        with pytest.raises(SystemExit) as end:
-            main()
-        return end.value.code or 0, *capsys.readouterr()
-
-    return call
+def run(here, monkeypatch, root):
+    monkeypatch.chdir(root)
+    return partial(here, "compare")
 
 
 def test_the_table_says_what_differs(run):

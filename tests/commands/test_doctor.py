@@ -3,24 +3,20 @@ import os
 
 import pytest
 
-from tsas_cli.__main__ import main
 from tsas_cli.installation import machine, packages
 from tsas_cli.installation.packages import Extra, Package
 from tsas_cli.support import __version__
 
 
 @pytest.fixture
-def doctor(monkeypatch, capsys):
+def doctor(here, monkeypatch):
     """Call the doctor on an installation that is described, not looked for."""
     monkeypatch.setattr(machine, "drawn_with", lambda: "Vulkan on a card")
 
     def call(*words, core=(), extras=()):
         monkeypatch.setattr(packages, "core_packages", lambda: iter(core))
         monkeypatch.setattr(packages, "extras", lambda: list(extras))
-        monkeypatch.setattr("sys.argv", ["tsas", "doctor", *words])
-        with pytest.raises(SystemExit) as end:
-            main()
-        return end.value.code or 0, *capsys.readouterr()
+        return here("doctor", *words)
 
     return call
 

@@ -22,7 +22,6 @@ from tests.commands.viewing import (
     started,
 )
 from tests.reporting.made_folders import make_dataset
-from tsas_cli.__main__ import main
 from tsas_cli.reporting.viewer.child import program
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 
@@ -66,7 +65,7 @@ def wait_for(entities, path):
         time.sleep(0.2)
 
 
-def test_simulated_runs_arrive_and_the_files_are_the_same(dataset, tmp_path, monkeypatch, capsys):
+def test_simulated_runs_arrive_and_the_files_are_the_same(dataset, tmp_path, here):
     live, plain, copy = tmp_path / "live", tmp_path / "plain", tmp_path / "copy.rrd"
     with started("simulate", dataset, "--out", live, "--live", state=tmp_path) as process:
         address = line_with_address(process.stderr)[0]
@@ -78,10 +77,7 @@ def test_simulated_runs_arrive_and_the_files_are_the_same(dataset, tmp_path, mon
         code, out, _ = ended(process)
         assert code == 0
         assert alive(processes) == set()
-    monkeypatch.setattr("sys.argv", ["tsas", *map(str, ("simulate", dataset, "--out", plain))])
-    with pytest.raises(SystemExit):
-        main()
-    assert capsys.readouterr().out.replace(str(plain), str(live)) == out
+    assert here("simulate", dataset, "--out", plain)[1].replace(str(plain), str(live)) == out
     names = ["simulation.json", "runs/a.parquet", "runs/b.parquet"]
     assert filecmp.cmpfiles(live, plain, names, shallow=False)[0] == names
 

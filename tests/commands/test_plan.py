@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-import tsas_cli.app
 from tsas_cli.diagnosis import plan as planning
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.effects import EFFECTS
@@ -54,19 +53,15 @@ def is_documented(summary, rig_file, out):
         assert run["preload_N"] in (15.0, 25.0, 40.0)
 
 
-def test_it_writes_what_is_documented(rig_file, tmp_path, monkeypatch, capsys):
+def test_it_writes_what_is_documented(rig_file, tmp_path, monkeypatch, here):
     """In this process, with few runs that might be added."""
 
     def few(*asked):
         return [one for one in candidates(*asked) if one.title in FEW]
 
     monkeypatch.setattr(planning, "candidates", few)
-    call = ["tsas", "plan", str(rig_file), "--out", str(tmp_path / "out"), "--json"]
-    monkeypatch.setattr("sys.argv", call)
-    with pytest.raises(SystemExit) as ended:
-        tsas_cli.app.run()
-    said, talk = capsys.readouterr()
-    assert (ended.value.code or 0, talk) == (0, "")
+    code, said, talk = here("plan", rig_file, "--out", tmp_path / "out", "--json")
+    assert (code, talk) == (0, "")
     is_documented(json.loads(said), rig_file, tmp_path / "out")
 
 

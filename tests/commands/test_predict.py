@@ -1,10 +1,10 @@
 import json
+from functools import partial
 
 import pytest
 
 from tests.commands.documented import documented
 from tests.comparing.made import NOMINAL, calibrated, recorded
-from tsas_cli.__main__ import main
 
 
 @pytest.fixture(scope="module")
@@ -16,15 +16,9 @@ def root(tmp_path_factory):
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, root):
-    def call(*words):
-        monkeypatch.setattr("sys.argv", ["tsas", "predict", *map(str, words)])
-        monkeypatch.chdir(root)
-        with pytest.raises(SystemExit) as end:
-            main()
-        return end.value.code or 0, *capsys.readouterr()
-
-    return call
+def run(here, monkeypatch, root):
+    monkeypatch.chdir(root)
+    return partial(here, "predict")
 
 
 def test_the_tables_say_how_far_and_whether_inside(run):

@@ -23,7 +23,6 @@ from tests.commands.viewing import (
 )
 from tests.reporting.made_folders import make_dataset, make_simulation
 from tests.reporting.viewer.streams import make_stream
-from tsas_cli.__main__ import main
 from tsas_cli.reporting.viewer.open import SCREENS
 from tsas_cli.reporting.viewer.ports import free_ports
 
@@ -45,18 +44,11 @@ def folders(tmp_path_factory):
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
+def run(here, monkeypatch, tmp_path):
     """Call the command line here; only for calls that end by themselves."""
-
-    def call(*words):
-        monkeypatch.setattr("sys.argv", ["tsas", *map(str, words)])
-        monkeypatch.setenv("CI", "true")
-        monkeypatch.setenv("TSAS_STATE_DIR", str(tmp_path))
-        with pytest.raises(SystemExit) as end:
-            main()
-        return end.value.code, *capsys.readouterr()
-
-    return call
+    monkeypatch.setenv("CI", "true")
+    monkeypatch.setenv("TSAS_STATE_DIR", str(tmp_path))
+    return here
 
 
 def refused(result):

@@ -16,7 +16,7 @@ def test_the_answers_come_in_the_order_of_the_items(monkeypatch, threads):
 
 def test_calls_run_at_once(monkeypatch):
     monkeypatch.setenv(THREADS, "2")
-    both = threading.Barrier(2, timeout=20.0)
+    both = threading.Barrier(2, timeout=120.0)
     assert each(lambda k: both.wait() >= 0 and k, [3, 4]) == [3, 4]
 
 

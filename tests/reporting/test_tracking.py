@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from tests.reporting.made_folders import make_tracking
 from tests.reporting.test_page import Outline, headings
 from tsas_cli import controllers
-from tsas_cli.__main__ import main
 from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
@@ -223,25 +222,18 @@ def test_a_file_that_is_not_whole_is_refused(spoiled, spoil, said):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_the_commands_of_the_page_make_the_same_page(tmp_path, monkeypatch, capsys):
+def test_the_commands_of_the_page_make_the_same_page(tmp_path, monkeypatch, here):
     """What `tsas track` writes, the page reads; and its commands do it again."""
-
-    def call(words):
-        monkeypatch.setattr("sys.argv", words)
-        with pytest.raises(SystemExit) as end:
-            main()
-        assert not end.value.code, capsys.readouterr().err
-
     monkeypatch.chdir(tmp_path)
     (tmp_path / "short.toml").write_text(
         "format = 1\n[reference]\nduration_s = 0.5\n[loop]\nnodes = 5\n[sensor]\nrate_Hz = 500\n"
     )
     options = "--controller pid,adaptive-sliding-mode --disturb friction_coefficient=0.16@0.25"
     rest = "--reference ramps --settings short.toml --seeds 2 --seed 4 --out tracked"
-    call(["tsas", "track", *options.split(), *rest.split()])
-    call(["tsas", "report", "tracked", "--out", "first.html"])
+    assert here("track", *options.split(), *rest.split())[0] == 0
+    assert here("report", "tracked", "--out", "first.html")[0] == 0
     first = (tmp_path / "first.html").read_text()
     commands = unescape(re.search("<pre[^>]*><code>(.*?)</code>", first, re.DOTALL)[1])
     for command in commands.splitlines():
-        call([*shlex.split(command), "--force"])
+        assert here(*shlex.split(command)[1:], "--force")[0] == 0
     assert (tmp_path / "report.html").read_text() == first

@@ -48,7 +48,7 @@ def server(tmp_path_factory) -> Iterator[int]:
         yield port
     finally:
         process.terminate()
-        process.wait(timeout=20)
+        process.wait(timeout=120)
 
 
 class Wire:

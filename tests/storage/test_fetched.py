@@ -149,5 +149,5 @@ if __name__ == "__main__":
         print(here, pool.map(rows, [sys.argv[1]]))
 """
     call = [sys.executable, "-W", "ignore", "-c", program, f"{bucket}/bench"]
-    done = subprocess.run(call, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(call, capture_output=True, text=True, check=True, timeout=300)
     assert done.stdout == "500 [500]\n"

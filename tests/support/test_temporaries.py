@@ -171,7 +171,7 @@ def two_at_once(path: Path, force: str, kind: str) -> list[tuple[int, str]]:
         assert process.stdout.readline() == "there\n"
     ended = []
     for process in reversed(processes):
-        _, stderr = process.communicate("\n", timeout=30)
+        _, stderr = process.communicate("\n", timeout=300)
         ended.append((process.returncode, stderr))
     return ended
 

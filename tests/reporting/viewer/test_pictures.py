@@ -20,7 +20,7 @@ from tsas_cli.support.errors import InputError
 
 COLOURS = 100
 COLOURED = 0.005  # of the picture; around the views all is grey but a few signs
-SOON_S = 15.0
+SOON_S = 40.0
 
 
 @pytest.fixture

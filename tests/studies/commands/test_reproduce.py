@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from tests.commands.documented import documented
-from tsas_cli.__main__ import main
 from tsas_studies.reproduction import GROUPS, summary
 from tsas_studies.reproduction.contradictions import contradictions
 from tsas_studies.reproduction.group import VERDICTS
@@ -38,16 +37,14 @@ def groups_of(folders, printed):
     return found["groups"]
 
 
-def test_it_writes_what_is_documented_and_the_same_again(tmp_path, monkeypatch, capsys):
+def test_it_writes_what_is_documented_and_the_same_again(tmp_path, monkeypatch, here):
     monkeypatch.setattr(summary, "GROUPS", (tables_1_2_4, contradictions))
     folders = (tmp_path / "one", tmp_path / "two")
     printed = []
     for folder, more in zip(folders, ([], ["--json"]), strict=True):
-        monkeypatch.setattr("sys.argv", ["tsas", "reproduce", "--out", str(folder), *more])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        assert not ended.value.code
-        printed.append(capsys.readouterr().out)
+        code, out, _ = here("reproduce", "--out", folder, *more)
+        assert code == 0
+        printed.append(out)
     assert printed[0].splitlines()[-1].startswith("Of ")
     assert len(groups_of(folders, printed[1])) == 2
 
