@@ -11,7 +11,7 @@ from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 NOMINAL = Rig(cells=60)
 ROUGH = replace(NOMINAL, friction_coefficient=0.15)
-SENSORS = Sensors(rate_Hz=100.0)
+SENSORS = Sensors(rate_Hz=200.0)
 PACES = {"slow": 1.0, "fast": 2.0}  # rad/s
 
 

@@ -20,7 +20,7 @@ from tsas_cli.numerics.stops import (
 )
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
-from tsas_cli.records.base import TWO_SIDED, Value
+from tsas_cli.records.base import TWO_SIDED, Value, number_text
 from tsas_cli.support.arrays import Floats
 
 BUILT_UP = 0.9  # share of the change after a reversal from which it is built up
@@ -118,7 +118,7 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         speeds = np.array([0.0, value["speed_2"], value["speed_3"]])
         parts = _of_friction(travel, change, heights)
         if np.ptp(speeds) > LEAST * max(np.ptp(heights), float(np.abs(change).max())):
-            ends = f"{value['slow_mm_per_s']:.2g} to {value['fast_mm_per_s']:.2g} mm/s"
+            ends = f"{_two(value['slow_mm_per_s'])} to {_two(value['fast_mm_per_s'])} mm/s"
             parts.append(f"friction changes {_along(100.0 * speeds)} % from {ends}")
         return f"In the sheath {'; '.join(parts)}." if parts else ""
     low, high = sorted(2.0 * float(_weights(name, value, t).sum()) for t in tensions)
@@ -127,24 +127,24 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
     if high > LEAST * span:
         within = float(travel[np.searchsorted(change, BUILT_UP * change[-1])])
         if name == "load_law":
-            parts.append(f"{high:.2g} mm of the motion are lost at each reversal")
+            parts.append(f"{_two(high)} mm of the motion are lost at each reversal")
         elif high > 1.1 * low:
             parts.append(
-                f"friction changes f_in by {low:.2g} N at low and {high:.2g} N at high tension "
+                f"friction changes f_in by {_two(low)} N at low and {_two(high)} N at high tension "
                 "after each reversal"
             )
         else:
-            parts.append(f"friction changes f_in by {high:.2g} N after each reversal")
-        parts[-1] += f", within {within:.2g} mm"
+            parts.append(f"friction changes f_in by {_two(high)} N after each reversal")
+        parts[-1] += f", within {_two(within)} mm"
         gap = _gap(name, value, float(np.mean(tensions)))
-        parts[-1] += f", hardly over a gap of {gap:.2g} mm in its middle" if gap > 0.0 else ""
+        parts[-1] += f", hardly over a gap of {_two(gap)} mm in its middle" if gap > 0.0 else ""
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
         parts.append(f"{subject} {_along(heights)} {unit} along the stroke")
     yields = value.get("compliance_mm_per_N", 0.0)
     if yields * (tensions[1] - tensions[0]) > LEAST * max(high, span):
-        parts.append(f"x_out yields by {yields:.2g} mm per N of f_out")
+        parts.append(f"x_out yields by {_two(yields)} mm per N of f_out")
     where = "drive" if name == "drive_law" else "load"
     return f"At the {where} {'; '.join(parts)}." if parts else ""
 
@@ -156,10 +156,17 @@ def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
     if largest > LEAST * np.ptp(heights):
         size = 100.0 * share[int(np.argmax(np.abs(share)))]
         over = float(travel[np.flatnonzero(np.abs(share) > (1.0 - BUILT_UP) * largest)[-1]])
-        parts.append(f"friction differs by {size:.2g} % after each reversal, over {over:.2g} mm")
+        parts.append(
+            f"friction differs by {_two(size)} % after each reversal, over {_two(over)} mm"
+        )
     if np.ptp(heights) > LEAST * largest:
         parts.append(f"friction changes {_along(100.0 * heights)} % along the stroke")
     return parts
+
+
+def _two(value: float) -> str:
+    """Return a number with two significant digits."""
+    return number_text(value, ".2g")
 
 
 def _gap(name: str, value: Mapping[str, float], tension: float) -> float:
@@ -175,9 +182,8 @@ def _along(heights: Floats) -> str:
     steps = np.diff(heights)
     monotone = (steps >= 0.0).all() or (steps <= 0.0).all()
     first, last = (heights[0], heights[-1]) if monotone else (heights.min(), heights.max())
-    return (
-        f"{'from' if monotone else 'between'} {first:.2g} {'to' if monotone else 'and'} {last:.2g}"
-    )
+    ends = _two(first), _two(last)
+    return "from {} to {}".format(*ends) if monotone else "between {} and {}".format(*ends)
 
 
 def _weights(name: str, value: Mapping[str, float], tension: float) -> Floats:

@@ -24,6 +24,7 @@ from tsas_cli.support.arrays import Floats
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
+MOST_PARTS = 4  # of a split that a sentence lists
 ALIKE = 0.1  # relative difference of two offsets within which they are alike
 
 # A law of friction μ(T + c) is the capstan's with c added to both forces.
@@ -170,8 +171,11 @@ def may_be_zero(
 
 
 def split_in_words(split: Split) -> str:
-    """Return the values of a parameter in the parts of a split, in words."""
-    values = " and ".join(f"{value:.3g} ({part})" for part, value in split.values)
+    """Return the values of a parameter in the parts of a split, in words; of many the extremes."""
+    parts = split.values
+    if len(parts) > MOST_PARTS:
+        parts = tuple(end(parts, key=lambda pair: pair[1]) for end in (min, max))
+    values = " and ".join(f"{value:.3g} ({part})" for part, value in parts)
     unit = _unit(QUANTITIES[split.parameter].unit)
     over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
     return f"{over}: {split.parameter.partition('.')[2]} {values} {unit}".rstrip()

@@ -29,8 +29,12 @@ _ROUNDING = 1e-9  # relative, of a value at the end of its interval
 
 
 def number_text(value: float | None, form: str = ".3g") -> str:
-    """Return a number for a printed table; nothing where there is none."""
-    return "" if value is None else f"{value:{form}}"
+    """Return a number for a table or a sentence, without an exponent; nothing where there is none.
+
+    A small one keeps its exponent: 12400, 0.00321, 3.2e-05.
+    """
+    text = "" if value is None else f"{value:{form}}"
+    return f"{float(text):.0f}" if "e+0" in text else text
 
 
 def check_interval(value: float | None, low: float | None, high: float | None) -> None:
