@@ -28,6 +28,12 @@ def test_friction_at_the_drive_is_twice_the_weights_and_grows_with_the_tension()
     assert "by 3 N at low and 7 N at high tension after each reversal" in text
 
 
+def test_friction_at_the_drive_that_differs_with_the_speed_is_said():
+    text = said("drive_law", friction_1_N=1.0, speed_2=-0.1, speed_3=-0.2)
+    assert text.endswith("; friction changes from 0 to -20 % from 1 to 10 mm/s.")
+    assert "mm/s" not in said("drive_law", friction_1_N=1.0, speed_3=0.02)
+
+
 def test_a_gap_is_said_where_it_carries_most():
     """Of width travel/2: a gap as long as the width."""
     text = said("drive_law", travel_mm=8.0, gap_friction_1_N=2.0, friction_1_N=0.5)

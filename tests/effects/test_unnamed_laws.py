@@ -55,6 +55,23 @@ def test_friction_with_a_gap_changes_at_both_ends_of_the_travel_after_a_reversal
     )
 
 
+def test_friction_at_the_drive_changes_with_its_speed_but_not_below_the_low_one():
+    """At 0.5, 10 and 100 mm/s, over 1 to 100 mm/s: by 0, 20 and 50 %."""
+    speed = np.repeat([0.5, 10.0, 100.0], 200)
+    x = np.cumsum(speed) / 1000.0
+    drive = DriveInput(x, time_s=np.arange(x.size) / 1000.0)
+    plain = run(drive)
+    values = {"slow_mm_per_s": 1.0, "fast_mm_per_s": 100.0, "speed_2": 0.2, "speed_3": 0.5}
+    law = run(
+        drive,
+        drive_law__travel_mm=0.01,
+        drive_law__friction_1_N=2.0,
+        **{f"drive_law__{name}": value for name, value in values.items()},
+    )
+    added = (law.f_in_N - plain.f_in_N)[[150, 350, 550]]
+    assert added == pytest.approx([2.0, 2.4, 3.0])
+
+
 def test_a_share_grows_with_the_tension_of_the_tendon():
     plain, law = run(), run(drive_law__travel_mm=0.01, drive_law__share_1=0.1)
     moving = SETTLED & (np.abs(np.cos(TIME_S)) > 0.2)

@@ -121,7 +121,7 @@ def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
             f"{law}.low_mm": float(whole.min()),
             f"{law}.high_mm": float(whole.max()),
         }
-        if law == "tendon_law":
+        if law != "load_law":
             slow, fast = speeds_of(runs)
             out[law] |= {f"{law}.slow_mm_per_s": slow, f"{law}.fast_mm_per_s": fast}
     return out

@@ -25,6 +25,7 @@ from tsas_cli.support.arrays import Floats
 
 BUILT_UP = 0.9  # share of the change after a reversal from which it is built up
 POINTS = 200  # of a drawn curve
+SPEED = 0.03  # share of the friction, below which its change with the speed is not said
 LEAST = 0.1  # of the largest part of a law, below which a part is not worth a clause
 WHAT = {  # what each law changes, and its unit in the names of its parameters
     "drive_law": ("f_in [N]", "_N"),
@@ -115,11 +116,9 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
     change = after_reversal(name, value, travel, float(np.mean(tensions)))
     heights = _heights(name, value)
     if name == "tendon_law":
-        speeds = np.array([0.0, value["speed_2"], value["speed_3"]])
         parts = _of_friction(travel, change, heights)
-        if np.ptp(speeds) > LEAST * max(np.ptp(heights), float(np.abs(change).max())):
-            ends = f"{_two(value['slow_mm_per_s'])} to {_two(value['fast_mm_per_s'])} mm/s"
-            parts.append(f"friction changes {_along(100.0 * speeds)} % from {ends}")
+        least = LEAST * max(float(np.ptp(heights)), float(np.abs(change).max()))
+        parts += _over_speed(value, least)
         return f"In the sheath {'; '.join(parts)}." if parts else ""
     low, high = sorted(2.0 * float(_weights(name, value, t).sum()) for t in tensions)
     span = float(np.ptp(heights))
@@ -138,6 +137,7 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         parts[-1] += f", within {_two(within)} mm"
         gap = _gap(name, value, float(np.mean(tensions)))
         parts[-1] += f", hardly over a gap of {_two(gap)} mm in its middle" if gap > 0.0 else ""
+        parts += _over_speed(value, SPEED) if name == "drive_law" else []
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
@@ -162,6 +162,15 @@ def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
     if np.ptp(heights) > LEAST * largest:
         parts.append(f"friction changes {_along(100.0 * heights)} % along the stroke")
     return parts
+
+
+def _over_speed(value: Mapping[str, float], least: float) -> list[str]:
+    """Return the clause on a friction that differs with the speed by more than a share of it."""
+    shares = np.array([0.0, value["speed_2"], value["speed_3"]])
+    if np.ptp(shares) <= least:
+        return []
+    ends = f"{_two(value['slow_mm_per_s'])} to {_two(value['fast_mm_per_s'])} mm/s"
+    return [f"friction changes {_along(100.0 * shares)} % from {ends}"]
 
 
 def _two(value: float) -> str:

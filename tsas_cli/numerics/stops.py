@@ -7,6 +7,7 @@ gap, as where parts with play rub: they alone can give a change after a reversal
 middle.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -60,3 +61,12 @@ def curve_of(values: Floats, low: float, high: float, heights: Sequence[float]) 
     """Return a curve of straight lines between heights at even distances, constant outside."""
     curve: Floats = np.interp(values, np.linspace(low, high, len(heights)), heights)
     return curve
+
+
+def speed_curve(speed: Floats, slow: float, fast: float, heights: Sequence[float]) -> Floats:
+    """Return a curve over the logarithm of the speed, 0 at the low speed and constant outside.
+
+    `heights` are those at the middle and at the high speed.
+    """
+    values = np.log(np.maximum(np.abs(speed), slow))
+    return curve_of(values, math.log(slow), math.log(fast), (0.0, *heights))

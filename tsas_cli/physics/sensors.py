@@ -45,10 +45,10 @@ def new_memory() -> Floats:
     """Return the memory of the sensors before the first sample of a run.
 
     For each of `CHANNELS` time [s] and input of its low pass at the last sample, and by how much
-    the low pass lags there; input and force of its elastoplastic element; input and states of the
-    elements of the law that acts on it; shape (3, 16), NaN before the first sample.
+    the low pass lags there; input and force of its elastoplastic element; time, input and states of
+    the elements of the law that acts on it; shape (3, 17), NaN before the first sample.
     """
-    return np.full((len(CHANNELS), LAW_MEMORY + 1 + ELEMENTS + GAPS), np.nan)
+    return np.full((len(CHANNELS), LAW_MEMORY + 2 + ELEMENTS + GAPS), np.nan)
 
 
 def sensed(
@@ -66,7 +66,7 @@ def sensed(
     and hysteresis. `memory` is that after the sample before, updated in place. `motor_mm` is
     the motor's displacement, where it was recorded, shape (n,).
     """
-    output = with_laws(output, rig, boundary, memory, motor_mm)
+    output = with_laws(output, time_s, rig, boundary, memory, motor_mm)
     f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
     loops, tilts = rig.effects.force_sensor_hysteresis, rig.effects.force_sensor_tilt
     if boundary.drive != FORCE:
@@ -93,19 +93,39 @@ def sensed(
 
 
 def with_laws(
-    output: Output, rig: Rig, boundary: Boundary, memory: Floats, motor_mm: Floats | None
+    output: Output,
+    time_s: Floats | None,
+    rig: Rig,
+    boundary: Boundary,
+    memory: Floats,
+    motor_mm: Floats | None,
 ) -> Output:
     """Return an output with the laws of unnamed origin at both ends, but for a given quantity."""
     effects, f_in, x_out = rig.effects, output.f_in, output.x_out
     if boundary.drive != FORCE and effects.drive_law != NO_DRIVE_LAW:
+        moved = output.x_in if motor_mm is None else motor_mm
+        speed = backward_rate(moved, time_s, memory[0, LAW_MEMORY:])
         f_in = f_in + drive_law_force(
-            effects.drive_law, output.x_in, f_in, memory[0, LAW_MEMORY:], motor_mm
+            effects.drive_law, output.x_in, moved, speed, f_in, memory[0, LAW_MEMORY + 1 :]
         )
     if boundary.load != DISPLACEMENT and effects.load_law != NO_LOAD_LAW:
         x_out = x_out + load_law_motion(
-            effects.load_law, x_out, output.f_out, memory[2, LAW_MEMORY:]
+            effects.load_law, x_out, output.f_out, memory[2, LAW_MEMORY + 1 :]
         )
     return output._replace(f_in=f_in, x_out=x_out)
+
+
+def backward_rate(values: Floats, time_s: Floats | None, memory: Floats) -> Floats:
+    """Return the mean rate of a signal since the sample before, shape (n,), 0 where there is none.
+
+    `memory` has time and value of the sample before; the time is updated in place.
+    """
+    if time_s is None:
+        return np.zeros(values.size)
+    before, memory[0] = memory[0], time_s[-1]
+    changes, steps_s = np.diff(values, prepend=memory[1]), np.diff(time_s, prepend=before)
+    rate: Floats = np.nan_to_num(changes / steps_s, nan=0.0, posinf=0.0, neginf=0.0)
+    return rate
 
 
 @kernel

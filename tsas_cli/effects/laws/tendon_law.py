@@ -12,13 +12,12 @@ Not validated: displacements, tensions and speeds beyond those that it was fitte
 drives, whose plants have a constant μ.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.numerics.stops import RATIO, curve_of
+from tsas_cli.numerics.stops import RATIO, curve_of, speed_curve
 from tsas_cli.support.arrays import Floats
 
 STARTS = 4
@@ -50,12 +49,11 @@ def tendon_law_factor(law: TendonLaw, x: Floats, travel: Floats, speed: Floats) 
     From displacement, travel since the last reversal and speed of the tendon's end at the drive,
     shape (n,) each.
     """
-    starts, curve, speeds = law[5:9], (0.0, *law[9:13]), (0.0, *law[13:])
+    starts, curve, speeds = law[5:9], (0.0, *law[9:13]), law[13:]
     factor = 1.0 + curve_of(x, law.low_mm, law.high_mm, curve)
     for k, start in enumerate(starts, 1):
         factor += start * np.exp(-travel / (law.travel_mm * RATIO**k))
-    slow, fast = math.log(law.slow_mm_per_s), math.log(law.fast_mm_per_s)
-    factor += curve_of(np.log(np.maximum(np.abs(speed), law.slow_mm_per_s)), slow, fast, speeds)
+    factor += speed_curve(speed, law.slow_mm_per_s, law.fast_mm_per_s, speeds)
     return np.maximum(factor, 0.0)
 
 
