@@ -168,15 +168,7 @@ def solve(
     )
     near = NEARLY_BOUND * np.minimum(upper - lower, 1.0)
     at_bound = (found.values - lower < near) | (upper - found.values < near)
-    return Solution(
-        found.values,
-        at_bound,
-        found.residual,
-        found.jacobian,
-        found.converged,
-        found.message,
-        found.evaluations,
-    )
+    return Solution(**vars(found), at_bound=at_bound)
 
 
 def fit(
