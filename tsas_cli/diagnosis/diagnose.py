@@ -95,14 +95,7 @@ def diagnose_runs(
 ) -> Diagnosis:
     """Return the effects that a model of these runs lacks; `step` reports progress.
 
-    Parameters
-    ----------
-    manifest
-        The data sheet.
-    stated
-        The data sheet as a model, or another initial model.
-    runs
-        The runs, prepared.
+    `stated` is the data sheet as a model, or another initial model.
     """
     step.ahead(1)
     base = solve_fit(nominal_fit(manifest, stated, runs))

@@ -124,16 +124,8 @@ def propose(
 ) -> str:
     """Return as a sentence the further run that distinguishes effects best.
 
-    Parameters
-    ----------
-    bench
-        The present runs.
-    trial
-        A fit of them; its other effects stay free.
-    effects
-        The effects to distinguish: a single one from all others; none means all.
-    step
-        Reports progress for each run that might be added.
+    Other effects of the trial stay free. `effects` are those to distinguish: a single one from all
+    others; none means all.
     """
     step.ahead(1)
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
