@@ -9,7 +9,8 @@ import typer
 
 import tsas_cli as tsas
 from tests.drives import drive_dataset
-from tsas_cli.identification.model import data_sheet, write_model
+from tsas_cli.identification.model import data_sheet
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import write_json, write_sums

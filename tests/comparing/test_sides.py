@@ -5,7 +5,8 @@ import pytest
 from tests.reporting.made_folders import make_calibration, make_dataset, source
 from tsas_cli.comparing.sides import read_side
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, write_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.physics.parameters import BRISTLES
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError

@@ -1,10 +1,10 @@
 """Runs that are planned on the rig of Yang 2025, Table 1, as several tests need them."""
 
+from tsas_cli.diagnosis.amplitudes import Visibility
 from tsas_cli.diagnosis.further_runs import joined_runs
 from tsas_cli.diagnosis.plan import FIRST
 from tsas_cli.diagnosis.rig_file import PlannedRun, RigFile
 from tsas_cli.diagnosis.simulated_runs import simulated_recordings
-from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.effect import Effect
 from tsas_cli.identification.model import data_sheet

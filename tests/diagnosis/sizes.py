@@ -1,10 +1,10 @@
 """Sizes from which on effects are seen, made up as several tests need them."""
 
 from tests.physics.references import GROUP_A
+from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.diagnosis.plan import Better
 from tsas_cli.diagnosis.rig_file import Limits
-from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.effects import EFFECTS
 
 OF = {e.name: e for e in EFFECTS}

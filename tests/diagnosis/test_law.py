@@ -10,7 +10,7 @@ from tsas_cli.diagnosis.law import describe
 from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.joint_fit import solve_fit
-from tsas_cli.identification.model import stated_model
+from tsas_cli.identification.model_file import stated_model
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_studies.challenge.rig.motions import sine

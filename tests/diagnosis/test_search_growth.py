@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from tests.counted import Counted
-from tsas_cli.diagnosis import search as s
+from tsas_cli.diagnosis import hypotheses, search
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.search import Hypotheses, Search
+from tsas_cli.diagnosis.hypotheses import Hypotheses
+from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification import screening
 from tsas_cli.identification.screening import Screened
@@ -48,13 +49,16 @@ def reweighed(bench, trial):
     return Bench(bench.mean_squares, bench.mesh, bench.weighed + 1)
 
 
+def evenly(trial, folds):
+    return np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
+
+
 @pytest.fixture
 def made(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
-    monkeypatch.setattr(s, "reweighted_bench", reweighed)
-    monkeypatch.setattr(
-        s, "held_out_squares", lambda trial, _: np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
-    )
+    monkeypatch.setattr(hypotheses, "reweighted_bench", reweighed)
+    for module in (hypotheses, search):
+        monkeypatch.setattr(module, "held_out_squares", evenly)
 
     def make(mean_squares, *, step=None, **of_bench):
         folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS)
@@ -205,7 +209,7 @@ def test_errors_are_weighed_three_times_by_what_was_found(made):
     sets = {names(), names(A), names(B), names(A, B)}
     trials = {(n, True): search.trial(n, on_mesh=True) for n in sets}
     found = Hypotheses(search.bench, search.folds, names(A, B), {A: (C,)}, (), trials, {})
-    other = s.reweighted_hypotheses(found, counted)
+    other = hypotheses.reweighted_hypotheses(found, counted)
     assert (other.bench.weighed, found.bench.weighed) == (3, 0)
     assert (other.named, other.rivals) == (found.named, found.rivals)
     assert set(other.trials) == {(n, True) for n in sets}

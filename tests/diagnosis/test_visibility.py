@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis.amplitudes import amplitudes_of, causes_of
 from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
-from tsas_cli.diagnosis.visibility import TINY, LinearisedRuns, Part, amplitudes_of, causes_of
+from tsas_cli.diagnosis.visibility import TINY, LinearisedRuns, Part
 from tsas_cli.effects import EFFECTS
 
 BLOCKS, EACH = 40, 200

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tsas_cli.diagnosis.visibility import Amplitude, Visibility, amplitudes_of, causes_of
+from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility, amplitudes_of, causes_of
 from tsas_cli.effects.effect import Effect, Parameter
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import visibility as v
-from tsas_cli.diagnosis.visibility import Amplitude, Imitation, Part
+from tsas_cli.diagnosis.amplitudes import Amplitude
+from tsas_cli.diagnosis.visibility import Imitation, Part
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown

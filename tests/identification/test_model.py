@@ -9,11 +9,8 @@ import pytest
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fitted_to import FittedTo
-from tsas_cli.identification.model import (
-    CORRECTION,
-    Model,
-    _axial_stiffness,
-    data_sheet,
+from tsas_cli.identification.model import CORRECTION, Model, _axial_stiffness, data_sheet
+from tsas_cli.identification.model_file import (
     model_of,
     read_fitted_to,
     read_model,

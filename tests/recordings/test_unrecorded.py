@@ -1,34 +1,21 @@
 """What cannot be judged without a channel is said once, with the runs that lack it."""
 
-from types import SimpleNamespace
-
-import pytest
-
 from tests.counted import Counted
-from tsas_cli.recordings import unrecorded as module
 from tsas_cli.recordings.unrecorded import unrecorded
 from tsas_cli.stages.calibrate import calibrate
 
 ALL = ("time_s", "x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
-@pytest.fixture
-def said(monkeypatch):
-    def call(*runs):
-        named = dict(zip("abc", runs, strict=False))
-        opened = lambda _, run: SimpleNamespace(names=named[run.id])  # noqa: E731
-        monkeypatch.setattr(module, "open_run", opened)
-        listed = [SimpleNamespace(id=name) for name in named]
-        return list(unrecorded(SimpleNamespace(folder=None, runs=listed)))
-
-    return call
+def said(*runs):
+    return list(unrecorded(runs))
 
 
-def test_nothing_is_missing(said):
+def test_nothing_is_missing():
     assert said(ALL, ALL) == []
 
 
-def test_a_missing_channel_and_one_that_some_runs_lack(said):
+def test_a_missing_channel_and_one_that_some_runs_lack():
     proximal, distal = said(ALL[:3] + ALL[4:], ALL[:3])
     assert proximal.startswith("f_in is not recorded: without it, the level of friction rests on")
     assert distal.startswith("f_out is not recorded in 1 of 2 runs: without it, the tension at")

@@ -8,7 +8,8 @@ from tests.reporting.test_page import Outline, without_script
 from tsas_cli.comparing.compare import compare
 from tsas_cli.comparing.stage import record_of
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, write_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.reporting.comparing.page import comparison_page
 

@@ -15,7 +15,8 @@ from tests.reporting.made_folders import (
     write_predictions,
 )
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, write_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.records.diagnosis import EXTENDED_MODEL
 from tsas_cli.reporting import simulation
 from tsas_cli.reporting.calibration import parameters

@@ -14,7 +14,7 @@ import tsas_cli as tsas
 from tests.counted import Counted
 from tests.test_app import HEAVY
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import read_model
+from tsas_cli.identification.model_file import read_model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.stages.diagnose import DiagnosisResult

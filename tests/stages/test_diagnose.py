@@ -9,7 +9,8 @@ import pytest
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, read_fitted_to, read_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import read_fitted_to, read_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.stages import diagnose as diagnose_stage
 from tsas_studies.challenge.rig.motions import sine

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
+from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun
-from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.stages import plan as plan_stage
 
 HIDDEN = ExperimentPlan(

@@ -33,4 +33,4 @@ def run(controller="disturbance-observer", *, seed=1, rig=None, later=None, chan
     settings = settings_of(**tables)
     wanted, path, known, plant = loop_of(settings)
     plant = Plant(rig or plant.rig, plant.actuator, later, change_s)
-    return run_loop(wanted, path, known, plant, controller, settings, seed)
+    return run_loop(wanted, path, known, plant, controller, settings, seed=seed)

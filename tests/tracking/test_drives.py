@@ -60,7 +60,7 @@ def test_the_motor_leads_by_how_far_the_gear_winds_up_and_that_is_worth_it():
         path = plan(wanted, known, SETTINGS)
         speed = feedforward(path, actuator)
         ways.append(float(np.sum(speed[300:3050]) * SETTINGS.step_s * actuator.gain_mm_per_s_rpm))
-        errors.append(run_loop(wanted, path, known, plant, "pid", SETTINGS, 1).score.rmse_N)
+        errors.append(run_loop(wanted, path, known, plant, "pid", SETTINGS, seed=1).score.rmse_N)
     # In full slip, where the drive feels e^(0.125 π) times the force at the load.
     wound_up = (wanted[3050] - wanted[300]) * math.exp(0.125 * math.pi) / 52.0
     assert ways[1] - ways[0] == pytest.approx(wound_up, rel=0.01)

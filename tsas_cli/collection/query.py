@@ -47,8 +47,6 @@ def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     InputError
         No run has such a channel.
 
-    Examples
-    --------
     >>> to_sql("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
     "started >= TIMESTAMP '2026-01-01' and 'f_out_N' in channels"
     """

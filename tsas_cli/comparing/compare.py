@@ -65,20 +65,12 @@ def compare(
 ) -> Comparison:
     """Hold two models, or what two stages wrote, against each other.
 
-    Parameters
-    ----------
-    a, b
-        Models, their files, or folders that `tsas calibrate`, `diagnose` or `simulate` wrote.
-    on
-        A dataset that both models are simulated on. Without it a folder's model is held to the
-        recordings that the stage has read, and a model file to none.
-    step
-        Called after each simulation.
+    `a` and `b` are models, their files, or folders that `tsas calibrate`, `diagnose` or `simulate`
+    wrote. Without a dataset `on` a folder's model is held to the recordings that the stage has
+    read, and a model file to none.
 
-    Raises
-    ------
-    InputError
-        A or B is none of these, there is nothing that both hold, or a recording cannot be read.
+    InputError: A or B is none of these, there is nothing that both hold, or a recording cannot be
+    read.
     """
     sides = read_side(a), read_side(b)
     _refuse(sides, on)

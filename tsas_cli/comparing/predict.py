@@ -10,7 +10,8 @@ import numpy as np
 from tsas_cli.comparing.predictions import ComparedRun, Predictions
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.identification.fitted_to import FittedTo, departures, fitted_to, not_stated
-from tsas_cli.identification.model import Model, read_fitted_to
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import read_fitted_to
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.identification.repeatability import repeatability
 from tsas_cli.recordings.columns import BY_NAME

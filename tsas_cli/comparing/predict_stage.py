@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from tsas_cli.comparing.predict import Predicted
-from tsas_cli.identification.model import IN_MEMORY, source_of
+from tsas_cli.identification.model_file import IN_MEMORY, source_of
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.records.base import number_text
 from tsas_cli.records.prediction import PredictedChannel, PredictingModel, PredictionFile

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.identification.model import IN_MEMORY, Model, model_of, read_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import IN_MEMORY, model_of, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse, read_toml

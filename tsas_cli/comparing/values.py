@@ -18,8 +18,6 @@ FALSE_CLAIMS = 0.05  # of intervals of 95 % that exclude a difference of zero by
 def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:
     """Return a value and its interval, cut at the second digit of the interval's half width.
 
-    Examples
-    --------
     >>> rounded(0.024987, 0.024969, 0.025005)
     ('0.024987', '0.024969', '0.025005')
     """

@@ -81,14 +81,8 @@ def candidates(
 ) -> list[CandidateRun]:
     """Return the runs that may be proposed.
 
-    Parameters
-    ----------
-    limits
-        The limits of the rig, with amplitude and speed stated.
-    usual
-        The rig with the conditions that a candidate does not vary.
-    repeated
-        A planned run that may be repeated.
+    `limits` are those of the rig, with amplitude and speed stated; `usual` has the conditions that
+    a candidate does not vary, and `repeated` is a planned run that may be repeated.
     """
     A, v = limits.amplitude_mm or 1.0, limits.speed_mm_per_s or 1.0
 

@@ -59,18 +59,9 @@ def worst_split(
 ) -> Split | None:
     """Return the split with the largest gain where an effect is not constant, else None.
 
-    Parameters
-    ----------
-    trial, effect
-        A fit, and one of its effects.
-    folds
-        The folds that are held out; a split by run holds out stretches of the runs.
-    signals
-        The signals at each residual, shape (n,) each.
-    runs
-        The ids of the runs.
-    tolerated
-        The residuals' changes by one standard deviation of each tolerance, shape (n, m).
+    A split by run holds out stretches of the runs, whose ids are `runs`. `signals` are those at
+    each residual, shape (n,) each; `tolerated` is what one standard deviation of each tolerance
+    changes there, shape (n, m).
     """
     columns = [
         j

@@ -5,12 +5,13 @@ from dataclasses import dataclass, field, replace
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
+from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.law import Law, describe
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, estimates_with_tolerances, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import Hypotheses, find_effects
+from tsas_cli.diagnosis.search import find_effects
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
@@ -94,14 +95,7 @@ def diagnose_runs(
 ) -> Diagnosis:
     """Return the effects that a model of these runs lacks; `step` reports progress.
 
-    Parameters
-    ----------
-    manifest
-        The data sheet.
-    stated
-        The data sheet as a model, or another initial model.
-    runs
-        The runs, prepared.
+    `stated` is the data sheet as a model, or another initial model.
     """
     step.ahead(1)
     base = solve_fit(nominal_fit(manifest, stated, runs))

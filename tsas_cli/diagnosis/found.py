@@ -5,9 +5,9 @@ import numpy as np
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.held_out import predicted_folds
+from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.residual_map import residual_map
-from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records

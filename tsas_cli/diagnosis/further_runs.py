@@ -48,19 +48,10 @@ def joined_runs(
 ) -> FurtherRuns:
     """Return present and proposed runs in one fit of the nominal parameters.
 
-    Parameters
-    ----------
-    runs, further
-        The present runs, and those that might be added.
-    initial, fixed
-        The initial values, and those of parameters that are not identifiable.
-    free
-        Parameters of effects that are free in the fit, with their initial values.
+    `free` are the parameters of effects that are free in the fit, with their initial values;
+    `fixed` has the values of parameters that are not identifiable.
 
-    Raises
-    ------
-    InputError
-        None of the present runs reaches full slip.
+    InputError: none of the present runs reaches full slip.
     """
     problem = prepare_fit(initial, fixed, [*runs, *(run for _, run in further)])
     by_id = {run.run.id: candidate for candidate, run in further}

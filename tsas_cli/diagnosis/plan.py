@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import combinations
 
+from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
 from tsas_cli.diagnosis.candidates import CandidateRun, candidates, planned_limits, within
 from tsas_cli.diagnosis.evidence import CRITICAL_VALUE
 from tsas_cli.diagnosis.further_runs import (
@@ -16,7 +17,6 @@ from tsas_cli.diagnosis.further_runs import (
 )
 from tsas_cli.diagnosis.rig_file import RigFile
 from tsas_cli.diagnosis.simulated_runs import simulated_recordings
-from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
@@ -124,16 +124,8 @@ def propose(
 ) -> str:
     """Return as a sentence the further run that distinguishes effects best.
 
-    Parameters
-    ----------
-    bench
-        The present runs.
-    trial
-        A fit of them; its other effects stay free.
-    effects
-        The effects to distinguish: a single one from all others; none means all.
-    step
-        Reports progress for each run that might be added.
+    Other effects of the trial stay free. `effects` are those to distinguish: a single one from all
+    others; none means all.
     """
     step.ahead(1)
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)

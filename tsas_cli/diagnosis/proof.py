@@ -67,24 +67,10 @@ def failures(
 ) -> tuple[str, ...]:
     """Return what an effect fails to prove, in sentences without their subject.
 
-    Parameters
-    ----------
-    effect
-        The id of the effect.
-    estimates
-        Its parameters.
-    refitted_gain
-        Its reduction of the squares on held-out data, by new fits.
-    without, with_it
-        The RMS of each channel on held-out data, without the effect and with it.
-    noise
-        The noise level of each channel.
-    tolerance_N
-        By how much a force sensor of a sound rig may be wrong.
-    stroke_mm
-        The longest way of the drive; infinite where it is not known.
-    correlation
-        That of the parameters, shape (p, p); None where it is not known.
+    `refitted_gain` is its reduction of the squares on held-out data by new fits, `without` and
+    `with_it` are the RMS of each channel there. `tolerance_N` is by how much a force sensor of a
+    sound rig may be wrong, `stroke_mm` the longest way of the drive, infinite where it is not
+    known, and `correlation` that of the parameters, shape (p, p), None where it is not known.
     """
     own = {e.name.partition(".")[2]: e for e in estimates}
     parameters = {p.name: p for p in BY_NAME[effect].parameters}
@@ -135,14 +121,7 @@ def may_be_zero(
     effect, such as its time constant, is held: without a size it has no meaning (Davies 1977). An
     effect without a size cannot be zero.
 
-    Parameters
-    ----------
-    effect
-        The id of the effect.
-    estimates
-        Its parameters.
-    correlation
-        That of the parameters, shape (p, p); None where it is not known.
+    `correlation` is that of the parameters, shape (p, p); None where it is not known.
     """
     from scipy.special import chdtri
 

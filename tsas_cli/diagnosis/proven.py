@@ -10,10 +10,10 @@ from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
+from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, may_be_zero, split_in_words
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
@@ -91,40 +91,38 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     tolerated = tolerances(bench, final)
     estimates, correlation = estimates_with_tolerances(judged, final, tolerated)
     after = remainder(bench, final, judged.folds, at_residuals, tolerated)
-    causes = tuple(
-        _cause(
-            *(judged, name, estimates, correlation),
-            *(held_out, at_residuals.signals, after.structure, tolerated),
-        )
-        for name in judged.rivals
+    last = _LastFit(
+        judged, estimates, correlation, held_out, at_residuals.signals, after.structure, tolerated
     )
+    causes = tuple(_cause(last, name) for name in judged.rivals)
     return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, after)
 
 
-def _cause(
-    judged: Hypotheses,
-    name: str,
-    estimates: Sequence[Estimate],
-    correlation: Floats,
-    held_out: Mapping[frozenset[str], HeldOutFit],
-    signals: dict[str, Floats],
-    structure: float,
-    tolerated: Floats,
-) -> FoundCause:
-    """Return an effect of the final set, with what it does not prove.
+@dataclass(frozen=True, eq=False)
+class _LastFit:
+    """The fit of the final set, by which each of its effects is judged."""
 
-    `correlation` is that of all estimates, shape (p, p), `structure` the squares that the final set
-    leaves and a regression explains, `tolerated` what tolerances change there, shape (n, m).
-    """
+    judged: Hypotheses
+    estimates: Sequence[Estimate]
+    correlation: Floats  # of all estimates, shape (p, p)
+    held_out: Mapping[frozenset[str], HeldOutFit]
+    signals: dict[str, Floats]
+    structure: float  # squares that the set leaves and a regression explains
+    tolerated: Floats  # what tolerances change, shape (n, m)
+
+
+def _cause(last: _LastFit, name: str) -> FoundCause:
+    """Return an effect of the final set, with what it does not prove."""
+    judged, estimates, held_out, signals = last.judged, last.estimates, last.held_out, last.signals
     named = judged.named
     fewer, all_of_them = held_out[named - {name}], held_out[named]
     gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
     at = [k for k, e in enumerate(estimates) if e.name.startswith(f"{name}.")]
     own = tuple(estimates[k] for k in at)
     ids = tuple(run.run.run.id for run in judged.bench.closed)
-    split = worst_split(judged.trial(named), name, judged.folds, signals, ids, tolerated)
+    split = worst_split(judged.trial(named), name, judged.folds, signals, ids, last.tolerated)
     again = gain(fewer.squares, all_of_them.squares)
-    related = correlation[np.ix_(at, at)]
+    related = last.correlation[np.ix_(at, at)]
     noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
     stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
@@ -135,12 +133,12 @@ def _cause(
     )
     law = "" if split is None else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
-    if split is not None and structure > ANOTHER_LAW * excess:
+    if split is not None and last.structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
     negligible = not again.convincing and may_be_zero(name, own, related)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
-    if within_tolerances(judged.trial(named), name, tolerated, reduction):
+    if within_tolerances(judged.trial(named), name, last.tolerated, reduction):
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True

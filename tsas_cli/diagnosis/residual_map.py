@@ -51,16 +51,8 @@ def binned(
 ) -> tuple[Bin, ...]:
     """Return the bins between the edges, or one for each label.
 
-    Parameters
-    ----------
-    signal, error
-        At the same samples, shape (n,) each.
-    edges
-        Edges from `edges_of` for this signal, or for more of its samples.
-    name
-        Of the signal.
-    ids
-        Of the runs, where the signal is the run's number.
+    Signal and error have shape (n,). The edges are from `edges_of` for this signal, or for more of
+    its samples; `ids` are of the runs, where the signal is the run's number.
     """
     if name in LABELS:
         labels = ids if name == RUN else ["letting go", "pulling"]

@@ -40,12 +40,8 @@ def signals_at_residuals(bench: Bench, trial: HypothesisFit) -> AtResiduals:
 def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
     """Return the signals of a run at all samples, shape (n,) each.
 
-    Parameters
-    ----------
-    run
-        The run; with a drive by force the signals derived from x_in are left out.
-    f_in_N
-        The model's tension at the drive, shape (n,).
+    With a drive by force the signals derived from x_in are left out; `f_in_N` is the model's
+    tension at the drive, shape (n,).
     """
     out: dict[str, Floats] = {"f_in_N": f_in_N, "time_s": run.time_s - run.time_s[0]}
     drive = run.conditioned[run.drive_column]

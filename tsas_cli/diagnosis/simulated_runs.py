@@ -28,21 +28,10 @@ def simulated_recordings(
 ) -> list[Recording]:
     """Return simulated recordings of planned runs, one after the other from `started` on.
 
-    Parameters
-    ----------
-    runs, sensors
-        The planned runs, and the sensors.
-    rig_of
-        The rig in a run's conditions.
-    started
-        Start of the first run.
-    seed
-        Of the noise.
+    `rig_of` gives the rig in a run's conditions, `started` is the start of the first run, and the
+    seed is that of the noise.
 
-    Raises
-    ------
-    InputError
-        A run is too long.
+    InputError: a run is too long.
     """
     rng = np.random.default_rng(seed)
     out = []

@@ -171,14 +171,8 @@ def covariance_of_tolerances(
 ) -> Floats:
     """Return the covariance of a trial's scaled values by tolerances, shape (p, p).
 
-    Parameters
-    ----------
-    trial
-        The trial.
-    tolerated
-        The residuals' changes by one standard deviation of each tolerance, shape (n, m).
-    blocks
-        For each run the block of each residual.
+    `tolerated` are the residuals' changes by one standard deviation of each tolerance, shape (n,
+    m); `blocks` has for each run the block of each residual.
     """
     estimate, stderr = _estimated(trial, tolerated, blocks)
     trusted = 1.0 / (1.0 + stderr**2)  # weight against the prior, of standard deviation 1

@@ -95,16 +95,8 @@ def estimates_of(
 ) -> dict[str, Estimate]:
     """Return the fitted numbers and what is derived of them, by name.
 
-    Parameters
-    ----------
-    trial
-        The fit.
-    blocks
-        For each run the block of each residual, counted from 0.
-    sheet
-        What is known beside it.
-    by_run
-        Whether runs stand for the errors of a model that may be wrong.
+    `blocks` has for each run the block of each residual, counted from 0; with `by_run` runs stand
+    for the errors of a model that may be wrong.
     """
     fitted = with_errors(trial.unknowns, trial.solution, blocks, by_run=by_run)
     out = {}

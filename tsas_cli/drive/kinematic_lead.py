@@ -29,15 +29,8 @@ _LIKELY = {  # by the factor on the lead
 def lead_notes(lead: Estimate, sheet: DataSheet, pull_back: Estimate | None = None) -> list[str]:
     """Return a sentence where the fitted lead contradicts the data sheet, else none.
 
-    Parameters
-    ----------
-    lead
-        kV [rpm s/mm], fitted.
-    sheet
-        The data sheet.
-    pull_back
-        k_p [N/mm], fitted; where it is that of the data sheet, the drive's stiffness explains the
-        lead.
+    `lead` is the fitted kV [rpm s/mm]; where `pull_back`, the fitted k_p [N/mm], is that of the
+    data sheet, the drive's stiffness explains the lead.
     """
     K = sheet.kinematic_gain
     if K is None or _explained(pull_back, sheet):

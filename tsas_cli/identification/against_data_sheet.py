@@ -93,15 +93,8 @@ class _Deviation:
 def contradictions(manifest: Manifest, model: Model, named: Collection[str] = ()) -> list[str]:
     """Return sentences on where a fitted model contradicts the data sheet; none where nowhere.
 
-    Parameters
-    ----------
-    manifest
-        The data sheet, and the stated preload of each run.
-    model
-        The fitted model; what it has not estimated is not compared.
-    named
-        Effects that a diagnosis names: a wrong factor or data sheet may be the cause in their
-        place.
+    What the model has not estimated is not compared. A wrong factor or data sheet may be the cause
+    in place of the effects that a diagnosis has `named`.
     """
     found = {d.name: d for d in _deviations(data_sheet(manifest), model)}
     alike = [name for name in named if name in IMITATED]

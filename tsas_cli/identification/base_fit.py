@@ -24,14 +24,8 @@ def base_fit(
 ) -> FitProblem:
     """Return the joint fit of all runs as a problem to solve.
 
-    Parameters
-    ----------
-    stated
-        The model, of the data sheet for example, with values of parameters that are fixed.
-    runs, segments, measured
-        The runs, their phases and the stiffness in each.
-    plausible
-        Narrower bounds of some parameters.
+    `stated` has the values of parameters that are fixed, those of the data sheet for example;
+    `plausible` are narrower bounds of some.
     """
     initial = _read_off(stated, runs, segments, measured)
     return prepare_fit(initial.over(stated), stated.over(initial), runs, plausible=plausible)

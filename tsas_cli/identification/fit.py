@@ -168,15 +168,7 @@ def solve(
     )
     near = NEARLY_BOUND * np.minimum(upper - lower, 1.0)
     at_bound = (found.values - lower < near) | (upper - found.values < near)
-    return Solution(
-        found.values,
-        at_bound,
-        found.residual,
-        found.jacobian,
-        found.converged,
-        found.message,
-        found.evaluations,
-    )
+    return Solution(**vars(found), at_bound=at_bound)
 
 
 def fit(
@@ -188,16 +180,8 @@ def fit(
 ) -> Fitted:
     """Return the minimum of the squares of all runs' residuals, with standard errors.
 
-    Parameters
-    ----------
-    unknowns
-        The unknowns, p of them.
-    blocks
-        For each run the block of each residual, counted from 0 in each run, for the intervals.
-    residuals
-        The residuals of a run at scaled values of all unknowns.
-    tolerance
-        The share of the squares below which a reduction ends the search.
+    `blocks` has for each run the block of each residual, counted from 0 in each run, for the
+    intervals; `tolerance` is the share of the squares below which a reduction ends the search.
     """
     solution = solve(unknowns, len(blocks), residuals, tolerance=tolerance)
     return with_errors(unknowns, solution, blocks)

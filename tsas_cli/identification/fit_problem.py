@@ -58,20 +58,9 @@ def prepare_fit(
 ) -> FitProblem:
     """Return the joint fit of some runs as a problem to solve.
 
-    Parameters
-    ----------
-    initial, fixed
-        The initial values, and those of parameters that are not identifiable.
-    runs
-        The runs; those with too few samples are left out.
-    plausible
-        Narrower bounds of parameters, by name.
-    dynamics
-        The model that is fitted.
-    further
-        Free parameters besides the nominal ones.
-    shared
-        Whether shared parameters are free; else only those of single runs.
+    `fixed` has the values of parameters that are not identifiable, `plausible` narrower bounds by
+    name. Runs with too few samples are left out. Parameters in `further` are free besides the
+    nominal ones; without `shared` only those of single runs are.
     """
     samples = [fitted_samples(run, initial.rig(run.run)) for run in runs]
     used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]

@@ -1,34 +1,23 @@
 """The model: estimates of the nominal rig's parameters and of the effects' parameters."""
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal
-
-import tomlkit
-from pydantic import BaseModel, ConfigDict
+from typing import TYPE_CHECKING
 
 from tsas_cli.effects import EFFECTS, Effects
-from tsas_cli.identification.estimate import Estimate, StoredValue
-from tsas_cli.identification.fitted_to import FittedTo
+from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.recordings.dataset import read_from
-from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
-from tsas_cli.records.calibration import MODEL_FILE
+from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
 
-IN_MEMORY = "in memory"  # in place of a file, for a model passed in Python
 CORRECTION = "preload_correction_N"  # mean of fitted minus stated preload, for other runs
-CORRECTIONS_N = (-1e5, 1e5)
 MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at the two ends
-MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 UNKNOWN_BEND_RAD = 1.0
 UNKNOWN_LENGTH_MM = 1000.0
 
@@ -106,47 +95,6 @@ def check_wrap(friction: float, bend: float, where: str) -> None:
         )
 
 
-def model_of(given: Model | Path) -> Model:
-    """Return a model in memory, or that of a file; both are checked alike.
-
-    InputError: as from `read_model`.
-    """
-    if not isinstance(given, Model):
-        return read_model(given)
-    values = []
-    for e in given.estimates:
-        of = "" if e.run is None else f" of run {e.run}"
-        content = {name: value for name, value in vars(e).items() if name not in ("name", "run")}
-        stored = parse(StoredValue, content, f"the model in memory, {e.name}{of}")
-        values.append((e.name, e.run, stored))
-    return _checked(values, "the model in memory")
-
-
-def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
-    """Return a model, or that of a file, completed by the manifest's data sheet.
-
-    InputError: as from `read_model`.
-    """
-    stated = data_sheet(manifest)
-    return stated if given is None else model_of(given).over(stated)
-
-
-def source_of(
-    given: object | None, out: Path | None, name: str = MODEL_FILE, *, without: str = "data sheet"
-) -> dict[str, str]:
-    """Return the record of a stage's given model in `out`: its file and checksum.
-
-    `name` is that of the file in a folder, `without` the entry where none is given. Anything but a
-    path is a model in memory.
-    """
-    if given is None:
-        return {"file": without}
-    if not isinstance(given, Path):
-        return {"file": IN_MEMORY}
-    path = given / name if given.is_dir() else given
-    return read_from(path, out or Path())
-
-
 def data_sheet(manifest: Manifest) -> Model:
     """Return the model stated by the manifest, before any fit."""
     rig = manifest.rig
@@ -177,133 +125,3 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
     if diameter_mm is None or modulus_GPa is None:
         return None
     return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
-
-
-_Value = tuple[str, str | None, StoredValue]  # with its name and its run
-
-
-class _ModelTables(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    format: Literal[1]
-    kind: Literal["model"] = "model"
-    version: str = ""
-    dataset: dict[str, object] = {}
-    fitted_to: FittedTo | None = None
-    parameters: dict[str, StoredValue] = {}
-    runs: dict[str, dict[str, StoredValue]] = {}
-    bristles: dict[str, StoredValue] = {}
-    effects: dict[str, dict[str, StoredValue]] = {}
-
-
-def write_model(
-    path: Path,
-    model: Model,
-    *,
-    version: str,
-    dataset: Mapping[str, object],
-    fitted_to: FittedTo | None = None,
-) -> None:
-    """Write `model.toml`, with the recordings that the model was fitted to and their ranges."""
-    file = _ModelTables(format=1, version=version, dataset=dict(dataset), fitted_to=fitted_to)
-    for e in model.estimates:
-        entry = StoredValue.model_validate(e, from_attributes=True)
-        group, _, name = e.name.rpartition(".")
-        if group == "bristles":
-            file.bristles[name] = entry
-        elif group:
-            file.effects.setdefault(group, {})[name] = entry
-        elif e.run is None:
-            file.parameters[e.name] = entry
-        else:
-            file.runs.setdefault(e.run, {})[e.name] = entry
-    without = None if file.bristles else {"bristles"}
-    content = file.model_dump(exclude_none=True, exclude=without)
-    path.write_text(tomlkit.dumps(content), encoding="utf-8")
-
-
-def read_model(path: Path) -> Model:
-    """Return the model of a `model.toml` or `model-extended.toml`.
-
-    InputError: the file is missing, not TOML, of another format, or has an unknown or duplicate
-    parameter, one of a single run that all runs share, one for all runs and for a single one, or an
-    implausible value.
-    """
-    file = _read(path)
-    values: list[_Value] = []
-    values += [(name, None, v) for name, v in file.parameters.items()]
-    values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
-    values += [(f"bristles.{name}", None, v) for name, v in file.bristles.items()]
-    values += [
-        (f"{effect}.{name}", None, v)
-        for effect, named in file.effects.items()
-        for name, v in named.items()
-    ]
-    where = path / MODEL_FILE if path.is_dir() else path
-    _check_owners(values, where)
-    return _checked(values, where)
-
-
-def read_fitted_to(path: Path) -> FittedTo | None:
-    """Return the ranges of what a model was fitted to, None where its file does not say them.
-
-    InputError: as from `read_model`, but for the values.
-    """
-    return _read(path).fitted_to
-
-
-def _read(path: Path) -> _ModelTables:
-    path = path / MODEL_FILE if path.is_dir() else path
-    return parse(_ModelTables, read_toml(path), path)
-
-
-def _check_owners(values: Sequence[_Value], where: object) -> None:
-    """Refuse a parameter with a value for all runs and one for a run; a sweep may set it so."""
-    for_all = {name for name, run, _ in values if run is None}
-    for name, run, _ in values:
-        if run is not None and name in for_all:
-            raise InputError(
-                f"{name} is given for all runs and for run {run}",
-                where=where,
-                expected="one of both",
-                remedy="delete the value that does not hold",
-            )
-
-
-def _checked(values: Sequence[_Value], where: object) -> Model:
-    """Return the model of these values, each with its name and its run, if they can be."""
-    units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
-    seen: set[tuple[str, str | None]] = set()
-    for name, run, value in values:
-        if name not in units:
-            known = [other for other in units if ("." in other) == ("." in name)]
-            raise InputError(f"unknown parameter {name}", where=where, remedy=nearest(name, known))
-        if run is not None and ("." in name or name == CORRECTION):
-            raise InputError(
-                f"{name} belongs to run {run}",
-                where=where,
-                expected=f"one {name} for all runs",
-                remedy="simulate the runs with a model each",
-            )
-        if (name, run) in seen:
-            raise InputError(f"duplicate parameter {name}", where=where)
-        seen.add((name, run))
-        _check_value(name, value, units[name], where)
-    return Model(
-        tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
-    )
-
-
-def _check_value(name: str, value: StoredValue, unit: str, path: object) -> None:
-    if value.unit != unit:
-        raise InputError(f"{name} is in {value.unit!r}", where=path, expected=f"the unit {unit!r}")
-    known = QUANTITIES.get(name)
-    low, high = (known.lower, known.upper) if known else CORRECTIONS_N
-    zero = value.value == 0.0 and name in MAY_BE_ZERO
-    if not (low <= value.value <= high or zero):
-        shown = "" if unit == "1" else f" {unit}"
-        raise InputError(
-            f"{name} is {value.value:g}{shown}",
-            where=path,
-            expected=f"{'0, or ' if name in MAY_BE_ZERO else ''}{low:g} to {high:g}{shown}",
-        )

@@ -45,13 +45,8 @@ def repeatability(
 ) -> list[dict[str, float | None]]:
     """Return the repeatability of each run's channels, in their units; None where nothing repeats.
 
-    Parameters
-    ----------
-    runs
-        The runs; strokes within one are compared, and where none repeats there, those of runs of
-        the same conditions too.
-    ranges
-        The conditions and signals of each run.
+    Strokes within a run are compared, and where none repeats there, those of runs of the same
+    conditions and signals, by their `ranges`, too.
     """
     strokes = [_strokes(run) for run in runs]
     out = []

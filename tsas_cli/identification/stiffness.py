@@ -28,12 +28,8 @@ class Slope:
 def slopes(x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> list[Slope]:
     """Return the slope of each phase, fitted with an intercept for each occurrence.
 
-    Parameters
-    ----------
-    x_in, f_in
-        Conditioned displacement [mm] and tension [N] at the drive, shape (n,); NaN where unknown.
-    segments
-        The phases of the run.
+    `x_in` and `f_in` are conditioned displacement [mm] and tension [N] at the drive, shape (n,);
+    NaN where unknown.
     """
     found = (_slope(phase, x_in, f_in, segments) for phase in PHASES)
     return [slope for slope in found if slope is not None]

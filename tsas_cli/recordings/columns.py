@@ -52,8 +52,6 @@ def largest(name: str) -> float:
 def nominal_name(name: str) -> str:
     """Return the name of the column with the nominal model's prediction, beside the extended one's.
 
-    Examples
-    --------
     >>> nominal_name("x_in_mm")
     'x_in_nominal_mm'
     """
@@ -63,8 +61,6 @@ def nominal_name(name: str) -> str:
 def name_by(name: str, model: str) -> str:
     """Return the name of the column with the prediction of a column by a model.
 
-    Examples
-    --------
     >>> name_by("f_in_N", "A")
     'f_in_A_N'
     """

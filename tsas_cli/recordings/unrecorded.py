@@ -1,9 +1,6 @@
 """What a dataset cannot show, since a channel is in none or in some of its runs only."""
 
-from collections.abc import Iterator
-
-from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.run_files import open_run
+from collections.abc import Container, Iterator, Sequence
 
 _SHOWN_BY = {
     "x_in_mm": "the stiffness of the tendon, motion lost at the drive and errors of the proximal "
@@ -16,12 +13,11 @@ _SHOWN_BY = {
 }
 
 
-def unrecorded(dataset: Dataset) -> Iterator[str]:
+def unrecorded(columns: Sequence[Container[str]]) -> Iterator[str]:
     """Yield a sentence for each missing displacement or tension: what cannot be judged without it.
 
-    InputError: the file of a run is missing or damaged.
+    `columns` holds the names of those that each run has.
     """
-    columns = [set(open_run(dataset.folder, run).names) for run in dataset.runs]
     for name, cannot in _SHOWN_BY.items():
         without = sum(name not in names for names in columns)
         if without:

@@ -12,8 +12,6 @@ from tsas_cli.records.tracking import Spread
 def shared_name(a: str | None, b: str | None) -> str:
     """Return a run's id; both where the same recording has two.
 
-    Examples
-    --------
     >>> shared_name("a", "a"), shared_name("a", "first"), shared_name(None, "b")
     ('a', 'a = first', 'b')
     """

@@ -6,8 +6,6 @@ from tsas_cli.recordings.columns import BY_NAME
 def in_words(name: str) -> str:
     """Return what a canonical column means, in a few words.
 
-    Examples
-    --------
     >>> in_words("f_in_N")
     'tension at the drive'
     """
@@ -22,8 +20,6 @@ def called(name: str) -> str:
 def at_axis(name: str) -> str:
     """Return the words with the unit in brackets.
 
-    Examples
-    --------
     >>> at_axis("f_in_N")
     'tension at the drive [N]'
     """

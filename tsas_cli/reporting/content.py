@@ -120,8 +120,6 @@ class Section:
 def anchor(*words: str) -> str:
     """Return words as one name that can be an id and an address, whatever letters they hold.
 
-    Examples
-    --------
     >>> anchor("diagnosis", "free_tendon"), anchor("map", "a b")
     ('diagnosis-free_tendon', 'map-a.20b')
     """

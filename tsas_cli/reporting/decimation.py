@@ -15,12 +15,8 @@ def kept_samples(*series: Floats, points: int = POINTS) -> Indices:
     The first and the last sample are always kept, the last bin may be shorter than the others,
     and a bin without any number keeps one sample, so that a gap stays a gap.
 
-    Parameters
-    ----------
-    series
-        One or more channels over the same samples, shape (n,) each, NaN for gaps.
-    points
-        About how many samples to keep.
+    `series` are channels over the same samples, shape (n,) each, NaN for gaps; about `points`
+    samples are kept.
     """
     n = series[0].size
     if n <= points:
@@ -41,8 +37,6 @@ def kept_samples(*series: Floats, points: int = POINTS) -> Indices:
 def shared_points(curves: int, total: int) -> int:
     """Return about how many points each of so many curves may have, so that a page stays small.
 
-    Examples
-    --------
     >>> shared_points(3, 30_000), shared_points(30, 30_000), shared_points(3000, 30_000)
     (2400, 1000, 200)
     """
@@ -54,12 +48,8 @@ def kept_cells(x: Floats, y: Floats, *, cells: int = CELLS) -> Indices:
 
     A curve that hurries here and waits there keeps its shape everywhere, to within a cell.
 
-    Parameters
-    ----------
-    x, y
-        The curve, shape (n,), without gaps.
-    cells
-        How many there are along each axis of the curve's own range.
+    `x` and `y` have shape (n,), without gaps; `cells` is how many there are along each axis of the
+    curve's own range.
     """
     places = [_cells(values, cells) for values in (x, y)]
     enters = (np.diff(places[0]) != 0) | (np.diff(places[1]) != 0)

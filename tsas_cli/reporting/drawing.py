@@ -108,8 +108,6 @@ def _scales(axes: Any) -> dict[str, str]:
 def shortened(text: str, most: int) -> str:
     """Return a text with its middle left out where it has more letters.
 
-    Examples
-    --------
     >>> shortened("a-long-name-of-a-run", 11)
     'a-lon…a-run'
     """

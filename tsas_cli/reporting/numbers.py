@@ -18,8 +18,6 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def plain(value: float | None, digits: int = 4) -> str:
     """Return a number with so many significant digits; an en dash where there is none.
 
-    Examples
-    --------
     >>> plain(67858.4), plain(0.125), plain(None)
     ('67860', '0.1250', '–')
     """
@@ -31,8 +29,6 @@ def plain(value: float | None, digits: int = 4) -> str:
 def as_printed(value: float | None) -> str:
     """Return a number with the digits it has, five at most; an en dash where there is none.
 
-    Examples
-    --------
     >>> as_printed(101.96), as_printed(25.0), as_printed(-8644.38)
     ('101.96', '25', '−8644.4')
     """
@@ -45,8 +41,6 @@ def as_printed(value: float | None) -> str:
 def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
     """Return a value and its interval, both cut at the second digit of the interval's half width.
 
-    Examples
-    --------
     >>> with_interval(2.33812, 2.3262, 2.3501)
     ('2.338', '2.326 to 2.350')
     """
@@ -62,8 +56,6 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
 def with_spread(value: float | None, spread: float | None) -> str:
     """Return a value and its standard deviation: four digits, or up to the spread's first.
 
-    Examples
-    --------
     >>> with_spread(0.867303, 0.000108), with_spread(0.867303, 0.12), with_spread(0.0, 0.0)
     ('0.8673 ± 0.0001', '0.9 ± 0.1', '0')
     """
@@ -78,8 +70,6 @@ def with_spread(value: float | None, spread: float | None) -> str:
 def spanned(values: Floats) -> str:
     """Return the lowest and the highest of some numbers, gaps left out.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> spanned(np.array([2.0, np.nan, -0.5]))
     '−0.500 to 2.00'
@@ -93,8 +83,6 @@ def spanned(values: Floats) -> str:
 def ranged(values: Sequence[float]) -> str:
     """Return the lowest and the highest of some numbers, or the one that both are.
 
-    Examples
-    --------
     >>> ranged([1.234, 0.5]), ranged([0.5])
     ('0.50 to 1.2', '0.50')
     """
@@ -105,8 +93,6 @@ def ranged(values: Sequence[float]) -> str:
 def fixed(value: float | None, decimals: int) -> str:
     """Return a number with so many decimals; an en dash where there is none.
 
-    Examples
-    --------
     >>> fixed(48.24, 1), fixed(-0.01, 1), fixed(None, 1)
     ('48.2', '0.0', '–')
     """

@@ -137,18 +137,8 @@ def draw_predictions(
 ) -> None:
     """Draw the loop of one run, and under it what each model leaves.
 
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    x, measured, models
-        Displacement [mm], and the channel in its unit as measured and by each model, shape (n,).
-    noise
-        Noise level of the channel in its unit, None where it is unknown.
-    labels
-        The names of the axes with units: of x, the channel and its residual.
-    points
-        About how many points to draw of each curve.
+    `x` [mm], `measured` and those of the models have shape (n,); `labels` are the names of the axes
+    with units: of x, the channel and its residual.
     """
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     kept = kept_samples(x, measured, points=points)

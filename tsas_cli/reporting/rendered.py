@@ -24,16 +24,9 @@ def rendered(
 ) -> str:
     """Return a page as HTML.
 
-    Parameters
-    ----------
-    name, about
-        The heading, and what the page is about, which follows it in the window's title.
-    summary
-        The first paragraph; what stands between backticks becomes code.
-    sections
-        What follows, in order; each is in the contents, and so are its parts.
-    glance
-        The answer and its numbers, above the first paragraph.
+    `about` follows the name in the window's title; what stands between backticks in the summary
+    becomes code. Each of the sections is in the contents, and so are its parts; `glance` stands
+    above all.
     """
     environment = Environment(
         loader=PackageLoader("tsas_cli.reporting"),

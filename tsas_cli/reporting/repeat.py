@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
 
-from tsas_cli.identification.model import IN_MEMORY
+from tsas_cli.identification.model_file import IN_MEMORY
 from tsas_cli.records.base import ModelFile, OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile

@@ -182,14 +182,7 @@ def _picture(it: ShownChannel, number: int, points: int) -> Picture:
 def draw_comparison(figure: Any, *, it: ShownChannel, points: int) -> None:
     """Draw one channel of one run over time, and under it the residual of each model.
 
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    it
-        The channel, measured and simulated.
-    points
-        About how many points to draw of each curve.
+    `points` is about how many are drawn of each curve.
     """
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     style = {"color": STAND_IN["measured"], "linewidth": 2.6, "label": "measured"}

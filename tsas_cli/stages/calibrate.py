@@ -7,13 +7,8 @@ from typing import Literal
 from tsas_cli.identification.calibration import Calibration, calibrate_runs
 from tsas_cli.identification.fitted_to import fitted_to
 from tsas_cli.identification.long_runs import open_long
-from tsas_cli.identification.model import (
-    Model,
-    data_sheet,
-    source_of,
-    stated_model,
-    write_model,
-)
+from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.identification.model_file import source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
@@ -110,14 +105,14 @@ def calibrate(
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
         accepted = accepted_errors(data, despite, step)
-        for sentence in unrecorded(data):
-            step.say(sentence)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
         prepared = []
         for run in counted.dataset.runs:
             prepared.append(_prepared(data, run, counted.copied_of(run.id)))
             step()
+        for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
+            step.say(sentence)
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
         record = records.CalibrationFile(
             **counted.dataset.header(path),

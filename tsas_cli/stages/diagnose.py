@@ -12,7 +12,8 @@ from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.fitted_to import FittedTo, fitted_to
-from tsas_cli.identification.model import Model, source_of, stated_model, write_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
@@ -126,8 +127,6 @@ def diagnose(
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
         accepted = accepted_errors(data, despite, step)
-        for sentence in unrecorded(data):
-            step.say(sentence)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = []
@@ -135,6 +134,8 @@ def diagnose(
             copied = counted.copied_of(recording.run.id)
             prepared.append(prepare(recording, data.manifest.session_start, copied))
             step()
+        for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
+            step.say(sentence)
         result = diagnose_runs(data.manifest, stated, prepared, step)
         record = records.DiagnosisFile(
             **counted.dataset.header(path),

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tsas_cli.diagnosis.amplitudes import Visibility
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
-from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from tsas_cli.drive.file import IdentifiedDrive
 from tsas_cli.drive.file import read_drive as read_drive_file
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.model import read_model as read_model_file
+from tsas_cli.identification.model_file import read_model as read_model_file
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.stages.given import Named, dataset_of, file_of
 

@@ -11,7 +11,8 @@ from pydantic import TypeAdapter
 
 import tsas_cli as tsas
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, data_sheet, model_of
+from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.identification.model_file import model_of
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE

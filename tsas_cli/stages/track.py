@@ -13,7 +13,8 @@ import pyarrow as pa
 
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.drive.file import IdentifiedDrive
-from tsas_cli.identification.model import Model, model_of, source_of
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import model_of, source_of
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_dataset
@@ -188,7 +189,7 @@ def track(
             for name in names:
                 runs = []
                 for seed in numbers:
-                    runs.append(follow(acted_on, name, read, seed))
+                    runs.append(follow(acted_on, name, read, seed=seed))
                     step()
                 run_id = f"{name}-{condition.name}"
                 table = table_of(runs[0], drive_path, acted_on.rig, name, numbers[0], read)

@@ -46,8 +46,6 @@ def printable(text: str) -> str:
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return a hint with the nearest known name, or a list of the known names.
 
-    Examples
-    --------
     >>> nearest("preload_n", ["preload_N", "load"])
     'did you mean preload_N?'
     """

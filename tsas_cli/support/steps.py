@@ -8,8 +8,6 @@ class Steps:
     step. The total may grow: the number of hypotheses to fit depends on the fits before. A subclass
     displays the progress, for example as a bar.
 
-    Examples
-    --------
     >>> class Counted(Steps):
     ...     total = done = 0
     ...     def ahead(self, pieces):

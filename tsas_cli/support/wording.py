@@ -11,8 +11,6 @@ def count_of(number: int, noun: str) -> str:
 def listed(words: Sequence[str], last: str = " and ") -> str:
     """Return words as a person lists them.
 
-    Examples
-    --------
     >>> listed(["time", "speed", "run"])
     'time, speed and run'
     """

@@ -100,8 +100,8 @@ def run_loop(
     plant: Plant,
     controller: str,
     settings: Settings,
-    seed: int,
     *,
+    seed: int,
     dynamics: TendonDynamics = "slip",
     relay: bool = False,
 ) -> Tracked:

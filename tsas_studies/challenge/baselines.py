@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
-from tsas_cli.diagnosis.search import MOST_EFFECTS, Names, Search
+from tsas_cli.diagnosis.hypotheses import Names
+from tsas_cli.diagnosis.search import MOST_EFFECTS, Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.extension import HypothesisFit, bench_of
 from tsas_cli.identification.fit import UNDETERMINED

@@ -12,7 +12,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.identification.model import read_model
+from tsas_cli.identification.model_file import read_model
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
@@ -64,7 +64,9 @@ def close(
     for model, known in zip(MODELS, models, strict=True):
         path = plan(wanted, known, settings)
         for name in CONTROLLERS:
-            runs = [run_loop(wanted, path, known, plant, name, settings, seed) for seed in seeds]
+            runs = [
+                run_loop(wanted, path, known, plant, name, settings, seed=seed) for seed in seeds
+            ]
             scores[name][model] = over_seeds([one.score for one in runs])
         step()
     return ClosedCase(
@@ -138,7 +140,7 @@ def record(plant: Plant, known: Known, settings: Settings, folder: Path) -> None
         )
         wanted = reference(shape, form, settings.step_s)
         path = plan(wanted, known, settings)
-        run = run_loop(wanted, path, known, plant, RECORDER, settings, seed)
+        run = run_loop(wanted, path, known, plant, RECORDER, settings, seed=seed)
         whole = table_of(run, path, plant.rig, RECORDER, seed, settings)
         tables[name] = whole.take(pa.array(range(0, whole.num_rows, RECORDED_EVERY)))
     folder.mkdir(parents=True)

@@ -107,7 +107,7 @@ def _followed(
     wanted, path = planned(shape)
 
     def run(seed: int) -> Tracked:
-        return run_loop(wanted, path, known, plant, controller, settings, seed, relay=True)
+        return run_loop(wanted, path, known, plant, controller, settings, seed=seed, relay=True)
 
     first = run(SEEDS[0])
     others = each(lambda seed: run(seed).score, SEEDS[1:])

@@ -4,7 +4,8 @@ from collections.abc import Iterable
 
 from tests.fuzz.documents import toml_document as mutate
 from tests.fuzz.rules import Broken, Scratch, answer
-from tsas_cli.identification.model import CORRECTION, Model, read_model, write_model
+from tsas_cli.identification.model import CORRECTION, Model
+from tsas_cli.identification.model_file import read_model, write_model
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.manifest import Run
 

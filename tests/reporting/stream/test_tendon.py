@@ -18,7 +18,8 @@ from tests.reporting.made_folders import (
 )
 from tests.reporting.stream.streams import read
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, write_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from tests.commands.documented import documented
-from tsas_cli.identification.model import CORRECTION, read_model
+from tsas_cli.identification.model import CORRECTION
+from tsas_cli.identification.model_file import read_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_studies.commands.close_loop import _of_each_case
 

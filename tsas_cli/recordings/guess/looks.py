@@ -56,10 +56,7 @@ def correlation(a: Floats, b: Floats) -> float:
 def leads(a: Floats, b: Floats) -> int:
     """Return 1 if `a` is nearer to the drive than `b`, −1 if farther, 0 if it is undecided.
 
-    Parameters
-    ----------
-    a, b
-        Two channels of one run, shape (n,), of any unit and sign.
+    Both are channels of one run, shape (n,), of any unit and sign.
     """
     over = lag(a, b), lag(b, a)
     if over[0] is None or over[1] is None or over[0] * over[1] >= 0.0:

@@ -27,17 +27,10 @@ class UnknownTypeError(Exception):
 def decoder(kind: str, definition: str, *, ros1: bool) -> Decode:
     """Return the function that decodes messages of a type.
 
-    Parameters
-    ----------
-    kind
-        The type, `sensor_msgs/msg/JointState`.
-    definition
-        Its text in the language of `.msg` files with all that it refers to; may be empty.
+    `kind` is such as `sensor_msgs/msg/JointState`, `definition` its text in the language of `.msg`
+    files with all that it refers to; may be empty.
 
-    Raises
-    ------
-    UnknownTypeError
-        The type is not defined.
+    UnknownTypeError: the type is not defined.
     """
     typesys = optional("rosbags.typesys", extra="robots")
     if not _NAME.fullmatch(kind):  # it becomes part of a program

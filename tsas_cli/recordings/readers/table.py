@@ -85,17 +85,9 @@ def resolve(
 ) -> dict[ColumnSource, int]:
     """Return the index of each requested column among a file's columns.
 
-    Parameters
-    ----------
-    wanted
-        Names or numbers (from 1).
-    names
-        The file's columns in order; empty text for a column without a name.
+    `wanted` are names, or numbers from 1; a column without a name is empty text in `names`.
 
-    Raises
-    ------
-    InputError
-        A column is missing, its name is not unique, or there are too many columns.
+    InputError: a column is missing, its name is not unique, or there are too many columns.
     """
     limits.columns(names, path)
     return {source: _index(source, names, path) for source in wanted}

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, read_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import read_model
 from tsas_cli.records.base import ParameterValue
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile

@@ -123,12 +123,7 @@ def _limit(rows: dict[str, Row]) -> str:
 def draw_dots(figure: Any, *, controllers: Mapping[str, Mapping[str, Row]]) -> None:
     """Draw the panels below each other, over one logarithmic axis.
 
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    controllers
-        By controller and case, the RMSE with each model.
+    `controllers` has the RMSE with each model by controller and case.
     """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 

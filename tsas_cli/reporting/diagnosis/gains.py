@@ -91,14 +91,7 @@ def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
 def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> None:
     """Draw the channels below each other, each with an axis of its own from zero.
 
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    channels
-        By name, the error and its bounds in the channel's unit.
-    named
-        Whether a cause is named, so that there is an error after to show.
+    With `named` a cause is named, so that there is an error after to show.
     """
     rows = figure.subplots(len(channels), 1, squeeze=False)[:, 0]
     for axes, (name, channel) in zip(rows, channels.items(), strict=True):

@@ -105,16 +105,8 @@ def draw_similarity(
 ) -> None:
     """Draw a square for each two effects, its side the similarity.
 
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    effects
-        Their names, shape (n,), the first on top.
-    similarity
-        From 0 to 1, shape (n, n); only what is below the diagonal is read.
-    alike
-        From which similarity on the square is in the loud colour.
+    Of `similarity`, from 0 to 1, shape (n, n), only what is below the diagonal is read; from
+    `alike` on a square is in the loud colour.
     """
     axes = figure.add_subplot()
     n = len(effects)

@@ -24,8 +24,6 @@ def title_of(name: str) -> str:
 def within(title: str) -> str:
     """Return a title as it stands within a sentence.
 
-    Examples
-    --------
     >>> within("Compliance of the drive")
     'compliance of the drive'
     """

@@ -93,18 +93,8 @@ def draw_loop(
 ) -> None:
     """Draw the loop of one run.
 
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    x, y
-        Displacement [mm] and tension [N], shape (n,), NaN for gaps.
-    phase
-        The key of the phase at each sample, shape (n,).
-    labels
-        The names of the two axes, with units.
-    points
-        About how many points to draw.
+    `x` [mm] and `y` [N] have shape (n,), NaN for gaps, and so has the key of the phase; `labels`
+    are the names of the two axes, with units.
     """
     axes = figure.add_subplot()
     y = np.where(np.isfinite(x), y, np.nan)

@@ -10,7 +10,8 @@ from tempfile import TemporaryDirectory
 
 import pyarrow as pa
 
-from tsas_cli.identification.model import Model, write_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_dataset, write_result

@@ -14,7 +14,8 @@ import numpy.typing as npt
 import rerun as rr
 import rerun.blueprint as rrb
 
-from tsas_cli.identification.model import Model, read_model
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import read_model
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.response import Dynamics, simulate
@@ -135,7 +136,7 @@ def record_tendons(
         name = rr.Points3D([line[0]], labels=[text], colors=colour, radii=0.0, show_labels=True)
         recorder.static((*mine, "name"), name)
         shades = _shades(0.5 * (tension[:, 1:] + tension[:, :-1]), low, high)
-        _record_line(recorder, (*mine, "tendon"), times, line, frames, shades, size)
+        _record_line(recorder, (*mine, "tendon"), times, line, frames, shades=shades, size=size)
         _record_front(recorder, (*mine, "front"), times, raised, frames)
 
 
@@ -145,6 +146,7 @@ def _record_line(
     times: Times,
     line: Floats,
     frames: Frames,
+    *,
     shades: npt.NDArray[np.uint32],
     size: float,
 ) -> None:
