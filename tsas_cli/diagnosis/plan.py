@@ -135,6 +135,7 @@ def propose(
     step
         Reports progress for each run that might be added.
     """
+    step.doing("looks for the next experiment")
     step.ahead(1)
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
     rivals = chosen if len(chosen) > 1 else EFFECTS

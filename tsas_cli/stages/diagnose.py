@@ -129,6 +129,7 @@ def diagnose(
         for sentence in unrecorded(data):
             step.say(sentence)
         counted = without_duplicates(data)
+        step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = []
         for recording in counted.dataset:
@@ -213,7 +214,8 @@ def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
     units = [c.unit for c in record.channels.values()]
     header = ("channel", "before", "after", "noise", "attainable", "unit")
     rows = [(*row, unit) for row, unit in zip(errors, units, strict=True)]
-    yield "error on held-out data", header, rows
+    if rows:
+        yield "error on held-out data", header, rows
     ranking = [
         (
             " + ".join(row.effects),
@@ -223,7 +225,8 @@ def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
         )
         for row in record.candidates[:SHOWN]
     ]
-    yield "hypotheses", ("effects", "gain [%]", "test statistic", ""), ranking
+    if ranking:
+        yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
 
 
 def _parameter_rows(causes: Iterable[records.NamedCause]) -> Iterator[tuple[str, ...]]:
