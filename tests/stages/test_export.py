@@ -46,6 +46,12 @@ def test_json_and_csv_are_the_estimates(tmp_path):
     ]
 
 
+def test_a_spreadsheet_computes_no_name(tmp_path):
+    one = Model((Estimate("preload_N", 25.0, "N", "fitted", "=1+1"),))
+    tsas.export(one, to="csv", out=tmp_path / "m.csv")
+    assert "preload_N,'=1+1,25.0,N" in (tmp_path / "m.csv").read_text()
+
+
 def moved(path):
     """Return x_in [m], f_in [N] and x_out [mm] of strokes in MuJoCo, after the first one."""
     simulated = mujoco.MjModel.from_xml_path(str(path))

@@ -140,7 +140,7 @@ def _json(model: Model) -> str:
 
 
 def _csv(model: Model) -> str:
-    rows = [asdict(estimate) for estimate in model.estimates]
+    rows = [asdict(e) | {"run": _no_formula(e.run)} for e in model.estimates]
     first = ("name", "run", "value", "unit")
     header = [*first, *(key for key in rows[0] if key not in first)] if rows else first
     text = io.StringIO()
@@ -148,6 +148,11 @@ def _csv(model: Model) -> str:
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue()
+
+
+def _no_formula(run: str | None) -> str | None:
+    """Return a run's id so that no spreadsheet computes it."""
+    return f"'{run}" if run and run[0] in "=+-@" else run
 
 
 def _mujoco(
