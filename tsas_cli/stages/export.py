@@ -87,9 +87,12 @@ def export(
         `json`, `csv`, or `mujoco`.
     out
         The file to write.
-    sheath_length_mm, total_bend_rad, preload_N
-        The sheath and the preload of a MuJoCo model; default: those of the recordings that the
-        model was fitted to.
+    sheath_length_mm
+        The sheath of a MuJoCo model; without it that of the recordings it was fitted to.
+    total_bend_rad
+        Its bend, likewise.
+    preload_N
+        The tension at rest, likewise.
     force
         Replace the file if it is there.
 
