@@ -1,4 +1,6 @@
-"""Write the recordings of docs/tutorial.md: `.venv/bin/python -m docs.bench_recordings FOLDER`.
+"""Write the recordings of docs/tutorial.md: `python -m docs.bench_recordings FOLDER`.
+
+With a name that ends in .csv, the first of them under that name.
 
 They are the four shipped runs of datasets/paper-groups as another laboratory would have recorded
 them: as text, with other names and units.
@@ -44,4 +46,5 @@ def write(folder: Path, runs: dict[str, str] = RUNS) -> None:
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    out = Path(sys.argv[1])
+    write(out.parent, {"a": out.stem}) if out.suffix == ".csv" else write(out)

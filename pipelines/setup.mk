@@ -34,6 +34,8 @@ $(LOCKED):
 
 $(INSTALLED): $(LOCKED)
 	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@echo 'compiling the numerical kernels (half a minute)'
+	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && $(TSAS) calibrate datasets/paper-groups --out "$$folder/out" --quiet
 	@rm -f .venv/installed-* && touch $@
 
 $(PROGRAM): $(INSTALLED)

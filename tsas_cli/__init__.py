@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from tsas_cli.stages.check import check
     from tsas_cli.stages.compare import compare
     from tsas_cli.stages.diagnose import diagnose
+    from tsas_cli.stages.export import export
     from tsas_cli.stages.guess import guess
     from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
     from tsas_cli.stages.ingest import ingest
@@ -44,6 +45,7 @@ __all__ = [
     "compare",
     "diagnose",
     "explain",
+    "export",
     "guess",
     "identify_harmonic_drive",
     "ingest",

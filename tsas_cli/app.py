@@ -17,6 +17,7 @@ from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.doctor import doctor
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
+from tsas_cli.commands.export import export
 from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.init import init
@@ -78,7 +79,7 @@ PANELS: dict[str, tuple[Callable[..., None], ...]] = {
         report,
     ),
     "Understanding a recording or a model": (view, compare, plan, effects, explain, verify),
-    "Many datasets": (runs, sweep, upload),
+    "Many datasets and other programs": (runs, sweep, upload, export),
     "Setup": (init, doctor),
     STUDIES: (),
 }

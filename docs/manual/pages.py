@@ -34,6 +34,7 @@ HOW_TO = (
     _docs("Many runs: sweeps", "sweep"),
     _docs("Find runs among many datasets", "catalogue"),
     _docs("Datasets on object storage", "object-storage"),
+    _docs("A model for other programs", "export"),
 )
 PYTHON = _docs("From Python", "python")
 FORMATS = _docs("File formats", "formats")

@@ -31,6 +31,7 @@ CALLS = {
     "compare": ["home/model", "home/other/model.toml", "--on", "home/tracked"],
     "predict": ["home/model", "home/other/model.toml", "home/tracked"],
     "plan": ["home/tracked"],
+    "export": ["home/model/model.toml", "--to", "json"],
     "track": [
         *("--model", "home/model/model.toml", "--plant", "home/other/model.toml"),
         *("--drive", "home/drive/drive.toml", "--settings", "home/settings/rig.toml"),
@@ -61,6 +62,7 @@ NO_FILES = {
 NO_FILES |= {"fit_own", "nodes", "controller", "compare", "disturb", "as_printed", "seeds", "seed"}
 NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
 NO_FILES |= {"tool", "what", "conditions"}
+NO_FILES |= {"to", "sheath_length_mm", "total_bend_rad", "preload_n"}
 FILES = {"sources", "map_path", "dataset", "model", "a", "b", "on", "path", "plant", "drive"}
 FILES |= {"given", "settings", "reference", "datasets", "options", "folders", "sealed", "entries"}
 WRITE_NO_FILE = {"verify", "view", "runs", "doctor", "effects", "explain"}

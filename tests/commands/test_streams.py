@@ -15,7 +15,9 @@ import tsas_cli.app
 import tsas_studies
 from tests.test_app import CALLS
 from tsas_cli.records.result import Result
+from tsas_cli.support.stopping import EXIT_CODE
 
+GROUPS = Path(tsas_cli.__file__).parents[1] / "datasets" / "paper-groups"
 SUMMARY = {"format": 1, "stage": "any", "value": 1.5}
 VERBS = {  # of commands whose function has another name
     "effects": "tsas_cli.catalogue",
@@ -116,7 +118,7 @@ def test_tables_and_sentences_are_the_result(called, name):
     assert output.err == ""
 
 
-def on_terminal(call, **environment):
+def on_terminal(call, code=0, **environment):
     """Run a program whose standard error is a terminal; return what is said there and printed."""
     master, slave = pty.openpty()
     environment = os.environ | {"TERM": "xterm-256color", "COLUMNS": "120"} | environment
@@ -127,7 +129,7 @@ def on_terminal(call, **environment):
     while chunk := _read(master):
         output += chunk
     printed = process.stdout.read()
-    assert process.wait() == 0
+    assert process.wait() == code
     process.stdout.close()
     os.close(master)
     return output.decode(), printed.decode()
@@ -157,6 +159,60 @@ def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
 
 def test_quiet_draws_no_bar():
     assert bar(quiet=True) == ("", "the result\n")
+
+
+ENDED = """
+import signal, sys
+import tsas_cli.diagnosis.search as search
+from tsas_cli.app import run
+fit = search.Search._fit
+def stopped(self, *rest):
+    fit(self, *rest)
+    for _ in range({times}):
+        signal.raise_signal(signal.SIGINT)
+search.Search._fit = stopped
+sys.argv = ["tsas", "diagnose", {dataset!r}, "--out", {out!r}, "--runs", "a,b"]
+run()
+"""
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_the_first_stop_ends_a_search_and_the_second_stops_it(times, tmp_path, monkeypatch):
+    monkeypatch.delenv("MAKELEVEL", raising=False)
+    out = tmp_path / "out"
+    program = ENDED.format(times=times, dataset=str(GROUPS), out=str(out))
+    said, printed = on_terminal([sys.executable, "-c", program], code=EXIT_CODE)
+    assert "Ctrl-C again stops at once" in said
+    assert "leads so far" in said
+    if times == 2:
+        assert not out.exists()
+        return
+    found = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["verdict"] == "undecided"
+    assert (
+        "ended after 2 fits" in found["reason"]
+    )  # a signal comes after a step, and counts at the next
+    assert len(found["candidates"]) == 2
+    assert found["reason"] in printed
+
+
+def test_under_make_the_first_stop_stops_a_search(tmp_path):
+    out = tmp_path / "out"
+    program = ENDED.format(times=1, dataset=str(GROUPS), out=str(out))
+    on_terminal([sys.executable, "-c", program], code=EXIT_CODE, MAKELEVEL="1")
+    assert not out.exists()
+
+
+def test_kernels_that_are_compiled_are_said(tmp_path):
+    program = """
+from tsas_cli.commands.progress import progress
+with progress("fit", quiet=False):
+    from tsas_cli.numerics.elementary import exponential
+    exponential(1.0)
+"""
+    cold = {"TSAS_CACHE_DIR": str(tmp_path)}
+    assert "compiles numerical kernels" in on_terminal([sys.executable, "-c", program], **cold)[0]
+    assert "compiles" not in on_terminal([sys.executable, "-c", program], **cold)[0]
 
 
 def test_no_colour_is_asked_for():

@@ -233,6 +233,29 @@ def test_a_series_of_another_length_is_refused(root, tmp_path):
         compare(tmp_path / "s", tmp_path / "s")
 
 
+@pytest.mark.parametrize(
+    ("ratios", "said"),
+    [
+        ((0.5, 0.8), "in f_in_N B is better (RMSE of B 0.5 to 0.8 times that of A)"),
+        ((1.2, 1.2), "in f_in_N A is better (RMSE of B 1.2 times that of A)"),
+        ((0.5, 1.2), "in f_in_N neither is better in all"),
+        ((0.995, 1.005), "in f_in_N they are alike"),
+    ],
+)
+def test_which_is_better_is_said_of_runs_that_no_fit_has_seen(on_second, ratios, said):
+    row = next(r for r in on_second.errors if r.channel == "f_in_N")
+    held_out = {"fitted_a": False, "fitted_b": False}
+    rows = [
+        row.model_copy(update={"run_b": f"r{n}", "ratio": ratio, **held_out})
+        for n, ratio in enumerate(ratios)
+    ]
+    it = replace(on_second, errors=rows)
+    assert findings(it)[0].startswith("On 2 held-out runs")
+    assert said in findings(it)[0]
+    assert not any("predicts better" in note for note in notes(it))
+    assert any("predicts better" in note for note in notes(on_second))
+
+
 def test_doubts_are_said(on_second):
     doubtful = replace(on_second.b, dynamics="lugre", not_converged="it wandered.")
     said = " ".join(notes(replace(on_second, b=doubtful)))

@@ -41,7 +41,7 @@ class MadeUp:
 
 def rows(named, *sets):
     search = MadeUp(*sets)
-    causes = [SimpleNamespace(effect=name) for name in named]
+    causes = [SimpleNamespace(effect=name, gain_percent=48.2) for name in named]
     found = f.candidates_of(SimpleNamespace(search=search, causes=causes))
     return [("".join(row.effects), round(row.gain_percent, 9)) for row in found]
 
@@ -52,6 +52,11 @@ def test_single_effects_and_what_stands_in_place_of_the_named_ones():
     assert rows("ab", *sets) == [("ab", 60.0), ("a", 50.0), ("b", 20.0), ("ac", 10.0)]
     assert rows("", *sets) == [("a", 50.0), ("b", 20.0)]
     assert rows("a", (names("a"), True), (names(""), False)) == []
+
+
+def test_the_reduction_by_the_named_cause_is_that_which_it_is_named_with():
+    sets = [(names(s), False) for s in ("b", "a")]
+    assert rows("a", *sets) == [("a", 48.2), ("b", 20.0)]
 
 
 def test_a_candidate_says_how_it_was_fitted():

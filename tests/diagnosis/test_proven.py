@@ -7,6 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis import proven as p
 from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.support.steps import NO_PROGRESS
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,6 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(monkeypatch, negligi
     monkeypatch.setattr(p, "_judged", judged)
     monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)
     names = ("backlash", "preload_loss")
-    found = p.proven_effects(Search(frozenset(names), dict.fromkeys(names, ())), lambda: None)
+    found = p.proven_effects(Search(frozenset(names), dict.fromkeys(names, ())), NO_PROGRESS)
     assert [cause.effect for cause in found.causes] == ["preload_loss"]
     assert [cause.effect for cause in found.stand_ins] == stand_ins

@@ -1,8 +1,11 @@
 """`tsas diagnose`: the residuals, their cause, the extended model, the reduction."""
 
+import typer
+
 import tsas_cli as tsas
 from tsas_cli.commands import common
 from tsas_cli.commands.progress import progress
+from tsas_cli.support.stopping import EXIT_CODE
 
 
 def diagnose(
@@ -17,7 +20,10 @@ def diagnose(
     as_json: common.Json = False,
 ) -> None:
     """Locate the residuals of the simulation, name their cause, and fit the extended model."""
-    with progress("diagnose", quiet=quiet) as step, common.with_stream(rrd, step):
+    with (
+        progress("diagnose", quiet=quiet, endable=True) as step,
+        common.with_stream(rrd, step),
+    ):
         result = tsas.diagnose(
             dataset,
             out=out,
@@ -28,3 +34,5 @@ def diagnose(
             step=step,
         )
     common.present(result, quiet=quiet, as_json=as_json)
+    if step.ended and result.verdict == "undecided":
+        raise typer.Exit(EXIT_CODE)

@@ -10,11 +10,12 @@ from tsas_cli.records.diagnosis import INCOMPLETE
 from tsas_cli.support.wording import count_of
 
 SHOWN = 4  # names that are listed
+ALIKE = 0.01  # relative difference of two RMSE that makes none of them better
 
 
 def findings(it: Comparison) -> list[str]:
     """Return what differs: values, causes, errors; the most important first."""
-    return [*_values(it), *_effects(it), *_errors(it)]
+    return [*_held_out(it), *_values(it), *_effects(it), *_errors(it)]
 
 
 def notes(it: Comparison) -> list[str]:
@@ -78,6 +79,33 @@ def _errors(it: Comparison) -> Iterator[str]:
             yield f"In {channel} the RMSE of B is {span} times that of A ({runs})."
 
 
+def _held_out(it: Comparison) -> Iterator[str]:
+    """Yield which model is better in each channel on runs that neither was fitted to."""
+    rows = [
+        r for r in it.errors if r.ratio is not None and (r.fitted_a, r.fitted_b) == (False,) * 2
+    ]
+    said = []
+    for channel in CHANNELS:
+        ratios = [r.ratio for r in rows if r.channel == channel and r.ratio is not None]
+        if not ratios:
+            continue
+        low, high = min(ratios), max(ratios)
+        times = f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"
+        better = (
+            "B is better"
+            if high < 1.0 - ALIKE
+            else "A is better"
+            if low > 1.0 + ALIKE
+            else "they are alike"
+            if low >= 1.0 - ALIKE and high <= 1.0 + ALIKE
+            else "neither is better in all"
+        )
+        said.append(f"in {channel} {better} (RMSE of B {times} times that of A)")
+    if said:
+        runs = count_of(len({r.run_b for r in rows}), "held-out run")
+        yield f"On {runs}, which neither was fitted to: {'; '.join(said)}."
+
+
 def _recordings(it: Comparison) -> Iterator[str]:
     if it.a.model is None or it.b.model is None:
         return
@@ -121,6 +149,12 @@ def _doubts(it: Comparison) -> Iterator[str]:
     bound = [p.name for p in it.pairs if p.difference and p.difference.why_none == "at its bound"]
     if bound:
         yield f"At a bound, so that no difference is claimed: {_some(bound)}."
+    shared = [r for r in it.errors if r.ratio is not None]
+    if shared and all(r.fitted_a is not False or r.fitted_b is not False for r in shared):
+        yield (
+            "No run is known to be held out from both fits, so that this does not show which model "
+            "predicts better: `--on` a dataset of other runs does, and `tsas predict`."
+        )
     if any({r.fitted_a, r.fitted_b} == {True, False} for r in it.errors if r.ratio is not None):
         yield (
             "Some recordings were seen by one fit and not by the other, which favours the one that "

@@ -11,7 +11,7 @@ from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, estimates_with_tolerances, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import find_effects
+from tsas_cli.diagnosis.search import Search, find_effects, tried
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
@@ -25,7 +25,8 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.records.diagnosis import INCOMPLETE, Verdict
-from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Endable, Ended, Steps
+from tsas_cli.support.wording import count_of
 
 PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
 FEW_BLOCKS = 6  # fewer are too few for a test
@@ -33,7 +34,7 @@ FEW_BLOCKS = 6  # fewer are too few for a test
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The verdict with its evidence, which is None where it is undecided.
+    """The verdict with its evidence, which is None where it is undecided but for an ended `search`.
 
     `model` is the extended one, with the `law` that describes what the named effects leave, if one
     does; `nominal` the one without both, `stand_in_model` that with all effects that gain, proven
@@ -97,6 +98,7 @@ def diagnose_runs(
 
     `stated` is the data sheet as a model, or another initial model.
     """
+    step.doing("fits the nominal model")
     step.ahead(1)
     base = solve_fit(nominal_fit(manifest, stated, runs))
     step()
@@ -109,11 +111,26 @@ def diagnose_runs(
     if folds.blocks < FEW_BLOCKS:
         reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
-    found = _concluded(proven_effects(find_effects(bench, folds, step), step), base, step)
+    step = Endable(step)
+    search = Search(bench, folds, step)
+    try:
+        found = _concluded(proven_effects(find_effects(search), step), base, step)
+    except Ended:
+        return _ended(search, model, cannot_tell)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model
     whole = None if whole is None else with_preload_correction(whole, runs)
     return replace(found, model=extended, nominal=nominal, stand_in_model=whole)
+
+
+def _ended(search: Search, model: Model, cannot_tell: tuple[str, ...]) -> Diagnosis:
+    """Return what is known where a person has ended the search."""
+    found = tried(search)
+    fitted = {names for names, _ in found.trials} - {frozenset()}
+    reason = f"the search was ended after {count_of(len(fitted), 'fit')}"
+    if search.leads:
+        reason += f"; {' + '.join(sorted(search.leads))} leads, and nothing is tested"
+    return Diagnosis("undecided", f"{reason}.", model, model, search=found, cannot_tell=cannot_tell)
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:

@@ -67,7 +67,10 @@ def remainder_of(result: Diagnosis) -> records.RemainingResidual:
 
 
 def candidates_of(result: Diagnosis) -> list[records.TriedHypothesis]:
-    """Return single effects, and sets with one named effect replaced, the best first."""
+    """Return single effects, and sets with one named effect replaced, the best first.
+
+    The reduction by a single named effect is that which it is named with, after a new fit.
+    """
     search = result.search
     if search is None:
         return []
@@ -78,10 +81,12 @@ def candidates_of(result: Diagnosis) -> list[records.TriedHypothesis]:
         if mesh != search.bench.on_mesh(names) or not (len(names) == 1 or (names and instead)):
             continue
         trial, found = search.trial(names), search.gain(names)
+        alone = names == named and len(named) == 1
+        reduction = 100.0 * (1.0 - float(np.sqrt(1.0 - found.part)))
         rows.append(
             records.TriedHypothesis(
                 effects=tuple(sorted(names)),
-                gain_percent=100.0 * (1.0 - float(np.sqrt(1.0 - found.part))),
+                gain_percent=result.causes[0].gain_percent if alone else reduction,
                 test_statistic=found.test_statistic,
                 convincing=bool(found.convincing),
                 mean_square=trial.mean_square,

@@ -78,6 +78,7 @@ def describe(
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
     found: list[tuple[tuple[str, ...], HypothesisFit, HeldOutFit, float]] = []
     for names in sets:
+        step.doing(f"fits laws of unnamed origin: {' + '.join(names)}")
         mesh = trial.on_mesh or bench.on_mesh(names)
         if mesh not in held_out:
             without = bench.fit(sorted(trial.effects), near=start, on_mesh=mesh)

@@ -9,6 +9,8 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     """Return the instruction for the next experiment."""
     experiments = {effect.name: effect.experiment for effect in EFFECTS}
+    if result.verdict == "undecided" and result.search is not None:
+        return "Repeat the call and let the search end; fewer runs (--runs) take less time."
     if result.verdict == "undecided":
         return (
             "Record at least three runs in which the drive travels through several whole strokes, "

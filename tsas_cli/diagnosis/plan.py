@@ -127,6 +127,7 @@ def propose(
     Other effects of the trial stay free. `effects` are those to distinguish: a single one from all
     others; none means all.
     """
+    step.doing("looks for the next experiment")
     step.ahead(1)
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
     rivals = chosen if len(chosen) > 1 else EFFECTS

@@ -4,12 +4,14 @@ Stepwise selection: one effect after the other is added while the best one is si
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other.
 
-`find_effects` returns the result of a search. A running `Search` caches its fits: a set of effects
-is fitted once, from the initial values of the path that reaches it first.
+`find_effects` returns the result of a `Search`. A running one caches its fits: a set of effects
+is fitted once, from the initial values of the path that reaches it first. `tried` returns what it
+has fitted so far.
 """
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -42,15 +44,23 @@ ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each tim
 PAIRS = 4  # of effects that are fitted, of those that explain most together
 
 
-def find_effects(bench: Bench, folds: Folds, step: Steps = NO_PROGRESS) -> Hypotheses:
+def find_effects(search: "Search") -> Hypotheses:
     """Return the effects that are significant together, and all other fits."""
-    search = Search(bench, folds, step)
     named = search.run()
     rivals = {e.name: search.rivals(named, e.name) for e in EFFECTS if e.name in named}
     screened = tuple(search.screen(frozenset()))
     for names in judged_sets(named):
-        search.trial(names, on_mesh=bench.on_mesh(named))
-    return Hypotheses(bench, folds, named, rivals, screened, search.trials, search.squares)
+        search.trial(names, on_mesh=search.bench.on_mesh(named))
+    return replace(tried(search), named=named, rivals=rivals, screened=screened)
+
+
+def tried(search: "Search") -> Hypotheses:
+    """Return the fits of a search so far, with nothing named."""
+    screened = tuple(search.screened.get(frozenset(), ()))
+    nothing = frozenset[str]()
+    return Hypotheses(
+        *(search.bench, search.folds, nothing, {}, screened, search.trials, search.squares)
+    )
 
 
 @dataclass
@@ -64,6 +74,8 @@ class Search:
     trials: dict[tuple[Names, bool], HypothesisFit] = field(default_factory=dict)
     squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
+    leads: Names = frozenset()
+    least: float = math.inf  # held-out squares of what leads
 
     def run(self) -> Names:
         """Return the effects that are significant together."""
@@ -176,6 +188,8 @@ class Search:
                 for effect in self.effects
                 if effect.name not in names
             }
+            beside = f" beside {', '.join(sorted(names))}" if names else ""
+            self.step.doing(f"screens {len(further)} effects{beside}")
             self.screened[names] = screen_all(self.bench, further, known, self.step)
         return self.screened[names]
 
@@ -252,6 +266,7 @@ class Search:
             return
         mesh = self.bench.on_mesh(names)
         known = self.trial(near, on_mesh=mesh)
+        self.step.doing(f"fits {' + '.join(sorted(names))}")
         for _ in range(ATTEMPTS):
             trial = self.bench.fit(sorted(names), initial, near=known, on_mesh=mesh)
             if trial.mean_square <= known.mean_square * (1.0 + TOLERANCE):
@@ -259,7 +274,21 @@ class Search:
             # More free parameters cannot fit worse: the initial values were too far off.
             initial = {n: QUANTITIES[n].closer(v, CLOSER) for n, v in initial.items()}
         self._store(names, trial)
+        self._say_leader(names)
         self.step()
+
+    def _say_leader(self, names: Names) -> None:
+        """Say what leads if it is this set: the one with the least held-out squares."""
+        mesh, nothing = self.bench.on_mesh(names), frozenset[str]()
+        left = float(self.squares[names, mesh].sum())
+        if left >= self.least:
+            return
+        self.leads, self.least = names, left
+        nominal = self.squares.get((nothing, mesh), self.squares[nothing, self.bench.on_mesh(())])
+        reduction = 100.0 * (1.0 - math.sqrt(left / float(nominal.sum())))
+        if reduction > 0.0:
+            effects = " + ".join(sorted(names))
+            self.step.say(f"{effects} leads so far: reduction about {reduction:.0f} %")
 
     def _store(self, names: Names, trial: HypothesisFit) -> None:
         self.trials[names, trial.on_mesh] = trial

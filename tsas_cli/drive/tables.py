@@ -48,7 +48,11 @@ def tables(drive: DriveFile, title: str) -> Iterator[Table]:
         for name, value in cause.parameters.items()
     ]
     if named:
-        yield "causes", ("effect", "parameter", "value [95 %]", "unit", "gain [%]", "rivals"), named
+        yield (
+            "causes",
+            ("effect", "parameter", "value [95 %]", "unit", "reduction [%]", "rivals"),
+            named,
+        )
     errors = [
         (
             name,

@@ -1,6 +1,7 @@
 """The compile decorator of every kernel, and the cache that its machine code lives in."""
 
 import hashlib
+import logging
 import os
 import pickle
 import sys
@@ -15,6 +16,10 @@ from numba.core import caching
 # mypy: disable-error-code="no-untyped-call"
 
 
+COMPILES = (
+    "this call compiles numerical kernels, once after an installation or a change: up to half a "
+    "minute longer"
+)
 DIGEST_BYTES = hashlib.sha256().digest_size
 
 
@@ -25,6 +30,13 @@ class MachineCode(caching.IndexDataCacheFile):
         """Store machine code; where there is no room it is compiled again next time."""
         with suppress(OSError):
             super().save(key, data)
+
+    def load(self, key: Any) -> Any:
+        """Return stored machine code, or None where it has to be compiled, which is logged."""
+        data = super().load(key)
+        if data is None:
+            _say_once()
+        return data
 
     def _load_index(self) -> dict[Any, str]:
         try:
@@ -47,6 +59,11 @@ class MachineCode(caching.IndexDataCacheFile):
             _say(path)
             return None
         return pickle.loads(content)  # noqa: S301 # our own file, its digest is right
+
+
+@cache
+def _say_once() -> None:
+    logging.getLogger("tsas").info(COMPILES)
 
 
 def _say(path: str) -> None:

@@ -62,7 +62,8 @@ def _of_diagnosis(
     diagnosis: DiagnosisFile | DriveDiagnosis, channels: Mapping[str, HeldOut]
 ) -> Glance:
     named = diagnosis.named
-    verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, diagnosis.reason)
+    reason = diagnosis.reason[:1].upper() + diagnosis.reason[1:].rstrip(".")
+    verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, reason)
     numbers = "RMS of the residual on held-out data"
     extended = diagnosis.extended if isinstance(diagnosis, DiagnosisFile) else bool(named)
     facts = (*_gains(named), *_errors(channels, extended=extended))

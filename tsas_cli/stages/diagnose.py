@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tsas_cli.diagnosis import found
 from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
@@ -27,8 +28,12 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.checked import accepted_errors
 from tsas_cli.stages.given import Named, dataset_of, path_of
+from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 SHOWN = 8  # hypotheses that are printed
 
@@ -64,6 +69,30 @@ class DiagnosisResult(Result):
     def next_experiment(self) -> str:
         """What to measure next."""
         return self.record.next_experiment
+
+    def plot(self, run: str | None = None, channel: str = "f_in_N") -> "tuple[Axes, Axes]":
+        """Draw a run (the first one without it) with both models and their residuals.
+
+        With matplotlib's pyplot; returns the axes of the loop and of the residual.
+
+        Raises
+        ------
+        InputError
+            Nothing was fitted, or there is no such run or channel.
+        """
+        from tsas_cli.stages.plotted import plot_loop
+
+        judged = self.diagnosis.judged
+        if judged is None:
+            raise InputError("nothing was fitted, so that there is nothing to draw")
+        runs = {errors.run.run.id: errors.run for errors in judged.bench.closed}
+        chosen = next(iter(runs)) if run is None else run
+        if chosen not in runs:
+            raise InputError(f"no run {chosen}", remedy=nearest(chosen, list(runs)))
+        models = {"nominal model": self.diagnosis.nominal}
+        if self.record.extended:
+            models["extended model"] = self.model
+        return plot_loop(runs[chosen], models, channel)
 
     def tables(self) -> list[Table]:
         """Return what is named, the errors before and after, and the ranking."""
@@ -128,6 +157,7 @@ def diagnose(
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
         accepted = accepted_errors(data, despite, step)
         counted = without_duplicates(data)
+        step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = []
         for recording in counted.dataset:
@@ -214,7 +244,8 @@ def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
     units = [c.unit for c in record.channels.values()]
     header = ("channel", "before", "after", "noise", "attainable", "unit")
     rows = [(*row, unit) for row, unit in zip(errors, units, strict=True)]
-    yield "error on held-out data", header, rows
+    if rows:
+        yield "error on held-out data", header, rows
     ranking = [
         (
             " + ".join(row.effects),
@@ -224,7 +255,8 @@ def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
         )
         for row in record.candidates[:SHOWN]
     ]
-    yield "hypotheses", ("effects", "gain [%]", "test statistic", ""), ranking
+    if ranking:
+        yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
 
 
 def _parameter_rows(causes: Iterable[records.NamedCause]) -> Iterator[tuple[str, ...]]:

@@ -1,12 +1,17 @@
 """Progress of a stage: completed steps, and the known total."""
 
 
+class Ended(BaseException):
+    """A person has ended a search."""
+
+
 class Steps:
     """Receiver of a stage's progress; this one ignores it.
 
     A stage announces the steps `ahead` as soon as they are known, and calls the object after each
     step. The total may grow: the number of hypotheses to fit depends on the fits before. A subclass
-    displays the progress, for example as a bar.
+    displays the progress, for example as a bar. Where `ended` is set, a search ends at its next
+    step.
 
     >>> class Counted(Steps):
     ...     total = done = 0
@@ -21,14 +26,44 @@ class Steps:
     '1 of 2'
     """
 
+    ended = False
+
     def ahead(self, pieces: int) -> None:
         """Add steps to the known total."""
 
     def __call__(self) -> None:
         """Count one completed step."""
 
+    def doing(self, what: str) -> None:
+        """Take what the stage does from now on."""
+
     def say(self, sentence: str) -> None:
         """Take what a person should know before the stage is done."""
+
+
+class Endable(Steps):
+    """Steps that are passed on to another receiver, and raise `Ended` where it has been ended."""
+
+    def __init__(self, shown: Steps) -> None:
+        self._shown = shown
+
+    def ahead(self, pieces: int) -> None:
+        """Add steps to the known total."""
+        self._shown.ahead(pieces)
+
+    def doing(self, what: str) -> None:
+        """Pass on what the stage does."""
+        self._shown.doing(what)
+
+    def say(self, sentence: str) -> None:
+        """Pass on a sentence."""
+        self._shown.say(sentence)
+
+    def __call__(self) -> None:
+        """Count one completed step."""
+        self._shown()
+        if self._shown.ended:
+            raise Ended
 
 
 NO_PROGRESS = Steps()

@@ -111,6 +111,27 @@ def test_a_row_of_units_a_decimal_comma_a_preamble_and_an_old_encoding(tmp_path)
     assert proposal.questions == {}
 
 
+@pytest.mark.parametrize(
+    ("channels", "names", "asked"),
+    [
+        (("time_s", "x_in_mm", "f_out_N"), ("t [s]", "drive [mm]", "cell out [N]"), "f_in_N"),
+        (("time_s", "x_out_mm", "f_in_N"), ("t [s]", "tip [mm]", "cell in [N]"), "x_in_mm"),
+        (("time_s", "x_in_mm", "x_out_mm"), ("t [s]", "motor [rpm]", "drive [mm]"), None),
+    ],
+)
+def test_x_in_or_f_in_that_no_column_is_left_for_is_asked(tmp_path, channels, names, asked):
+    """But for f_in where a drive alone was recorded."""
+    values = run()
+    path = tmp_path / "a.csv"
+    write_csv(path, [(name, values[c]) for c, name in zip(channels, names, strict=True)])
+    proposal = propose([path])
+    if asked is None:
+        assert "f_in_N" not in {channel.name for channel in proposal.channels}
+        return
+    assert "delete this table" in proposal.questions[f"columns.{asked}.source"]
+    assert proposal.is_a_recording
+
+
 def save_parquet(path):
     write_parquet(path, pa.table(run()))
 

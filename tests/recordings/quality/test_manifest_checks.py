@@ -44,6 +44,10 @@ def test_a_key_of_ones_own_is_a_note_and_cannot_steer_the_terminal():
     assert "weather\\x1b[2J" in remark.sentence
 
 
+def test_a_condition_of_ones_own_in_a_run_is_no_finding():
+    assert remarks({}, {"frequency_Hz": 0.5, "tool": "spindle"}) == []
+
+
 @pytest.mark.parametrize(
     ("rig", "run", "likely"),
     [

@@ -28,6 +28,7 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     ends = assign(displacements, tensions)
     found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
     found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
+    found |= _unrecorded(found)
     return [found[name] for name in NAMES if name in found]
 
 
@@ -66,7 +67,8 @@ def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
     if len(measured) > 1:
         shown = ", ".join(c.shown for c in columns)
         questions = {"source": f"which one: {shown}?"}
-        return Proposed(name, {"source": QUESTION}, "open", ("several columns match",), questions)
+        why, sources = ("several columns match",), tuple(c.source for c in columns)
+        return Proposed(name, {"source": QUESTION}, "open", why, questions, candidates=sources)
     column = measured[0]
     entry, questions = with_unit(column, name)
     others = tuple(c.shown for c in columns if c is not column)
@@ -152,6 +154,22 @@ def _missing(
         if candidates:
             asked[name] = candidates
     return {name: _asked(name, candidates, ends) for name, candidates in asked.items()}
+
+
+def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
+    """Return a question for x_in or f_in that no column is left for; a drive alone has no f_in."""
+    of_drive = "f_out_N" not in found and any(name.startswith("motor_") for name in found)
+    wanted = ("x_in_mm",) if of_drive else ("x_in_mm", "f_in_N")
+    question = (
+        "is it in another file of the same run (.join, docs/ingest.md)? If it was not recorded, "
+        "delete this table."
+    )
+    why = ("no column is left that it could be",)
+    return {
+        name: Proposed(name, {"source": QUESTION}, "open", why, {"source": question})
+        for name in wanted
+        if found and name not in found
+    }
 
 
 def _asked(name: str, columns: Sequence[FileColumn], ends: Assignment) -> Proposed:

@@ -72,7 +72,8 @@ class MapProposal:
     @property
     def is_a_recording(self) -> bool:
         """Whether the channels are enough for ingest: an input and an output."""
-        return has_input_and_output(frozenset(channel.name for channel in self.channels))
+        there = (c.name for c in self.channels if c.candidates or c.entry.get("source") != QUESTION)
+        return has_input_and_output(frozenset(there))
 
 
 def propose(files: Sequence[Path]) -> MapProposal:

@@ -102,6 +102,7 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
         for result in check.find(dataset.manifest)
     ]
     failures = []
+    step.doing("checks the recordings")
     step.ahead(len(dataset.runs))
     for run in dataset.runs:
         try:

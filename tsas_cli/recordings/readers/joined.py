@@ -8,6 +8,7 @@ from pathlib import Path, PurePath
 from pydantic import Field
 
 from tsas_cli.recordings import readers
+from tsas_cli.recordings.guess.words import unit_behind
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
@@ -68,7 +69,8 @@ def _loaded(values: Floats) -> Floats:
 
 
 def _seconds(table: ColumnTable, part: JoinedFile, where: str) -> Floats:
-    unit = part.unit or table.units.get(part.time)
+    behind = unit_behind(part.time)[1] if isinstance(part.time, str) else ""
+    unit = part.unit or table.units.get(part.time) or behind or None
     if unit is None:
         raise InputError(f"the clock {part.time} states no unit", where=where, remedy='unit = "ms"')
     if part.time in table.typed and part.offset_s is None:

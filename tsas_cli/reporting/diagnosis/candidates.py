@@ -38,7 +38,7 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     table = Table(
         f"Hypotheses{of}",
         header,
-        tuple(_row(c, standing[frozenset(c.effects)], diagnosis.named) for c in shown),
+        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
         numeric=frozenset({1, 2}),
     ).without_empty()
     return Section("diagnosis-candidates", _TITLE, (_WHAT,), tables=(table,))
@@ -55,9 +55,8 @@ def _standing(candidate: TriedHypothesis, named: Sequence[NamedCause]) -> str:
     return "rival" if set(candidate.effects) in rivals else ""
 
 
-def _row(candidate: TriedHypothesis, standing: str, named: Sequence[NamedCause]) -> tuple[str, ...]:
-    alone = standing == "named" and len(named) == 1
-    gain = named[0].gain_percent if alone else candidate.gain_percent
+def _row(candidate: TriedHypothesis, standing: str) -> tuple[str, ...]:
+    gain = candidate.gain_percent
     return (
         " + ".join(candidate.effects),
         "none" if gain is not None and gain < 0.0 else fixed(gain, 1),

@@ -44,7 +44,8 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
             "warning",
             f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
             f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
-            "use the same filter and clock for both channels, or shift one at the source",
+            "use the same filter and clock for both channels, or shift one at the source (offset_s "
+            "in a .join list)",
             "f_out_N",
         )
 

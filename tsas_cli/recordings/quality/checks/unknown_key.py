@@ -1,6 +1,7 @@
 """The manifest holds a key that format 1 does not define.
 
-Such a key is kept but has no effect; a misspelt key loses its value.
+Such a key is kept but has no effect; a misspelt key loses its value. A run may have keys of its
+own, conditions that `tsas runs` finds it by.
 """
 
 from collections.abc import Iterator
@@ -19,6 +20,8 @@ def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
             places.setdefault((key, hint), []).append(place)
     for (key, hint), where in places.items():
         misspelt = hint.startswith("did you mean")
+        if not misspelt and all(place.startswith("run ") for place in where):
+            continue
         yield Remark(
             "warning" if misspelt else "note",
             f"dataset.toml holds the unknown key {printable(key)} in {_listed(where)}",

@@ -1,0 +1,245 @@
+"""Export a model for other programs: JSON, CSV, or MuJoCo as far as that can hold it."""
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+
+from tsas_cli.effects import EFFECTS, LAWS, Effects
+from tsas_cli.identification.fitted_to import FittedTo
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import model_of, read_fitted_to
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.lumped import HELD, Lumped, follow, lumped_of
+from tsas_cli.physics.response import mechanics_of, simulate
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.records.base import number_text
+from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.stages.given import Named, file_of, one_of, path_of
+from tsas_cli.stages.mujoco import mjcf
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import json_text, new_file
+
+Format = Literal["json", "csv", "mujoco"]
+FORMATS: tuple[Format, ...] = get_args(Format)
+MARKS = {"json": b'"stage": "export"', "csv": b"name,run,value", "mujoco": b"tsas export"}
+STROKE_MM = 10.0  # where the model's file does not say what it was fitted to
+STROKES, SAMPLES = 4, 400  # of the motion by which models are compared; samples of a stroke
+_ALWAYS_LOST = (
+    "friction that grows with the tension (it is constant, that at the mean tension)",
+    "friction along the sheath (it acts on the tendon's middle)",
+    "errors of sensors, and the intervals of all values",
+)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """RMS and largest difference of a channel from the model's prediction, its range, its unit."""
+
+    rms: float
+    largest: float
+    span: float
+    unit: str
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ExportResult(Result):
+    """A model that was exported; `lost` is what the format cannot hold."""
+
+    lost: tuple[str, ...] = ()
+
+    def tables(self) -> list[Table]:
+        """Return the error of what was exported, where there is one."""
+        title = f"{self.summary['format_of_model']} → {self.out}"
+        rows = [
+            (name, *(number_text(one[key]) for key in ("rms", "largest", "span")), one["unit"])
+            for name, one in self.summary["errors"].items()
+        ]
+        return [(title, ("channel", "RMS of difference", "largest", "range", "unit"), rows)]
+
+    def sentences(self) -> list[str]:
+        """Return what is lost."""
+        return notes([f"Not exported: {sentence}." for sentence in self.lost])
+
+
+def export(
+    model: Model | Named,
+    *,
+    to: str,
+    out: Named,
+    sheath_length_mm: float | None = None,
+    total_bend_rad: float | None = None,
+    preload_N: float | None = None,
+    force: bool = False,
+) -> ExportResult:
+    """Write a model as JSON, CSV or MJCF.
+
+    Parameters
+    ----------
+    model
+        A model, or its file.
+    to
+        `json`, `csv`, or `mujoco`.
+    out
+        The file to write.
+    sheath_length_mm
+        The sheath of a MuJoCo model; without it that of the recordings it was fitted to.
+    total_bend_rad
+        Its bend, likewise.
+    preload_N
+        The tension at rest, likewise.
+    force
+        Replace the file if it is there.
+
+    Returns
+    -------
+    ExportResult
+        `.summary["errors"]` holds, for MuJoCo, the differences of f_in [N] and x_out [mm] from the
+        model's own prediction, over slow strokes that pull from the preload.
+
+    Raises
+    ------
+    InputError
+        The model is wrong, a condition is not known, or `out` exists and `force` is not set.
+    """
+    kind = one_of(FORMATS, to, "to")
+    given: Model | Path = path_of(model, Model)
+    path = file_of(out)
+    found = model_of(given)
+    fitted = read_fitted_to(given) if isinstance(given, Path) else None
+    inputs = [given] if isinstance(given, Path) else []
+    errors: dict[str, Difference] = {}
+    lost: tuple[str, ...] = ()
+    if kind == "mujoco":
+        conditions = {
+            "sheath_length_mm": sheath_length_mm,
+            "total_bend_rad": total_bend_rad,
+            "preload_N": preload_N,
+        }
+        text, errors, lost = _mujoco(found, fitted or FittedTo(), conditions, path.stem)
+    else:
+        text = _json(found) if kind == "json" else _csv(found)
+    with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    summary = {
+        "format": 1,
+        "stage": "export",
+        "version": __version__,
+        "format_of_model": kind,
+        "errors": {name: asdict(one) for name, one in errors.items()},
+        "lost": lost,
+    }
+    return ExportResult(summary, path, lost)
+
+
+def _json(model: Model) -> str:
+    head = {"stage": "export", "version": __version__}
+    return json_text(head | {"parameters": [asdict(e) for e in model.estimates]})
+
+
+def _csv(model: Model) -> str:
+    rows = [asdict(e) | {"run": _no_formula(e.run)} for e in model.estimates]
+    first = ("name", "run", "value", "unit")
+    header = [*first, *(key for key in rows[0] if key not in first)] if rows else first
+    text = io.StringIO()
+    writer = csv.DictWriter(text, header, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _no_formula(run: str | None) -> str | None:
+    """Return a run's id so that no spreadsheet computes it."""
+    return f"'{run}" if run and run[0] in "=+-@" else run
+
+
+def _mujoco(
+    model: Model, fitted: FittedTo, conditions: dict[str, float | None], name: str
+) -> tuple[str, dict[str, Difference], tuple[str, ...]]:
+    """Return the model file, its errors by channel, and what it does not hold."""
+    known = {key: _condition(key, value, fitted) for key, value in conditions.items()}
+    if known["preload_N"] is None:
+        own = [e.value for e in model.estimates if e.name == "preload_N"]
+        known["preload_N"] = float(np.mean(own)) if own else None
+    run = Run(id="exported", file="none", sha256="0" * 64, **known)
+    rig = model.rig(run)
+    stroke = fitted.ranges.get("stroke_mm", (0.0, STROKE_MM))[1]
+    lumped = lumped_of(rig, stroke)
+    errors = _errors(rig, lumped, stroke)
+    lost = (*_ALWAYS_LOST, *_effects_left_out(rig.effects))
+    said = [
+        f"A tendon-sheath mechanism, by tsas export {__version__}.",
+        f"Sheath {rig.sheath_length_mm:g} mm, bend {rig.total_bend_rad:g} rad.",
+        f"Strokes of {stroke:g} mm that pull from a preload of {rig.preload_N:g} N.",
+        *(
+            f"{channel}: differs from the model by {number_text(one.rms)} {one.unit} (RMS), "
+            f"{number_text(one.largest)} at most, in a range of {number_text(one.span)}."
+            for channel, one in errors.items()
+        ),
+        *(f"Not held: {sentence}." for sentence in lost),
+    ]
+    return mjcf(name, lumped, said, gear=_gear(fitted)), errors, lost
+
+
+def _condition(name: str, given: float | None, fitted: FittedTo) -> float | None:
+    """Return a condition as given, or as all recordings had it; None where none is known."""
+    low, high = fitted.ranges.get(name, (None, None))
+    if given is not None or low is None or high is None:
+        return given
+    if high - low > 1e-3 * abs(high):
+        option = f"--{name.replace('_', '-')}"
+        raise InputError(
+            f"the model holds for a {name} of {low:.6g} to {high:.6g}",
+            where=option,
+            expected="the one that is exported",
+            remedy=f"{option} {high:.6g}",
+        )
+    return 0.5 * (low + high)
+
+
+def _gear(fitted: FittedTo) -> float:
+    """Return the tension per torque of the motor [1/m], 1 where the gear is not known."""
+    ratio, radius = (fitted.ranges.get(n) for n in ("gear_ratio", "turntable_radius_mm"))
+    return 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
+
+
+def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> dict[str, Difference]:
+    """Return the differences between the lumped tendon and the rig, after the first stroke."""
+    phase = np.pi * np.arange(STROKES * SAMPLES + 1) / SAMPLES
+    x_in = 0.5 * stroke_mm * (1.0 - np.cos(phase))
+    drive = DriveInput(x_in)
+    plain = mechanics_of(rig._replace(x_in_zero_mm=0.0), drive)
+    held = Effects(**{name: getattr(plain.effects, name) for name in HELD})
+    true = simulate(plain._replace(effects=held), drive)
+    f_in, x_out = follow(lumped, x_in)
+    out = {}
+    for name, unit, ours, other in (
+        ("f_in_N", "N", true.f_in_N, f_in),
+        ("x_out_mm", "mm", true.x_out_mm, x_out),
+    ):
+        difference = (other - ours)[SAMPLES:]
+        out[name] = Difference(
+            float(np.sqrt(np.mean(difference**2))),
+            float(np.abs(difference).max()),
+            float(np.ptp(ours)),
+            unit,
+        )
+    return out
+
+
+def _effects_left_out(effects: Effects) -> Sequence[str]:
+    """Return a sentence for each effect of the model that a lumped tendon does not have."""
+    neutral = Effects()
+    return [
+        f"{e.title.lower()} ({e.name})"
+        for e in (*EFFECTS, *LAWS)
+        if e.name not in HELD
+        and e.acts_on != "sensor"
+        and getattr(effects, e.name) != getattr(neutral, e.name)
+    ]
