@@ -22,6 +22,7 @@ from tsas_cli.identification.joint_fit import estimates_of
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import ReversalShapes, RunErrors
+from tsas_cli.numerics.covariance import jackknife
 from tsas_cli.physics.rig import with_values
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -49,7 +50,7 @@ class Law:
 
     `rivals` are other sets of as many laws that describe it as well. `before` and `after` are the
     errors on held-out data without the laws and with them, weighted alike; `bench` and `trial` are
-    the fit.
+    the fit, `covariance` is that of its scaled values, shape (p, p).
     """
 
     names: tuple[str, ...]
@@ -59,6 +60,7 @@ class Law:
     after: HeldOutFit
     bench: Bench
     trial: HypothesisFit
+    covariance: Floats
 
 
 def describe(
@@ -104,7 +106,11 @@ def describe(
     rivals = tuple("+".join(f[0]) for f in as_good if len(f[0]) == len(names) and f[0] != names)
     estimates = tuple(_estimates(bench, fitted, folds, ranges, names))
     before = held_out[fitted.on_mesh][1]
-    return Law(names, rivals, estimates, before, after, bench, fitted)
+    solution = fitted.solution
+    covariance, _ = jackknife(
+        solution.jacobian * ~solution.at_bound, solution.residual, folds.block
+    )
+    return Law(names, rivals, estimates, before, after, bench, fitted, covariance)
 
 
 def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:

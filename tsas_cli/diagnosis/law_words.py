@@ -7,7 +7,9 @@ import numpy as np
 
 from tsas_cli.diagnosis.law import CHANGES, Law
 from tsas_cli.effects import LAWS
+from tsas_cli.effects.laws.drive_law import DriveLaw
 from tsas_cli.effects.laws.tendon_law import STARTS
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.numerics.stops import (
     ELEMENTS,
     GAP,
@@ -74,22 +76,26 @@ def _margin(law: Law, name: str, curve: Callable[[Mapping[str, float]], Floats])
 
     Parameters at a bound stay there.
     """
-    own = [e for e in law.estimates if e.name.startswith(f"{name}.")]
-    zero = {e.name.split(".")[1]: e.value if e.origin == "given" else 0.0 for e in own}
-    free = {e.name: e.stderr for e in own if e.stderr is not None and not e.at_bound}
-    at = [[u.name for u in law.trial.unknowns].index(full) for full in free]
-    errors = [curve(zero | {full.split(".")[1]: stderr}) for full, stderr in free.items()]
-    if not errors:
-        return np.zeros(curve(zero).size)
-    related = law.trial.correlation()[np.ix_(at, at)]
-    variance = np.einsum("in,ij,jn->n", errors, related, errors)
+    unknowns = [u.name for u in law.trial.unknowns]
+    own = [full for full in unknowns if full.startswith(f"{name}.")]
+    zero = {full.split(".")[1]: 0.0 for full in own} | {
+        e.name.split(".")[1]: e.value
+        for e in law.estimates
+        if e.name.startswith(f"{name}.") and e.origin == "given"
+    }
+    slopes = [curve(zero | {full.split(".")[1]: QUANTITIES[full].size}) for full in own]
+    at = [unknowns.index(full) for full in own]
+    variance = np.einsum("in,ij,jn->n", slopes, law.covariance[np.ix_(at, at)], slopes)
     return np.asarray(TWO_SIDED * np.sqrt(np.maximum(variance, 0.0)))
 
 
 def tensions_of(law: Law) -> tuple[float, float]:
-    """Return the lowest and the highest simulated tension at the drive, not below 0 [N]."""
-    runs = enumerate(law.bench.errors_for(law.trial))
-    f_in = [run.predict(law.bench.rig(law.trial, k))["f_in_N"] for k, run in runs]
+    """Return the lowest and the highest tension of the tendon at the drive, not below 0 [N]."""
+    f_in = []
+    for k, run in enumerate(law.bench.errors_for(law.trial)):
+        rig = law.bench.rig(law.trial, k)
+        without = rig._replace(effects=rig.effects._replace(drive_law=DriveLaw()))
+        f_in.append(run.predict(without)["f_in_N"])
     low, high = min(float(f.min()) for f in f_in), max(float(f.max()) for f in f_in)
     return max(low, 0.0), max(high, 0.0)
 
