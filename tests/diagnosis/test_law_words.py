@@ -35,11 +35,11 @@ def test_friction_at_the_drive_that_differs_with_the_speed_is_said():
 
 
 def test_a_gap_is_said_where_it_carries_most():
-    """Of width travel/2: a gap as long as the width."""
-    text = said("drive_law", travel_mm=8.0, gap_friction_1_N=2.0, friction_1_N=0.5)
+    """Of width travel: a gap as long as the width."""
+    text = said("drive_law", travel_mm=4.0, gap_friction_1_N=2.0, friction_1_N=0.5)
     assert "by 5 N after each reversal, within " in text
     assert text.endswith("hardly over a gap of 4 mm in its middle.")
-    assert "gap" not in said("drive_law", travel_mm=8.0, gap_friction_1_N=0.5, friction_1_N=2.0)
+    assert "gap" not in said("drive_law", travel_mm=4.0, gap_friction_1_N=0.5, friction_1_N=2.0)
 
 
 def test_what_is_small_beside_the_rest_is_left_out():

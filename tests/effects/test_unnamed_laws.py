@@ -45,11 +45,11 @@ def test_friction_with_a_gap_changes_at_both_ends_of_the_travel_after_a_reversal
     x = np.concatenate((rising, rising[::-1]))
     drive = DriveInput(x, time_s=np.arange(x.size) / 100.0)
     plain = run(drive)
-    law = run(drive, drive_law__travel_mm=4.0, drive_law__gap_friction_1_N=3.0)
+    law = run(drive, drive_law__travel_mm=2.0, drive_law__gap_friction_1_N=3.0)
     back = 10.0 - x[401:]
     expected = np.interp(back, [0.0, 1.0, 3.0, 4.0], [3.0, 0.0, 0.0, -3.0])
     assert (law.f_in_N - plain.f_in_N)[401:] == pytest.approx(expected)
-    shared = run(drive, drive_law__travel_mm=4.0, drive_law__gap_share_1=0.1)
+    shared = run(drive, drive_law__travel_mm=2.0, drive_law__gap_share_1=0.1)
     assert (shared.f_in_N - plain.f_in_N)[401:] == pytest.approx(
         0.1 * plain.f_in_N[401:] * expected / 3.0
     )
@@ -102,7 +102,7 @@ def test_motion_is_lost_at_the_load_and_the_forces_do_not_know():
 
 def test_the_factor_of_the_friction_is_the_sum_of_its_parts():
     law = TendonLaw(
-        travel_mm=4.0, low_mm=0.0, high_mm=4.0, slow_mm_per_s=1.0, fast_mm_per_s=100.0,
+        travel_mm=1.0, low_mm=0.0, high_mm=4.0, slow_mm_per_s=1.0, fast_mm_per_s=100.0,
         start_1=0.3, curve_2=0.2, speed_2=0.5,
     )  # fmt: skip
     x, travel, speed = (

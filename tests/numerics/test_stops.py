@@ -72,7 +72,7 @@ def test_the_spring_of_an_element_with_a_gap_is_loose_over_half_of_its_width():
     assert beyond_gap(np.array([-1.0, -0.75, -0.5, 0.0, 0.4, 0.75, 1.0])) == pytest.approx(
         [-1.0, -0.5, 0.0, 0.0, 0.0, 0.5, 1.0]
     )
-    assert widths_with_gaps(8.0) == pytest.approx([4.0, 2.0, 1.0, 0.5])
+    assert widths_with_gaps(8.0) == pytest.approx([8.0, 4.0, 2.0, 1.0])
 
 
 def test_a_curve_is_straight_between_its_heights_and_constant_outside():

@@ -30,6 +30,8 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 # The displacement that each law follows, and the channel that shows it.
 FOLLOWS = {"drive_law": "x_in_mm", "tendon_law": "x_in_mm", "load_law": "x_out_mm"}
 CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"}
+# Longest width over the longest stroke: an element as wide as half of it only adds a straight line.
+WIDEST = {"drive_law": 0.25, "tendon_law": 0.125, "load_law": 0.25}
 AT_NOISE = 1.1  # of the noise level, below which a channel's RMS needs no further law
 AS_WELL = 0.1  # share by which the squares of a set exceed those of the best one at most
 REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
@@ -124,7 +126,7 @@ def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
         whole = np.concatenate(recorded)
         longest = max(float(np.ptp(v)) for v in recorded)
         out[law] = {
-            f"{law}.travel_mm": 0.5 * longest,
+            f"{law}.travel_mm": WIDEST[law] * longest,
             f"{law}.low_mm": float(whole.min()),
             f"{law}.high_mm": float(whole.max()),
         }

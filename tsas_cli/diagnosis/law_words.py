@@ -103,7 +103,7 @@ def tensions_of(law: Law) -> tuple[float, float]:
 def after_reversal(name: str, value: Mapping[str, float], travel: Floats, tension: float) -> Floats:
     """Return the change after a reversal from one full slip towards the other, over the travel."""
     if name == "tendon_law":
-        widths = value["travel_mm"] * RATIO ** np.arange(1, STARTS + 1)
+        widths = value["travel_mm"] * RATIO ** np.arange(STARTS)
         weights = [value[f"start_{k}"] for k in range(1, STARTS + 1)]
         decaying: Floats = np.exp(-travel[:, None] / widths) @ weights
         return decaying

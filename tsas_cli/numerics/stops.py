@@ -27,8 +27,8 @@ def widths_of(longest: float) -> Floats:
 
 
 def widths_with_gaps(longest: float) -> Floats:
-    """Return the widths of the elements with a gap, half of `longest` first, shape (GAPS,)."""
-    return np.array([longest * 0.5**k for k in range(1, GAPS + 1)])
+    """Return the widths of the elements with a gap, the longest first, shape (GAPS,)."""
+    return np.array([longest * 0.5**k for k in range(GAPS)])
 
 
 def beyond_gap(states: Floats) -> Floats:

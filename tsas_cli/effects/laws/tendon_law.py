@@ -3,7 +3,7 @@
 What one sees: f_in over f_out, a ratio, differs with the speed of the drive, from place to place,
 or with the travel since its reversals, at any tension.
 Equation: μ → μ·(1 + Σ start_k·exp(−τ/w_k) + curve(x) + speed(ln|v|)), τ the travel of the tendon's
-end at the drive since its last reversal, w_k = travel·4^(−k), x its displacement, v its speed; not
+end at the drive since its last reversal, w_k = travel·4^(1−k), x its displacement, v its speed; not
 below 0. μ is the friction far from a reversal at the low end and at low speed, where both curves
 are 0. The paper's μ is constant.
 Mistaken for: a cause. A law describes what no proven cause explains: breakaway, ageing, rolling
@@ -52,7 +52,7 @@ def tendon_law_factor(law: TendonLaw, x: Floats, travel: Floats, speed: Floats) 
     starts, curve, speeds = law[5:9], (0.0, *law[9:13]), law[13:]
     factor = 1.0 + curve_of(x, law.low_mm, law.high_mm, curve)
     for k, start in enumerate(starts, 1):
-        factor += start * np.exp(-travel / (law.travel_mm * RATIO**k))
+        factor += start * np.exp(-travel / (law.travel_mm * RATIO ** (k - 1)))
     factor += speed_curve(speed, law.slow_mm_per_s, law.fast_mm_per_s, speeds)
     return np.maximum(factor, 0.0)
 
