@@ -51,7 +51,7 @@ def test_a_unit_behind_the_name_of_a_clock_counts(bench, tmp_path):
     path = bench(LIST.replace("t [ms]", "time_ms"))
     drive = tmp_path / "drive.csv"
     drive.write_text(drive.read_text().replace("t [ms]", "time_ms"))
-    table = read(path, ReadOptions(resample=True), ["time", "load.2"])
+    table = read(path, ReadOptions(resample=True), ["time", "drive.x [mm]", "load.2"])
     np.testing.assert_allclose(table.columns["time"], np.arange(11) / 10)
 
 
