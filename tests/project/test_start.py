@@ -36,6 +36,16 @@ def test_a_project_without_recordings_asks_for_everything(tmp_path, tsas):
         read_map(tmp_path / "new" / "bench.toml")
 
 
+def test_the_files_of_a_list_are_copied_with_it(tmp_path):
+    recording(tmp_path / "bench" / "a.csv")
+    path = tmp_path / "bench" / "run.join"
+    path.write_text(f'[all]\nfile = "a.csv"\ntime = "{NAMES[0]}"\n')
+    for number, source in enumerate((path, path.parent)):
+        files, proposal = start(tmp_path / f"rig{number}", [source])
+        assert proposal.looked_at.path == path
+        assert {Path(file).name for file in files} >= {"a.csv", "run.join"}
+
+
 def test_recordings_are_copied_and_guessed(tmp_path):
     source = recording(tmp_path / "bench 1" / "a.csv")
     files, proposal = start(tmp_path / "new", [source.parent])

@@ -10,6 +10,7 @@ import tomlkit
 from tsas_cli.recordings.guess.proposal import MapProposal, propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
+from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import new_file, new_folder
 from tsas_cli.support.temporaries import sweep
@@ -67,7 +68,8 @@ def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
     """Return the path in the project of each source file, except those already in raw/."""
     copies: dict[str, Path] = {}
     for source in sources:
-        for path in find_files([source], "*"):
+        found = find_files([source], "*")
+        for path in [one for file in found for one in (file, *joined_by(file))]:
             if path.resolve().is_relative_to((folder / RAW).resolve()):
                 continue
             inside = path.relative_to(source.parent) if source.is_dir() else Path(path.name)

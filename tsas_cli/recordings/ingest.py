@@ -13,6 +13,7 @@ from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
+from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.recordings.repeated_times import merged
 from tsas_cli.recordings.writing import parquet_writer, table_of
@@ -109,7 +110,8 @@ def ingest_files(
 
 
 def _files_in(folder: Path, pattern: str) -> list[Path]:
-    return sorted(
+    """Return the recordings in a folder, those that a list joins to one as that list alone."""
+    files = sorted(
         path
         for path in folder.rglob("*")
         if is_known(path)
@@ -117,6 +119,8 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
         and not path.name.startswith(".")
         and path.is_file()
     )
+    joined = {part for path in files for part in joined_by(path)}
+    return [path for path in files if path not in joined]
 
 
 def _parts(path: Path, mapping: IngestMap) -> Iterator[ColumnTable]:

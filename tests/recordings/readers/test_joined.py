@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from tsas_cli.recordings.ingest import find_files
 from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -35,6 +37,22 @@ def bench(tmp_path):
 
 def test_columns_are_named_by_their_part(bench):
     assert names(bench(), ReadOptions()) == ("drive.x [mm]", "load.2", "time")
+
+
+def test_a_list_in_a_folder_stands_for_its_files(bench, tmp_path):
+    path = bench()
+    (tmp_path / "other.csv").write_text("t [ms],x [mm]\n0,1\n")
+    assert joined_by(path) == [tmp_path / "drive.csv", tmp_path / "load.csv"]
+    assert joined_by(tmp_path / "drive.csv") == []
+    assert find_files([tmp_path], "*") == [tmp_path / "other.csv", path]
+
+
+def test_a_unit_behind_the_name_of_a_clock_counts(bench, tmp_path):
+    path = bench(LIST.replace("t [ms]", "time_ms"))
+    drive = tmp_path / "drive.csv"
+    drive.write_text(drive.read_text().replace("t [ms]", "time_ms"))
+    table = read(path, ReadOptions(resample=True), ["time", "drive.x [mm]", "load.2"])
+    np.testing.assert_allclose(table.columns["time"], np.arange(11) / 10)
 
 
 def test_all_come_onto_the_clock_with_the_most_samples(bench):

@@ -28,6 +28,17 @@ class JoinedFile(StrictTable):
     read: ReadOptions = ReadOptions()
 
 
+SUFFIX = ".join"
+
+
+def joined_by(path: Path) -> list[Path]:
+    """Return the files that a list joins, none for another file; InputError: the list is wrong."""
+    if path.suffix.lower() != SUFFIX:
+        return []
+    listed = (parse(JoinedFile, one, f"{path}, {name}") for name, one in read_toml(path).items())
+    return [path.parent / part.file for part in listed]
+
+
 @contextmanager
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of numbers of all files as `part.column`, with the clock of their file.
