@@ -191,6 +191,20 @@ def test_no_more_open_files_is_no_defect(
     )
 
 
+@pytest.mark.parametrize(
+    ("number", "remedy"),
+    [(errno.EACCES, "ask its owner"), (errno.ENAMETOOLONG, "shorter"), (errno.ELOOP, "a link")],
+)
+def test_a_path_that_the_system_refuses_is_no_defect(number, remedy, monkeypatch, capsys) -> None:
+    fail_with(OSError(number, os.strerror(number), "a.toml"), monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.run()
+    assert stopped.value.code == 2
+    line = capsys.readouterr().err
+    assert line.startswith("tsas: a.toml: the system refuses the call (")
+    assert remedy in line
+
+
 def test_a_stop_while_the_program_is_loaded_is_quiet() -> None:
     program = """
 import sys
