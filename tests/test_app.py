@@ -220,6 +220,26 @@ main()
     assert (done.returncode, done.stderr) == (130, b"")
 
 
+def test_a_stop_in_text_that_a_library_executes_while_it_is_loaded_is_quiet(tmp_path: Path) -> None:
+    """CPython remembers a plain one, and ended by SIGINT: -2 in place of 130 on a busy machine."""
+    (tmp_path / "sitecustomize.py").write_text("""
+import sys
+class Stop:
+    def find_spec(self, name, *more):
+        if name == "tsas_cli.app":
+            exec("import os, signal; os.kill(os.getpid(), signal.SIGINT)")
+sys.meta_path.insert(0, Stop())
+""")
+    done = subprocess.run(
+        [sys.executable, "-m", "tsas_cli", "--version"],
+        capture_output=True,
+        check=False,
+        env=os.environ
+        | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"},
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+
+
 def test_a_stop_beside_the_command_is_an_exit_code_too(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
