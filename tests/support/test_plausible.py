@@ -7,8 +7,8 @@ from pydantic import AfterValidator, BaseModel
 
 import tsas_cli as tsas
 from tsas_cli.diagnosis.rig_file import RigFile
-from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.estimate import StoredValue
+from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.errors import InputError
