@@ -23,7 +23,7 @@ challenge-nothing: challenge-table  ## how often something is named where nothin
 challenge-ci: SEED = 3
 challenge-ci: SEEDS = 1
 challenge-ci: CHALLENGE_OUT = reports/challenge-ci
-challenge-ci: CHALLENGE_PART = --small --rate 100
+challenge-ci: CHALLENGE_PART = --small --rate 100 --salt 0
 challenge-ci: challenge-table  ## the same on a small fixed set
 
 challenge-table: setup

@@ -191,6 +191,20 @@ def test_no_more_open_files_is_no_defect(
     )
 
 
+@pytest.mark.parametrize(
+    ("number", "remedy"),
+    [(errno.EACCES, "ask its owner"), (errno.ENAMETOOLONG, "shorter"), (errno.ELOOP, "a link")],
+)
+def test_a_path_that_the_system_refuses_is_no_defect(number, remedy, monkeypatch, capsys) -> None:
+    fail_with(OSError(number, os.strerror(number), "a.toml"), monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.run()
+    assert stopped.value.code == 2
+    line = capsys.readouterr().err
+    assert line.startswith("tsas: a.toml: the system refuses the call (")
+    assert remedy in line
+
+
 def test_a_stop_while_the_program_is_loaded_is_quiet() -> None:
     program = """
 import sys
@@ -204,6 +218,26 @@ main()
 """
     done = subprocess.run([sys.executable, "-c", program], stderr=subprocess.PIPE, check=False)
     assert (done.returncode, done.stderr) == (130, b"")
+
+
+def test_a_stop_in_text_that_a_library_executes_while_it_is_loaded_is_quiet(tmp_path: Path) -> None:
+    """CPython remembers a plain one, and ended by SIGINT: -2 in place of 130 on a busy machine."""
+    (tmp_path / "sitecustomize.py").write_text("""
+import sys
+class Stop:
+    def find_spec(self, name, *more):
+        if name == "tsas_cli.app":
+            exec("import os, signal; os.kill(os.getpid(), signal.SIGINT)")
+sys.meta_path.insert(0, Stop())
+""")
+    done = subprocess.run(
+        [sys.executable, "-m", "tsas_cli", "--version"],
+        capture_output=True,
+        check=False,
+        env=os.environ
+        | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"},
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
 
 
 def test_a_stop_beside_the_command_is_an_exit_code_too(

@@ -35,10 +35,15 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.stopping import EXIT_CODE
 
-# Errors of the system: a full or failing disk, too many open files.
-REFUSALS = frozenset(
-    {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO, errno.EMFILE, errno.ENFILE}
-)
+# What to do at an error of the system, by its number.
+_ROOM = "free disk space or raise the limit, and repeat the call"
+_ROOMLESS = ("ENOSPC", "EDQUOT", "EFBIG", "EROFS", "EIO", "EMFILE", "ENFILE")
+REFUSALS = {getattr(errno, name): _ROOM for name in _ROOMLESS} | {
+    errno.EACCES: "ask its owner for permission, or copy it",
+    errno.EPERM: "ask its owner for permission, or copy it",
+    errno.ENAMETOOLONG: "name a shorter path",
+    errno.ELOOP: "a link leads back to itself: remove it",
+}
 
 app = typer.Typer(
     name="tsas",
@@ -128,7 +133,7 @@ def _refused(error: OSError) -> int:
     except OSError:
         _discard_output()
     where = f"{error.filename}: " if error.filename else ""
-    remedy = "free disk space or raise the limit, and repeat the call"
+    remedy = REFUSALS[error.errno or 0]
     return _stop(printable(f"{where}the system refuses the call ({error.strerror}); {remedy}"), 2)
 
 

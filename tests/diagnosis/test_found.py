@@ -122,6 +122,15 @@ def test_directions_a_millionth_of_the_largest_do_not_count():
     assert f._orthonormal(np.diag([1e-20, 0.0, 0.0])).shape == (3, 0)
 
 
+def test_an_effect_without_a_free_parameter_is_like_none():
+    """Runs years apart leave a drift without one: it was an error of a maximum of nothing."""
+    one = SimpleNamespace(effect=SimpleNamespace(name="a"), signatures=np.ones((5, 1)))
+    none = SimpleNamespace(effect=SimpleNamespace(name="b"), signatures=np.ones((5, 0)))
+    found = f.signatures_of(SimpleNamespace(screened=[one, none]))
+    assert found.visible == (pytest.approx(5.0**0.5), 0.0)
+    np.testing.assert_allclose(found.similarity, [[1.0, 0.0], [0.0, 0.0]])
+
+
 def test_signatures_are_told_in_the_order_of_names():
     """How visible: the length of what all amplitudes do together."""
 

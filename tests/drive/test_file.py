@@ -42,7 +42,7 @@ def test_every_number_of_a_drive_has_a_unit():
     [
         ('unit = "mm/(s rpm)"', 'unit = "mm/s"', "expected the unit 'mm/(s rpm)'"),
         ("[parameters.gain_mm_per_s_rpm]", "[parameters.gain_mm]", "did you mean"),
-        ("value = 0.02", "value = -0.02", "a positive number"),
+        ("value = 0.02", "value = -0.02", "expected 1e-09 to 1e+06 mm/(s rpm)"),
         ("value = 0.02", "value = nan", "a finite number"),
         ('kind = "drive"', 'kind = "model"', "kind"),
         ("format = 1", "format = 2", "format"),
@@ -62,11 +62,11 @@ def test_what_does_not_fit_is_refused(tmp_path, old, new, said):
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [
-        ("gain_mm_per_s_rpm", -0.02, "expected a positive number"),
-        ("gain_mm_per_s_rpm", 0.0, "expected a positive number"),
+        ("gain_mm_per_s_rpm", -0.02, "expected 1e-09 to 1e+06 mm/(s rpm)"),
+        ("gain_mm_per_s_rpm", 0.0, "expected 1e-09 to 1e+06 mm/(s rpm)"),
         ("kV_rpm_s_per_mm", float("nan"), "should be a finite number"),
-        ("gear_ratio", 0.0, "expected a positive number"),
-        ("delay_s", -1.0, "expected zero or more"),
+        ("gear_ratio", 0.0, "expected 0.001 to 1e+06"),
+        ("delay_s", -1.0, "expected 0, or 1e-09 to 1000 s"),
         ("motor_lag_s", "slow", "should be a valid number"),
     ],
 )

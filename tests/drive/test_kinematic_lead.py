@@ -89,8 +89,14 @@ def manifest(**rig):
     ("wrong", "said"),
     [
         ({"friction_coefficient": 1000.0}, "transmits no tension"),
-        ({"inertia_N_mm_s2": 1e-300}, "Hz; expected 0.001 to 1e+06 Hz; check their units"),
-        ({"turntable_radius_mm": 1e-9}, "Hz; expected 0.001 to 1e+06 Hz; check their units"),
+        (
+            {"inertia_N_mm_s2": 1e-9, "turntable_radius_mm": 1e6},
+            "Hz; expected 0.001 to 1e+06 Hz; check",
+        ),
+        (
+            {"inertia_N_mm_s2": 1e9, "turntable_radius_mm": 1e-4},
+            "Hz; expected 0.001 to 1e+06 Hz; check",
+        ),
     ],
 )
 def test_a_data_sheet_of_no_drive_is_refused(wrong, said):

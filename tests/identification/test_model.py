@@ -169,7 +169,7 @@ def test_a_wrong_model_is_one_line(tmp_path, text, says):
         ({"name": "bristles.stiffness_N_per_mm", "unit": "N/mm", "value": 0.0}, "expected 0.01 to"),
         ({"name": "backlash.play_mm", "unit": "mm", "run": "b"}, "belongs to run b; expected one"),
         ({"name": CORRECTION, "unit": "N", "run": "b"}, "belongs to run b; expected one"),
-        ({"stderr": -0.1}, "stderr: input should be greater than or equal to 0, got -0.1"),
+        ({"stderr": -0.1}, "stderr: expected 0 to 1e+15, got -0.1"),
         ({"interval_low": 0.1}, "interval_low and interval_high go together"),
         ({"interval_low": 0.3, "interval_high": 0.1}, "interval_low 0.3 is above"),
         ({"interval_low": 0.3, "interval_high": 0.4}, "lies outside of its interval"),
@@ -370,7 +370,7 @@ LENGTH = "[runs.a.x_in_zero_mm]\nvalue = 1.0\nunit = 'mm'\n"
         (f"[parameters.{CORRECTION}]\nvalue = 1e300\nunit = 'N'\n", "expected -100000 to 100000"),
         (VALUE + "stderr = nan\n", "friction_coefficient.stderr: input should be a finite number"),
         (VALUE + "stderr = inf\n", "friction_coefficient.stderr: input should be a finite number"),
-        (VALUE + "stderr = -0.1\n", "stderr: input should be greater than or equal to 0, got -0.1"),
+        (VALUE + "stderr = -0.1\n", "stderr: expected 0 to 1e+15, got -0.1"),
         (
             VALUE + "interval_low = -inf\ninterval_high = 1.0\n",
             "should be a finite number, got -inf",

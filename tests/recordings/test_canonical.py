@@ -116,10 +116,10 @@ def test_an_extra_column_may_not_take_a_name_that_is_taken_or_breaks_the_termina
 @pytest.mark.parametrize(
     ("message", "name"),
     [
-        ({"time": {"rate_Hz": 1e-320}}, "time_s"),
-        ({"place": {"source": "x", "unit": "V", "factor": 1e305, "factor_unit": "m"}}, "x_in_mm"),
+        ({"values": {"t": [0, 1, np.inf]}}, "time_s"),
+        ({"place": {"source": "x", "unit": "V", "factor": 1e15, "factor_unit": "m"}}, "x_in_mm"),
     ],
 )
 def test_what_grows_infinite_is_refused_without_another_word(message, name):
     with pytest.raises(InputError, match=f"{name} is infinite"):  # warnings are errors in tests
-        ask({"x": [1, 2, 300]}, **message)
+        ask(**{"values": {"x": [1, 2, 1e300]}} | message)

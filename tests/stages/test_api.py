@@ -316,6 +316,14 @@ def test_check_is_told_by_run(folder, tmp_path):
         (lambda folder: tsas.plan(3), "3 is of type int"),
         (lambda folder: tsas.verify(3), "3 is of type int"),
         (lambda folder: tsas.ingest(3, map=4, out="x"), "is of type int"),
+        (lambda folder: tsas.simulate(folder, nodes="x"), "'x' is of type str; expected int"),
+        (lambda folder: tsas.simulate(folder, nodes=50.0), "50.0 is of type float; expected int"),
+        (lambda folder: tsas.predict(5, folder), "5 is of type int; expected str or Path"),
+        (lambda folder: tsas.compare("a", None), "None is of type NoneType; expected str or Path"),
+        (lambda folder: tsas.runs("", folder, limit=True), "True is of type bool; expected int"),
+        (lambda folder: tsas.read(300 * "a"), "no file can have this name"),
+        (lambda folder: tsas.check(folder, out="a\0b"), "no file can have this name"),
+        (lambda folder: tsas.track(settings=5000 * "a/"), "no file can have this name"),
     ],
 )
 def test_a_wrong_call_is_an_input_error(folder, wrong, says):

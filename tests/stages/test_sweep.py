@@ -148,6 +148,20 @@ def test_what_is_done_is_not_done_again_and_all_is_the_same(base, swept):
     }
 
 
+@pytest.mark.parametrize("name", ["sweep.json", "sweep.parquet"])
+def test_a_table_of_a_sweep_that_was_edited_is_told(base, tmp_path, name):
+    out = tmp_path / "out"
+    plan = {"stage": "check", "datasets": str(base / "rigs/a")}
+    tsas.sweep(plan, out=out, workers=1)
+    odd = [one for one in tsas.verify(out).files if one.state != "fits"]
+    assert [(Path(one.file).name, one.state) for one in odd] == [("journal.jsonl", "cannot tell")]
+    with (out / name).open("ab") as file:
+        file.write(b" ")
+    assert [Path(one.file).name for one in tsas.verify(out).wrong] == [name]
+    tsas.sweep(plan, out=out, workers=1)
+    assert tsas.verify(out).wrong == []
+
+
 def test_a_task_that_fails_is_named_with_its_input_and_the_rest_completes(base):
     out = base / "all"
     plan = {"stage": "simulate", "datasets": str(base / "rigs/*")}

@@ -60,7 +60,7 @@ class Object:
     def size(self):
         return 7
 
-    def read_bytes(self, start, end):
+    def read_part(self, start, end):
         return b"content"[start:end]
 
 

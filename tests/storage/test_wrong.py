@@ -44,7 +44,8 @@ def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
 
 
 def test_a_server_that_never_answers(keys, monkeypatch):
-    monkeypatch.setitem(storage._S3_WAITS, "read_timeout", 0.5)
+    monkeypatch.setenv(storage.TIMEOUT, "0.5")
+    monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     with socket.create_server((HOST, 0)) as silent:
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
         before = time.monotonic()
@@ -53,11 +54,12 @@ def test_a_server_that_never_answers(keys, monkeypatch):
 
 
 def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
-    monkeypatch.setattr(storage, "RESPONSE_S", 1.0)
+    monkeypatch.setenv(storage.TIMEOUT, "1")
+    monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     with socket.create_server((HOST, 0)) as silent:
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
         before = time.monotonic()
-        assert "the storage cannot be reached (FSTimeoutError)" in line_of("s3://a/b")
+        assert "the storage cannot be reached, or breaks off (" in line_of("s3://a/b")
         assert time.monotonic() - before < 20
 
 

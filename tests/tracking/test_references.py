@@ -101,6 +101,17 @@ def test_a_tendon_cannot_push(tmp_path):
         reference(name, FORM, 0.25)
 
 
+def test_a_loop_of_more_samples_than_anyone_waits_for_is_refused(tmp_path):
+    """An hour at 20 kHz: minutes of silence, and 6 GB."""
+    form = ReferenceSettings(duration_s=3600.0)
+    with pytest.raises(InputError, match="72000001 samples at 20000 Hz; expected at most 10000000"):
+        reference("sine", form, 1.0 / 20_000.0)
+    path = tmp_path / "wanted.parquet"
+    pq.write_table(pa.table({"time_s": [0.0, 3600.0], "f_out_ref_N": [20.0, 20.0]}), path)
+    with pytest.raises(InputError, match="has 72000001 samples"):
+        reference(str(path), form, 1.0 / 20_000.0)
+
+
 def test_an_unknown_shape_names_the_nearest():
     with pytest.raises(InputError, match=r"unknown reference sines.*did you mean sine\?"):
         reference("sines", FORM, H)

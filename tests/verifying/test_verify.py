@@ -155,6 +155,12 @@ def test_a_file_that_came_later_is_told(chain):
     assert result.wrong == []
 
 
+def test_a_list_that_was_emptied_has_changed(chain):
+    Path("result/check", SUMS).write_text("")
+    states = {(one.file, one.state, one.why) for one in tsas.verify("result/check").wrong}
+    assert states == {(f"result/check/{SUMS}", "changed", "is empty")}
+
+
 def test_what_a_file_says_is_not_believed(chain):
     content = json.loads(Path("result/check/check.json").read_text())
     for dataset in ({"hashes": {"x": 5}, "folder": 7}, [], {"hashes": []}):

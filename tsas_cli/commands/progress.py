@@ -89,6 +89,8 @@ def progress(label: str, *, quiet: bool, endable: bool = False) -> Iterator[Step
     Where the stage is `endable`, the first Ctrl-C ends its search; not under make, which removes
     the target of a recipe that is stopped.
     """
+    if quiet:
+        logging.getLogger("tsas").setLevel(logging.ERROR)
     if quiet or not sys.stderr.isatty():
         yield NO_PROGRESS
         return

@@ -8,6 +8,7 @@ from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.records.diagnosis import INCOMPLETE
 from tsas_cli.support.wording import count_of
+from tsas_cli.verifying.changed import change_notes
 
 SHOWN = 4  # names that are listed
 ALIKE = 0.01  # relative difference of two RMSE that makes none of them better
@@ -20,7 +21,8 @@ def findings(it: Comparison) -> list[str]:
 
 def notes(it: Comparison) -> list[str]:
     """Return what to keep in mind, what could not be matched, and what would give more."""
-    return [*_recordings(it), *_doubts(it), *_unmatched(it), *_more(it)]
+    changed = change_notes(side.path for side in it.sides.values())
+    return [*changed, *_recordings(it), *_doubts(it), *_unmatched(it), *_more(it)]
 
 
 def _values(it: Comparison) -> Iterator[str]:

@@ -12,6 +12,7 @@ from tsas_cli.records.result import Table
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
+from tsas_cli.verifying.changed import change_notes
 
 TRACKING_FILE = TrackingFile.FILE
 SCORES = {  # those that are better the smaller they are, with their units
@@ -155,7 +156,7 @@ def findings(it: Tracks) -> list[str]:
 
 def notes(it: Tracks) -> list[str]:
     """Return what to keep in mind, what could not be matched, and what would give more."""
-    return list(_notes(it))
+    return [*change_notes(it.paths.values()), *_notes(it)]
 
 
 def _notes(it: Tracks) -> Iterator[str]:

@@ -25,6 +25,7 @@ from tsas_cli.controllers.sliding_mode import (
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.paper.settings import printed, printed_three
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.plausible import Gain, GainOrZero, PositiveGain
 
 PHI = 0  # of the memory: the three estimates
 
@@ -43,13 +44,13 @@ class AdaptiveSettings(SlidingSettings):
     """Gains of the paper, ks read per metre; bounds are those of Table 4."""
 
     COLUMNS: ClassVar = ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm")
-    c1: float = printed("controllers.adaptive_sliding_mode.c1", gt=0)
-    c2: float = printed("controllers.adaptive_sliding_mode.c2", gt=0)
-    epsilon_rpm: float = printed("controllers.adaptive_sliding_mode.epsilon", ge=0)
-    ks: float = printed("controllers.adaptive_sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
-    lowest: tuple[float, float, float] = printed_three("adaptation.phi{}.lower")
-    highest: tuple[float, float, float] = printed_three("adaptation.phi{}.upper")
-    psi: tuple[float, float, float] = printed_three("controllers.adaptive_sliding_mode.psi{}")
+    c1: PositiveGain = printed("controllers.adaptive_sliding_mode.c1")
+    c2: PositiveGain = printed("controllers.adaptive_sliding_mode.c2")
+    epsilon_rpm: GainOrZero = printed("controllers.adaptive_sliding_mode.epsilon")
+    ks: GainOrZero = printed("controllers.adaptive_sliding_mode.ks", 1.0 / MM_PER_M)
+    lowest: tuple[Gain, Gain, Gain] = printed_three("adaptation.phi{}.lower")
+    highest: tuple[Gain, Gain, Gain] = printed_three("adaptation.phi{}.upper")
+    psi: tuple[Gain, Gain, Gain] = printed_three("controllers.adaptive_sliding_mode.psi{}")
 
     @model_validator(mode="after")
     def _start_within_bounds(self) -> Self:

@@ -11,11 +11,10 @@ above a third of the sampling rate.
 
 from typing import ClassVar, NamedTuple
 
-from pydantic import Field
-
 from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.plausible import AngularFrequency
 from tsas_cli.support.strict_table import StrictTable
 
 ERROR, DISTURBANCE = 0, 1  # of the memory
@@ -33,8 +32,8 @@ class ObserverSettings(StrictTable):
     """Bandwidths of loop and observer."""
 
     COLUMNS: ClassVar = ("error_estimate_mm", "disturbance_rpm")
-    loop_rad_per_s: float = Field(default=10.0, gt=0)
-    observer_rad_per_s: float = Field(default=40.0, gt=0)
+    loop_rad_per_s: AngularFrequency = 10.0
+    observer_rad_per_s: AngularFrequency = 40.0
 
     def law(self, gain_mm_per_s_rpm: float) -> DisturbanceObserver:
         """Return the gains as the kernel takes them; the drive's gain is that of its model."""

@@ -13,6 +13,7 @@ from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.paper.settings import printed
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.plausible import Gain
 from tsas_cli.support.strict_table import StrictTable
 
 SUM = 0  # of the memory: ∫e dt [mm s]
@@ -30,9 +31,9 @@ class PidSettings(StrictTable):
     """Gains of the paper; e in mm, u in rpm."""
 
     COLUMNS: ClassVar = ("error_sum_mm_s",)  # of the recording: what the memory holds
-    proportional_rpm_per_mm: float = printed("controllers.pid.proportional")
-    integral_rpm_per_mm_s: float = printed("controllers.pid.integral")
-    derivative_rpm_s_per_mm: float = printed("controllers.pid.derivative")
+    proportional_rpm_per_mm: Gain = printed("controllers.pid.proportional")
+    integral_rpm_per_mm_s: Gain = printed("controllers.pid.integral")
+    derivative_rpm_s_per_mm: Gain = printed("controllers.pid.derivative")
 
     def law(self) -> Pid:
         """Return the gains as the kernel takes them."""

@@ -11,11 +11,10 @@ is a relay bounded by the motor's limit alone; where c2² < 4 c1 the error rings
 
 from typing import ClassVar, NamedTuple
 
-from pydantic import Field
-
 from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.paper.settings import printed, printed_three
+from tsas_cli.support.plausible import Gain, GainOrZero, PositiveGain
 from tsas_cli.support.strict_table import StrictTable
 
 MM_PER_M = 1e3
@@ -50,12 +49,12 @@ class SlidingSettings(StrictTable):
     """Gains of the paper, ks read per metre; the parameters are where Table 4 starts."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = ()
-    c1: float = printed("controllers.sliding_mode.c1", gt=0)
-    c2: float = printed("controllers.sliding_mode.c2", gt=0)
-    epsilon_rpm: float = printed("controllers.sliding_mode.epsilon", ge=0)
-    ks: float = printed("controllers.sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
-    boundary_mm_per_s2: float = Field(default=80.0, gt=0)
-    phi: tuple[float, float, float] = printed_three("adaptation.phi{}.initial")
+    c1: PositiveGain = printed("controllers.sliding_mode.c1")
+    c2: PositiveGain = printed("controllers.sliding_mode.c2")
+    epsilon_rpm: GainOrZero = printed("controllers.sliding_mode.epsilon")
+    ks: GainOrZero = printed("controllers.sliding_mode.ks", 1.0 / MM_PER_M)
+    boundary_mm_per_s2: PositiveGain = 80.0
+    phi: tuple[Gain, Gain, Gain] = printed_three("adaptation.phi{}.initial")
 
     def surface(self) -> Surface:
         """Return the sliding surface as the kernel takes it."""

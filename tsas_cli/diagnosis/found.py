@@ -111,7 +111,7 @@ def signatures_of(search: Hypotheses | None) -> records.Signatures:
 
 def _orthonormal(signatures: Floats) -> Floats:
     u, sizes, _ = np.linalg.svd(signatures, full_matrices=False)
-    return np.asarray(u[:, sizes > 1e-6 * max(float(sizes.max()), 1e-12)])
+    return np.asarray(u[:, sizes > 1e-6 * sizes.max(initial=1e-12)])
 
 
 def _similarity(a: Floats, b: Floats) -> float:

@@ -9,20 +9,33 @@ from pydantic import Field, field_validator, model_validator
 from tsas_cli.diagnosis.motions import PEAK, Kind
 from tsas_cli.recordings.manifest import RigSheet, RunId, parse, read_toml
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.plausible import (
+    Bend,
+    Displacement,
+    Duration,
+    Frequency,
+    Length,
+    NoiseMm,
+    SampleRate,
+    Speed,
+    Tension,
+    plausible,
+)
 from tsas_cli.support.strict_table import StrictTable
 
 MOST_SAMPLES = 1_000_000  # of a run
+_ForceNoise = Annotated[float, plausible(1e-9, 1e6, "N")]
 OUTPUTS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
 class Sensors(StrictTable):
     """The sample rate, and the noise level of each channel; None: not recorded."""
 
-    rate_Hz: float = Field(gt=0)
-    x_in_mm: float = Field(ge=0)
-    x_out_mm: float | None = Field(default=None, gt=0)
-    f_in_N: float | None = Field(default=None, gt=0)
-    f_out_N: float | None = Field(default=None, gt=0)
+    rate_Hz: SampleRate
+    x_in_mm: NoiseMm
+    x_out_mm: Annotated[float, plausible(1e-9, 1e3, "mm")] | None = None
+    f_in_N: _ForceNoise | None = None
+    f_out_N: _ForceNoise | None = None
 
     @model_validator(mode="after")
     def _measures(self) -> "Sensors":
@@ -41,15 +54,15 @@ class PlannedRun(StrictTable):
     """One run: its conditions and its motion."""
 
     id: RunId
-    sheath_length_mm: float = Field(gt=0)
-    total_bend_rad: float = Field(ge=0)
-    preload_N: float = Field(gt=0)
+    sheath_length_mm: Length
+    total_bend_rad: Bend
+    preload_N: Tension
     motion: Kind
-    amplitude_mm: float = Field(gt=0)
-    speed_mm_per_s: float | None = Field(default=None, gt=0)
-    frequency_Hz: float | None = Field(default=None, gt=0)
+    amplitude_mm: Displacement
+    speed_mm_per_s: Speed | None = None
+    frequency_Hz: Frequency | None = None
     periods: int = Field(default=2, ge=1, le=10_000)
-    dwell_s: float = Field(default=0.0, ge=0)
+    dwell_s: Duration = 0.0
 
     @model_validator(mode="after")
     def _one_speed(self) -> "PlannedRun":
@@ -72,10 +85,10 @@ class PlannedRun(StrictTable):
 class Limits(StrictTable):
     """Limits of the rig; by default those of the planned runs."""
 
-    amplitude_mm: float | None = Field(default=None, gt=0)
-    speed_mm_per_s: float | None = Field(default=None, gt=0)
-    preload_N: tuple[Annotated[float, Field(gt=0)], ...] = ()
-    total_bend_rad: tuple[Annotated[float, Field(ge=0)], ...] = ()
+    amplitude_mm: Displacement | None = None
+    speed_mm_per_s: Speed | None = None
+    preload_N: tuple[Tension, ...] = ()
+    total_bend_rad: tuple[Bend, ...] = ()
 
     @field_validator("preload_N", "total_bend_rad")
     @classmethod

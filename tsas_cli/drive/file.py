@@ -9,37 +9,34 @@ from typing import Literal
 import tomlkit
 from pydantic import BaseModel, ConfigDict
 
-from tsas_cli.identification.estimate import Estimate, StoredValue
+from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.plausible import Range
 
-UNITS = {
-    "gain_mm_per_s_rpm": "mm/(s rpm)",
-    "motor_lag_s": "s",
-    "delay_s": "s",
-    "leak_per_s": "1/s",
-    "natural_frequency_Hz": "Hz",
-    "damping_ratio": "1",
-    "sine_mm": "mm",
-    "cosine_mm": "mm",
-    "play_mm": "mm",
-    "kV_rpm_s_per_mm": "rpm s/mm",
-    "kA_rpm_s2_per_mm": "rpm s²/mm",
-    "damping_N_s_per_mm": "N s/mm",
-    "drive_stiffness_N_per_mm": "N/mm",
-    "whole_stiffness_N_per_mm": "N/mm",
-    "pull_back_N_per_mm": "N/mm",
-    "compliance_mm_per_N": "mm/N",
-    "turntable_radius_mm": "mm",
-    "gear_ratio": "1",
-    "inertia_N_mm_s2": "N mm s²",
+RANGES = {
+    "gain_mm_per_s_rpm": Range(1e-9, 1e6, "mm/(s rpm)"),
+    "motor_lag_s": Range(1e-9, 1e3, "s", or_zero=True),
+    "delay_s": Range(1e-9, 1e3, "s", or_zero=True),
+    "leak_per_s": Range(1e-9, 1e6, "1/s", or_zero=True),
+    "natural_frequency_Hz": Range(1e-6, 1e9, "Hz"),
+    "damping_ratio": Range(1e-9, 1e6),
+    "sine_mm": Range(-1e6, 1e6, "mm"),
+    "cosine_mm": Range(-1e6, 1e6, "mm"),
+    "play_mm": Range(1e-9, 1e6, "mm", or_zero=True),
+    "kV_rpm_s_per_mm": Range(1e-6, 1e9, "rpm s/mm"),
+    "kA_rpm_s2_per_mm": Range(1e-12, 1e9, "rpm s²/mm", or_zero=True),
+    "damping_N_s_per_mm": Range(-1e9, 1e9, "N s/mm"),
+    "drive_stiffness_N_per_mm": Range(1e-9, 1e12, "N/mm"),
+    "whole_stiffness_N_per_mm": Range(-1e12, 1e12, "N/mm"),
+    "pull_back_N_per_mm": Range(-1e12, 1e12, "N/mm"),
+    "compliance_mm_per_N": Range(-1e9, 1e9, "mm/N"),
+    "turntable_radius_mm": Range(1e-4, 1e6, "mm"),
+    "gear_ratio": Range(1e-3, 1e6),
+    "inertia_N_mm_s2": Range(1e-9, 1e9, "N mm s²"),
 }
-POSITIVE = (
-    "gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "turntable_radius_mm",
-    "gear_ratio", "inertia_N_mm_s2", "drive_stiffness_N_per_mm", "kV_rpm_s_per_mm",
-)  # fmt: skip
-NOT_NEGATIVE = ("motor_lag_s", "delay_s", "leak_per_s", "play_mm", "kA_rpm_s2_per_mm")
+UNITS = {name: allowed.unit for name, allowed in RANGES.items()}
 
 
 @dataclass(frozen=True)
@@ -155,13 +152,6 @@ def drive_of(values: Mapping[str, float]) -> IdentifiedDrive:
 
 
 def _check(name: str, value: StoredValue, path: object) -> None:
-    if name not in UNITS:
-        raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, UNITS))
-    if value.unit != UNITS[name]:
-        raise InputError(
-            f"{name} is in {value.unit!r}", where=path, expected=f"the unit {UNITS[name]!r}"
-        )
-    if name in POSITIVE and value.value <= 0.0:
-        raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")
-    if name in NOT_NEGATIVE and value.value < 0.0:
-        raise InputError(f"{name} is {value.value}", where=path, expected="zero or more")
+    if name not in RANGES:
+        raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, RANGES))
+    check_value(name, value, RANGES[name], path)

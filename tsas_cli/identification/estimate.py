@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from tsas_cli.records.base import check_interval, value_text
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.plausible import AnyNumber, Range, StandardError
 
 Origin = Literal["fitted", "data sheet", "default", "given"]
 
@@ -38,12 +40,23 @@ class StoredValue(BaseModel):
     value: float
     unit: str
     origin: Origin = "data sheet"
-    stderr: float | None = Field(default=None, ge=0)
-    interval_low: float | None = None
-    interval_high: float | None = None
+    stderr: StandardError | None = None
+    interval_low: AnyNumber | None = None
+    interval_high: AnyNumber | None = None
     at_bound: bool = False
 
     @model_validator(mode="after")
     def _can_be_an_estimate(self) -> Self:
         check_interval(self.value, self.interval_low, self.interval_high)
         return self
+
+
+def check_value(name: str, value: StoredValue, allowed: Range, where: object) -> None:
+    """Refuse a value in another unit than that of its range, or outside of it: InputError."""
+    if value.unit != allowed.unit:
+        raise InputError(
+            f"{name} is in {value.unit!r}", where=where, expected=f"the unit {allowed.unit!r}"
+        )
+    if value.value not in allowed:
+        shown = "" if allowed.unit == "1" else f" {allowed.unit}"
+        raise InputError(f"{name} is {value.value:g}{shown}", where=where, expected=str(allowed))

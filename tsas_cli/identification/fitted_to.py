@@ -21,6 +21,7 @@ from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.units import is_unit
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.plausible import LARGEST, AnyNumber
 
 MARGIN = 0.1
 CENTRAL_PERCENT = (0.5, 99.5)  # of a tension: single samples are no load
@@ -28,9 +29,8 @@ SPEED_PERCENT = 95.0  # of |dx_in/dt|: nearly the fastest part of the motion
 SPEED_WINDOWS = 4.0  # of the conditioning, over which a slope is taken: it needs more than a value
 STROKE_SHARE = 0.1  # of a stroke, which that window does not exceed
 _WITHOUT_DIMENSION = ("deg", "rad", "percent")
-_LARGEST = 1e300  # of an integer that a float can hold; NaN is not below it
 
-Range = tuple[float, float]
+Range = tuple[AnyNumber, AnyNumber]
 
 
 class FittedTo(BaseModel):
@@ -161,7 +161,7 @@ def _is_number(name: str, value: object) -> bool:
     unit = name.rpartition("_")[2]
     if isinstance(value, bool) or not isinstance(value, int | float) or unit == name:
         return False
-    return -_LARGEST < value < _LARGEST and (unit in _WITHOUT_DIMENSION or is_unit(unit))
+    return -LARGEST < value < LARGEST and (unit in _WITHOUT_DIMENSION or is_unit(unit))
 
 
 def _is_date(text: str) -> bool:

@@ -7,7 +7,7 @@ from typing import Literal
 import tomlkit
 from pydantic import BaseModel, ConfigDict
 
-from tsas_cli.identification.estimate import Estimate, StoredValue
+from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
@@ -15,9 +15,10 @@ from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.manifest import Manifest, parse, read_toml
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.plausible import Range
 
 IN_MEMORY = "in memory"  # in place of a file, for a model passed in Python
-CORRECTIONS_N = (-1e5, 1e5)
+CORRECTIONS_N = Range(-1e5, 1e5, "N")
 MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 
 
@@ -155,11 +156,14 @@ def _check_owners(values: Sequence[_Value], where: object) -> None:
 
 def _checked(values: Sequence[_Value], where: object) -> Model:
     """Return the model of these values, each with its name and its run, if they can be."""
-    units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
+    ranges = {
+        name: Range(q.lower, q.upper, q.unit, or_zero=name in MAY_BE_ZERO)
+        for name, q in QUANTITIES.items()
+    } | {CORRECTION: CORRECTIONS_N}
     seen: set[tuple[str, str | None]] = set()
     for name, run, value in values:
-        if name not in units:
-            known = [other for other in units if ("." in other) == ("." in name)]
+        if name not in ranges:
+            known = [other for other in ranges if ("." in other) == ("." in name)]
             raise InputError(f"unknown parameter {name}", where=where, remedy=nearest(name, known))
         if run is not None and ("." in name or name == CORRECTION):
             raise InputError(
@@ -171,22 +175,7 @@ def _checked(values: Sequence[_Value], where: object) -> Model:
         if (name, run) in seen:
             raise InputError(f"duplicate parameter {name}", where=where)
         seen.add((name, run))
-        _check_value(name, value, units[name], where)
+        check_value(name, value, ranges[name], where)
     return Model(
         tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
     )
-
-
-def _check_value(name: str, value: StoredValue, unit: str, path: object) -> None:
-    if value.unit != unit:
-        raise InputError(f"{name} is in {value.unit!r}", where=path, expected=f"the unit {unit!r}")
-    known = QUANTITIES.get(name)
-    low, high = (known.lower, known.upper) if known else CORRECTIONS_N
-    zero = value.value == 0.0 and name in MAY_BE_ZERO
-    if not (low <= value.value <= high or zero):
-        shown = "" if unit == "1" else f" {unit}"
-        raise InputError(
-            f"{name} is {value.value:g}{shown}",
-            where=path,
-            expected=f"{'0, or ' if name in MAY_BE_ZERO else ''}{low:g} to {high:g}{shown}",
-        )

@@ -7,9 +7,9 @@ from pydantic import Field
 from tsas_cli.paper import yang2025
 
 
-def printed(name: str, factor: float = 1.0, **limits: Any) -> Any:
+def printed(name: str, factor: float = 1.0) -> Any:
     """Return a field whose default is a number that the paper prints."""
-    return Field(default_factory=lambda: factor * yang2025().value(name), **limits)
+    return Field(default_factory=lambda: factor * yang2025().value(name))
 
 
 def printed_three(name: str) -> Any:

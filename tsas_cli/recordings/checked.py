@@ -11,7 +11,7 @@ from typing import IO, TypeAlias
 import pyarrow as pa
 
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.storage import Address, Location, check_inside
+from tsas_cli.recordings.storage import Address, Location, NotThereError, check_inside
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
@@ -28,7 +28,7 @@ def checked_file(folder: Location, run: Run) -> ParquetSource:
         path = folder / run.file
         try:
             content = fetched(path, run.sha256.lower())
-        except FileNotFoundError as error:
+        except NotThereError as error:
             raise _missing(path, run) from error
         if content is None:
             raise changed(path, run)
@@ -71,7 +71,7 @@ def changed(path: Location, run: Run) -> InputError:
     )
 
 
-REQUEST_BYTES = 64 * 1024 * 1024
+REQUEST_BYTES = 16 * 1024 * 1024
 CACHE_BYTES = 1024 * 1024 * 1024  # on disk, for recordings that are read again
 
 _CACHE: OrderedDict[tuple[Address, str], mmap.mmap] = OrderedDict()  # each report section reads
@@ -83,10 +83,9 @@ def fetched(address: Address, sha256: str) -> mmap.mmap | None:
 
     Raises
     ------
-    FileNotFoundError
-        There is no such object.
     InputError
-        The storage fails, or the disk has no room for the recording.
+        There is no such object (`NotThereError`), the storage fails, or the disk has no room for
+        the recording.
     """
     key = address, sha256
     with _LOCK:
@@ -103,7 +102,7 @@ def _fetch(address: Address, sha256: str) -> mmap.mmap | None:
     # Unnamed: a killed process leaves nothing. Unbuffered: no rest is written at the end.
     with tempfile.TemporaryFile(buffering=0) as file:
         for start in range(0, size, REQUEST_BYTES):
-            part = address.read_bytes(start, min(start + REQUEST_BYTES, size))
+            part = address.read_part(start, min(start + REQUEST_BYTES, size))
             digest.update(part)
             _write(file, part)
         if digest.hexdigest() != sha256 or not size:

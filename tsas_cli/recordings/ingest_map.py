@@ -12,6 +12,7 @@ from tsas_cli.recordings.manifest import Load, RigSheet, parse, read_toml
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
+from tsas_cli.support.plausible import AnyNumber, Bend, Length, Preload, Radius, SampleRate
 from tsas_cli.support.strict_table import StrictTable
 
 QUESTION = "?"  # in place of a value that a guessed map leaves open
@@ -38,13 +39,13 @@ class ColumnMap(StrictTable):
     """`[columns.NAME]`: value = sign · (source in the canonical unit) − offset."""
 
     source: ColumnSource = ""
-    rate_Hz: float | None = Field(default=None, gt=0)  # time_s of files without a clock
+    rate_Hz: SampleRate | None = None  # time_s of files without a clock
     unit: str | None = None
-    factor: float | None = None
+    factor: AnyNumber | None = None
     factor_unit: str | None = None
-    pulley_radius_mm: float | None = Field(default=None, gt=0)
+    pulley_radius_mm: Radius | None = None
     sign: Literal[1, -1] = 1
-    offset: float | Literal["first"] = 0.0  # in the canonical unit; "first": the first sample
+    offset: AnyNumber | Literal["first"] = 0.0  # in the canonical unit; "first": the first sample
 
     @model_validator(mode="after")
     def _is_whole(self) -> "ColumnMap":
@@ -73,9 +74,9 @@ class RunMap(StrictTable):
 
     id: str = "{stem}"
     load: Load = "spring"
-    preload_N: float | None = None
-    sheath_length_mm: float | None = None
-    total_bend_rad: float | None = None
+    preload_N: Preload | None = None
+    sheath_length_mm: Length | None = None
+    total_bend_rad: Bend | None = None
     from_file_name: FromText | None = None
     from_header: FromText | None = None
     conditions: dict[_Condition, Converted] = Field(default_factory=dict)

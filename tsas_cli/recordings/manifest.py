@@ -25,6 +25,19 @@ from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
+from tsas_cli.support.plausible import (
+    Bend,
+    Diameter,
+    FreeLength,
+    Friction,
+    GearRatio,
+    Inertia,
+    Length,
+    Modulus,
+    Preload,
+    Radius,
+    Stiffness,
+)
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -74,15 +87,15 @@ class _ManifestTable(BaseModel):
 class RigSheet(_ManifestTable):
     """Data sheet of the rig; every key is optional and carries its unit."""
 
-    tendon_diameter_mm: float | None = Field(default=None, gt=0)
-    tendon_modulus_GPa: float | None = Field(default=None, gt=0)
-    friction_coefficient: float | None = Field(default=None, ge=0)
-    load_stiffness_N_per_mm: float | None = Field(default=None, gt=0)
-    turntable_radius_mm: float | None = Field(default=None, gt=0)
-    gear_ratio: float | None = Field(default=None, gt=0)
-    inertia_N_mm_s2: float | None = Field(default=None, gt=0)
-    proximal_length_mm: float | None = Field(default=None, ge=0)
-    distal_length_mm: float | None = Field(default=None, ge=0)
+    tendon_diameter_mm: Diameter | None = None
+    tendon_modulus_GPa: Modulus | None = None
+    friction_coefficient: Friction | None = None
+    load_stiffness_N_per_mm: Stiffness | None = None
+    turntable_radius_mm: Radius | None = None
+    gear_ratio: GearRatio | None = None
+    inertia_N_mm_s2: Inertia | None = None
+    proximal_length_mm: FreeLength | None = None
+    distal_length_mm: FreeLength | None = None
 
 
 class Run(_ManifestTable):
@@ -92,9 +105,9 @@ class Run(_ManifestTable):
     file: str
     sha256: str = Field(pattern=r"^[0-9a-fA-F]{64}$")
     started: Annotated[datetime, BeforeValidator(_as_date)] | None = None
-    sheath_length_mm: float | None = Field(default=None, gt=0)
-    total_bend_rad: float | None = Field(default=None, ge=0)
-    preload_N: float | None = Field(default=None, ge=0)
+    sheath_length_mm: Length | None = None
+    total_bend_rad: Bend | None = None
+    preload_N: Preload | None = None
     load: Load = "spring"
 
     @field_validator("file")

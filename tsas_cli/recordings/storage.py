@@ -4,33 +4,50 @@ An address has the few methods of a path that reading a dataset needs. It uses f
 imported on first use.
 """
 
+import errno
 import logging
 import os
 import re
-from collections.abc import Callable
+import threading
+import time
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.plausible import Range
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
-CONNECT_S, READ_S, TRIES, RESPONSE_S = 5.0, 10.0, 2, 25.0
-_S3_WAITS = {"connect_timeout": CONNECT_S, "read_timeout": READ_S, "retries": {"max_attempts": 1}}
+TIMEOUT = "TSAS_STORAGE_TIMEOUT_S"  # of a request; one of many bytes has longer
+TIMEOUT_S, TIMEOUTS_S = 20.0, Range(0.1, 3600.0, "s")
+BYTES_IN_TIME = 4 << 20  # for each of these it has that time once more
+TRIES, PAUSE_S = 3, 1.0  # the pause doubles
+PATIENCE_S = 5.0  # after which it is said what is waited for
+LOG = logging.getLogger("tsas")
 _EXPECTED = "SCHEME://BUCKET/PATH"
 SCHEME = re.compile(r"(\w[\w+.-]*)://")
-Returned = TypeVar("Returned")
+
+
+class NotThereError(InputError):
+    """There is no such object on the storage."""
+
+    def __init__(self, address: "Address") -> None:
+        super().__init__(
+            "is not on the storage",
+            where=address,
+            remedy="check the address; what was there may have been removed meanwhile",
+        )
 
 
 @dataclass(frozen=True)
 class Address:
     """A folder or an object on object storage.
 
-    What asks the storage raises FileNotFoundError where there is no such object, and InputError
-    where the storage fails or refuses access.
+    What asks the storage raises NotThereError where there is no such object, and another InputError
+    where the storage fails, is silent or refuses access.
     """
 
     scheme: str  # s3 or gs
@@ -52,41 +69,84 @@ class Address:
         """Return whether the object exists."""
         try:
             self.size()
-        except FileNotFoundError:
+        except NotThereError:
             return False
         return True
 
     def size(self) -> int:
         """Return the size of the object [bytes]."""
-        info = self._call(lambda files: _in_time(files, files._info, self.path))  # noqa: SLF001
+        info = self._call("_info", self.path)
         if info["type"] != "file":
-            raise FileNotFoundError(str(self))
+            raise NotThereError(self)
         return int(info["size"])
 
     def read_bytes(self, start: int | None = None, end: int | None = None) -> bytes:
         """Return the bytes of the object, or those from `start` up to `end`, in one request."""
-        return bytes(self._call(lambda files: files.cat_file(self.path, start=start, end=end)))
+        return bytes(self._call("_cat_file", self.path, start=start, end=end))
+
+    def read_part(self, start: int, end: int) -> bytes:
+        """Return the bytes from `start` up to `end`, all of which the object has to hold."""
+        part = {"start": start, "end": end, "transfers": end - start}
+        return bytes(self._call("_cat_file", self.path, exactly=True, **part))
 
     def write_bytes(self, content: bytes) -> None:
         """Write the object, whole or not at all."""
-        self._call(lambda files: files.pipe_file(self.path, content))
+        self._call("_pipe_file", self.path, content, transfers=len(content))
 
-    def copy_from(self, file: Path) -> None:
-        """Write the object from a local file, whole or not at all."""
-        self._call(lambda files: files.put_file(str(file), self.path))
+    def copy_from(self, file: Path, sha256: str) -> None:
+        """Write the object and its checksum from a local file, whole or not at all."""
+        metadata: dict[str, Any] = {_METADATA[self.scheme]: {_SUM: sha256}}
+        size = file.stat().st_size
+        self._call("_put_file", str(file), self.path, transfers=size, **metadata)
 
-    def _call(self, call: Callable[[Any], Returned]) -> Returned:
-        """Return the result of a storage call; its errors become `InputError`."""
+    def holds(self, sha256: str) -> bool:
+        """Return whether `copy_from` has written the object from a file with this checksum."""
         try:
-            return call(files_of(self.scheme))
-        except FileNotFoundError as error:
-            if "specified bucket does not exist" not in str(error):
-                raise
-            raise InputError("there is no such bucket", where=self) from error
-        except InputError:
-            raise
-        except Exception as error:  # fsspec passes on the errors of each storage's library
-            raise _storage_error(self, error) from error
+            if self.scheme == "s3":
+                said = self._call("_metadata", self.path)
+            else:
+                said = self._call("_info", self.path).get("metadata") or {}
+        except NotThereError:
+            return False
+        return bool(said.get(_SUM) == sha256)
+
+    def _call(
+        self, name: str, *given: Any, transfers: int = 0, exactly: bool = False, **named: Any
+    ) -> Any:
+        """Return what the storage's library answers; its errors become `InputError`.
+
+        `transfers` is the number of bytes on the way, `exactly` whether so many have to come back.
+        What is silent or breaks off is asked `TRIES` times. The libraries' own retries are off:
+        they say nothing, and gcsfs goes on for a minute.
+        """
+        from fsspec.asyn import sync
+
+        files = files_of(self.scheme)
+        longest_s = timeout_s() * (1.0 + transfers / BYTES_IN_TIME)
+        for tried in range(1, TRIES + 1):
+            told_late = threading.Timer(PATIENCE_S, LOG.info, ["waits for %s", self])
+            told_late.daemon = True
+            told_late.start()
+            try:
+                found = sync(files.loop, getattr(files, name), *given, timeout=longest_s, **named)
+                _refuse_short(found, transfers if exactly else None)
+            except FileNotFoundError as error:
+                if "specified bucket does not exist" not in str(error):
+                    raise NotThereError(self) from error
+                raise InputError("there is no such bucket", where=self) from error
+            except Exception as error:  # fsspec passes on the errors of each storage's library
+                told = _storage_error(self, error)
+                if not _passes(error) or tried == TRIES:
+                    raise told from error
+                pause_s = PAUSE_S * 2.0 ** (tried - 1)
+                again = f"try {tried + 1} of {TRIES} in {pause_s:g} s"
+                LOG.warning("%s: %s; %s", self, told.what, again)
+                time.sleep(pause_s)
+            else:
+                return found
+            finally:
+                told_late.cancel()
+        raise AssertionError  # the last try returns or raises
 
 
 Location = Path | Address
@@ -173,9 +233,11 @@ def files_of(scheme: str) -> Any:
             f"addresses with {scheme}:// need the package {PACKAGES[scheme]}",
             remedy=f"install tsas[{scheme}]",
         ) from error
-    waits = {"timeout": READ_S} if scheme == "gs" else {"config_kwargs": _S3_WAITS}
+    wait_s = timeout_s()
+    s3 = {"connect_timeout": wait_s, "read_timeout": wait_s, "retries": {"max_attempts": 1}}
+    waits = {"timeout": wait_s} if scheme == "gs" else {"config_kwargs": s3}
     files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
-    files.retries = TRIES
+    files.retries = 1
     logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # it raises what it logs
     # A task that its call has given up fails in silence: the call has raised its own error.
     files.loop.call_soon_threadsafe(files.loop.set_exception_handler, lambda *_: None)
@@ -186,15 +248,32 @@ if hasattr(os, "register_at_fork"):  # connections belong to one process
     os.register_at_fork(after_in_child=files_of.cache_clear)
 
 
-def _in_time(files: Any, ask: Callable[..., Any], path: str) -> Any:
-    """Return a storage's description of an object, within `RESPONSE_S`.
+def _refuse_short(found: Any, size: int | None) -> None:
+    if size is not None and len(found) != size:
+        raise ConnectionError(f"{len(found)} of {size} bytes")
 
-    This is the first request of each call. The libraries' own limits are per try, and gcsfs retries
-    for a minute.
+
+def timeout_s() -> float:
+    """Return the time limit of a request [s], of the environment where it says one.
+
+    Raises
+    ------
+    InputError
+        It says no time, or one that nobody waits.
     """
-    from fsspec.asyn import sync
+    given = os.environ.get(TIMEOUT) or str(TIMEOUT_S)
+    try:
+        return TIMEOUTS_S(float(given))
+    except ValueError as error:
+        raise InputError(f"is {given!r}", where=TIMEOUT, expected=str(TIMEOUTS_S)) from error
 
-    return sync(files.loop, ask, path, timeout=RESPONSE_S)
+
+def _passes(error: Exception) -> bool:
+    """Return whether an error may be over at the next try."""
+    kinds = {kind.__name__ for kind in type(error).__mro__}
+    number, code = getattr(error, "errno", None), getattr(error, "code", None)
+    unreached = isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED
+    return bool(unreached) or number in _BUSY or ("HttpError" in kinds and code in _BUSY_CODES)
 
 
 def _storage_error(address: Address, error: Exception) -> InputError:
@@ -219,15 +298,20 @@ def _storage_error(address: Address, error: Exception) -> InputError:
         )
     if isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED:
         return InputError(
-            f"the storage cannot be reached ({type(error).__name__})",
+            f"the storage cannot be reached, or breaks off ({type(error).__name__})",
             where=address,
-            remedy="check the network, and the endpoint if one is set",
+            remedy="check the network, and the endpoint if one is set; repeat the call, "
+            f"with a longer {TIMEOUT} (in seconds) if the storage is slow",
         )
     reason = (str(error).splitlines() or [""])[0]
     reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)
     return InputError(f"the storage fails ({type(error).__name__}: {reason})", where=address)
 
 
+_SUM = "tsas-sha256"  # key of an object's metadata
+_METADATA = {"s3": "Metadata", "gs": "metadata"}
+_BUSY = {errno.EBUSY, getattr(errno, "EREMOTEIO", errno.EIO)}  # 503 and 500, as s3fs has them
+_BUSY_CODES = {408, 429, *range(500, 505)}
 # By name, since the libraries are optional.
 _UNREACHED = {
     "ConnectionError",
@@ -236,4 +320,7 @@ _UNREACHED = {
     "ClientPayloadError",
     "FSTimeoutError",
     "TransportError",
+    "FlexibleChecksumError",
+    "ChecksumError",
+    "RequestException",
 }

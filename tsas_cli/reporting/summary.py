@@ -8,10 +8,13 @@ from tsas_cli.records.check import CheckFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.support.wording import count_of
+from tsas_cli.verifying.changed import change_notes
 
 
 def sentences(inputs: Inputs) -> Iterator[str]:
-    """Yield the sentences of the summary, none without a dataset."""
+    """Yield the sentences of the summary; without a dataset, of what was changed alone."""
+    places = [*inputs.folders.values(), *(folder for _, folder in inputs.more_simulations)]
+    yield from change_notes(places)
     if inputs.dataset is None:
         return
     manifest = inputs.dataset.manifest

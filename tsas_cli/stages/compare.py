@@ -12,7 +12,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.comparison import ComparisonFile
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, dataset_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, file_of, path_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -78,7 +78,7 @@ def compare(
         A or B is none of these, there is nothing that both hold, a recording cannot be read, an
         option has nothing to work on, or `out` exists and `force` is not set.
     """
-    sides: list[Path | Model] = [path_of(a, Model), path_of(b, Model)]
+    sides = [side if isinstance(side, Model) else file_of(side) for side in (a, b)]
     paths = [side for side in sides if isinstance(side, Path)]
     tracks = len(paths) == len(sides) and are_tracked(*paths)
     _refuse(on=on is not None, runs=runs is not None, tracks=tracks)

@@ -1,5 +1,6 @@
 """What a caller may hand over: a dataset or its folder, a path or its text, a word of a few."""
 
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import NoneType
@@ -10,6 +11,7 @@ from tsas_cli.recordings.storage import Address, Location, location_of
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 
+NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS and Windows allow less
 Named = str | Path
 Thing = TypeVar("Thing")
 Word = TypeVar("Word", bound=str)
@@ -23,17 +25,19 @@ def path_of(given: Thing | str, *kinds: type) -> Thing | Path:
     InputError
         It is of another kind.
     """
-    return Path(given) if isinstance(given, str) else _of_kind((Path, NoneType, *kinds), given)
+    named: Thing | Path = Path(given) if isinstance(given, str) else given
+    of_kind((Path, NoneType, *kinds), named)
+    return _nameable(named)
 
 
 def file_of(given: Named) -> Path:
     """Return a path or its text as a path; InputError where it is of another kind."""
-    return Path(_of_kind((str, Path), given))
+    return _nameable(Path(of_kind((str, Path), given)))
 
 
 def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
     """Return one path or several as a list; InputError for another kind, or fewer than `least`."""
-    return [Path(_of_kind((str, Path), each)) for each in _several(given, least)]
+    return [file_of(each) for each in several_of(given, least)]
 
 
 def places_of(given: Named | Iterable[Named]) -> list[Location]:
@@ -44,7 +48,9 @@ def places_of(given: Named | Iterable[Named]) -> list[Location]:
     InputError
         One is of another kind, or there is none.
     """
-    return [location_of(_of_kind((str, Path, Address), each)) for each in _several(given, 1)]
+    return [
+        _nameable(location_of(of_kind((str, Path, Address), each))) for each in several_of(given)
+    ]
 
 
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -58,7 +64,8 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
     if isinstance(given, Dataset):
         dataset = given
     else:
-        dataset = read_dataset(location_of(_of_kind((str, Path, Address, Dataset), given)))
+        place = location_of(of_kind((str, Path, Address, Dataset), given))
+        dataset = read_dataset(_nameable(place))
     return dataset if runs is None else dataset.only(listed(runs))
 
 
@@ -86,7 +93,7 @@ def at_least(least: int, given: int, name: str) -> int:
     InputError
         It is less.
     """
-    if _of_kind((int,), given) < least:
+    if of_kind((int,), given) < least:
         raise InputError(f"{name} is {given}", expected=f"{least} or more")
     return given
 
@@ -106,15 +113,15 @@ def number_of_seeds(given: int) -> int:
 
 def text_of(given: str) -> str:
     """Return text as it is; InputError where it is of another kind."""
-    return str(_of_kind((str,), given))
+    return str(of_kind((str,), given))
 
 
 def listed(words: str | Iterable[str]) -> list[str]:
     """Return words as a list, a single one too; InputError where one is no word."""
-    return [_of_kind((str,), word) for word in _several(words, 0)]
+    return [of_kind((str,), word) for word in several_of(words, 0)]
 
 
-def _several(given: Any, least: int) -> list[Any]:
+def several_of(given: Any, least: int = 1) -> list[Any]:
     """Return what is one thing or several as a list; fewer than `least` is an InputError."""
     if isinstance(given, str | Path) or not isinstance(given, Iterable):
         return [given]
@@ -124,9 +131,22 @@ def _several(given: Any, least: int) -> list[Any]:
     return several
 
 
-def _of_kind(kinds: tuple[type, ...], given: Any) -> Any:
+def of_kind(kinds: tuple[type, ...], given: Any) -> Any:
     """Return what is of one of these kinds; another one is an InputError."""
-    if isinstance(given, kinds):
+    if isinstance(given, kinds) and (bool in kinds or not isinstance(given, bool)):
         return given
     names = [kind.__name__ for kind in kinds if kind is not NoneType]
     raise InputError(f"{given!r} is of type {type(given).__name__}", expected=" or ".join(names))
+
+
+def _nameable(given: Thing) -> Thing:
+    """Return what is no path, or a path that a file can have; another one is an InputError."""
+    if isinstance(given, Path):
+        long = any(len(os.fsencode(part)) > NAME_BYTES for part in given.parts)
+        if long or len(os.fsencode(given)) > PATH_BYTES or "\0" in str(given):
+            raise InputError(
+                "no file can have this name",
+                where=f"{str(given)[:60]}…",
+                expected=f"at most {NAME_BYTES} bytes in a name, none of them zero",
+            )
+    return given

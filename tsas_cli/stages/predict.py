@@ -14,7 +14,7 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_runs
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, dataset_of, file_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, file_of, path_of, several_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -76,8 +76,7 @@ def predict(
     InputError
         A model or a recording cannot be read, or `out` exists and `force` is not set.
     """
-    several = [models] if isinstance(models, Model | str | Path) else list(models)
-    given = [each if isinstance(each, Model) else file_of(each) for each in several]
+    given = [each if isinstance(each, Model) else file_of(each) for each in several_of(models)]
     sides = read_models(given)
     data, path = dataset_of(dataset, runs), path_of(out)
     inputs = [data.folder, *(side for side in given if isinstance(side, Path))]
@@ -87,7 +86,7 @@ def predict(
         record = PredictionFile(
             **data.header(path),
             models=predict_stage.models_of(it, path),
-            own_values_fitted=fit_own,
+            own_values_fitted=bool(fit_own),
             channels=it.channels,
             ranges=it.ranges,
             findings=tuple(predict_stage.findings(it)),

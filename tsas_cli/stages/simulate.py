@@ -24,7 +24,7 @@ from tsas_cli.records import simulation as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, of_kind, one_of, path_of
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
@@ -132,7 +132,7 @@ def simulate(
         model=source_of(known, path),
         dynamics=dynamics,
         nodes=nodes,
-        own_values_fitted=fit_own,
+        own_values_fitted=bool(fit_own),
         runs={},
     )
     kept, used = dict[str, Recording](), taken
@@ -179,7 +179,7 @@ def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:
         raise InputError(
             "the static model has no nodes", where="--nodes", remedy="use --dynamics slip or lugre"
         )
-    if not 2 <= nodes <= MOST_NODES:
+    if not 2 <= of_kind((int,), nodes) <= MOST_NODES:
         raise InputError(f"{nodes} nodes", where="--nodes", expected=f"2 to {MOST_NODES}")
 
 

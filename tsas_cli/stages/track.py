@@ -43,6 +43,7 @@ from tsas_cli.tracking.track import (
     plan,
     run_loop,
 )
+from tsas_cli.verifying.changed import change_notes
 
 DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")
 COMPARED_SEEDS = 10
@@ -199,7 +200,7 @@ def track(
                 tables[run_id] = table
                 results.append(_result(run_id, name, condition, runs, printed))
                 each(made(results=results), run_id, table)
-        said = run_notes(drive_path, known, real, results)
+        said = [*change_notes(models), *run_notes(drive_path, known, real, results)]
         if dynamics == "lugre":
             said += dynamic_notes(drive_path, real, changes, read.step_s)
         record = made(results=results, notes=said)

@@ -13,6 +13,7 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.support.wording import count_of
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -29,6 +30,8 @@ def upload(
     folder: Named, address: str, *, force: bool = False, step: Steps = NO_PROGRESS
 ) -> UploadResult:
     """Put a dataset on object storage: its recordings, and the manifest last.
+
+    A recording that an interrupted call has put there is not sent again.
 
     Until then the checksums of an older manifest reveal that its recordings are being replaced.
 
@@ -74,11 +77,18 @@ def upload(
         if run.file not in replaced:
             _refuse_foreign(target / run.file, local_file(source, run).stat().st_size)
     files: dict[str, int] = {}
-    for run in dataset.runs:
-        files[run.file] = _upload_run(source, run, target)
-        step()
-    content = (source / MANIFEST_FILE).read_bytes()
-    manifest.write_bytes(content)
+    try:
+        for run in dataset.runs:
+            files[run.file] = _upload_run(source, run, target)
+            step()
+        content = (source / MANIFEST_FILE).read_bytes()
+        manifest.write_bytes(content)
+    except InputError as error:
+        there = f"{len(files)} of {count_of(len(dataset.runs), 'recording')} are there"
+        remedy = "; ".join(filter(None, (error.remedy, there, "the next call goes on")))
+        raise InputError(
+            error.what, where=error.where, expected=error.expected, remedy=remedy
+        ) from error
     files[MANIFEST_FILE] = len(content)
     summary = {
         "format": 1,
@@ -106,5 +116,7 @@ def _upload_run(folder: Path, run: Run, target: Address) -> int:
     path = local_file(folder, run)
     if sha256_of(path) != run.sha256.lower():
         raise changed(path, run)
-    (target / run.file).copy_from(path)
+    there = target / run.file
+    if not there.holds(run.sha256.lower()):
+        there.copy_from(path, run.sha256.lower())
     return path.stat().st_size

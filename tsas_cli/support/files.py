@@ -144,8 +144,13 @@ def write_sums(folder: Path) -> None:
     """Write the checksums of the files in a folder, in the format of `sha256sum --check`."""
     sums = folder / SUMS
     files = sorted(path for path in folder.rglob("*") if path.is_file() and path != sums)
+    sums.write_text(sums_text(folder, files), encoding="utf-8")
+
+
+def sums_text(folder: Path, files: Iterable[Path]) -> str:
+    """Return a line of checksum and relative path for each of these files of a folder."""
     lines = [f"{sha256_of(path)}  {path.relative_to(folder).as_posix()}\n" for path in files]
-    sums.write_text("".join(lines), encoding="utf-8")
+    return "".join(lines)
 
 
 def write_json(path: Path, content: Any) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TextIO
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import read_json, sha256_of, unwritable
+from tsas_cli.support.files import own_file, read_json, sha256_of, sums_text, unwritable
 from tsas_cli.support.limits import text_name
 from tsas_cli.support.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
 from tsas_cli.support.temporaries import TEMPORARY, is_empty_folder, remove
@@ -20,6 +20,7 @@ TASKS = "tasks"
 JOURNAL = "journal.jsonl"  # log of tasks: when and where; it also marks the folder of a sweep
 LOGGED = ("state", "seconds", "processor_seconds", "where", "error")
 TABLE, PARAMETERS, SUMMARY = "sweep.parquet", "parameters.parquet", "sweep.json"
+SEALED = (PARAMETERS, SUMMARY, TABLE)  # a task's folder has checksums of its own
 
 
 @contextmanager
@@ -66,7 +67,7 @@ def _is_of_a_sweep(out: Path) -> bool:
     present = {path.name for path in out.iterdir() if not TEMPORARY.search(path.name)}
     if JOURNAL not in present and not {TASKS, SUMMARY} <= present:
         return all(name == TASKS and is_empty_folder(out / name) for name in present)
-    return present <= {TASKS, JOURNAL, TABLE, PARAMETERS, SUMMARY} | LEFT_BY_DESKTOPS
+    return present <= {TASKS, JOURNAL, SUMS, *SEALED} | LEFT_BY_DESKTOPS
 
 
 @contextmanager
@@ -93,6 +94,13 @@ def _clear(tasks: Path) -> None:
     for path in tasks.glob(".*"):
         with suppress(OSError):
             remove(path)
+
+
+def seal(out: Path) -> None:
+    """Write the checksums of the sweep's own files, but for its journal, which grows."""
+    there = [path for path in (out / name for name in SEALED) if path.is_file()]
+    with own_file(out / SUMS) as path:
+        path.write_text(sums_text(out, there), encoding="utf-8")
 
 
 def what_is_done(tasks: Path, key: str) -> TaskOutcome | None:

@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw
+from tsas_cli.support.plausible import AnyNumber
 from tsas_cli.support.strict_table import StrictTable
 from tsas_cli.sweeping.outcome import Row
 
@@ -30,8 +31,8 @@ def _listed(value: object) -> object:
 class ValueRange(StrictTable):
     """Equally spaced values, or values of equal ratio with `scale = "log"`, including both ends."""
 
-    first: float = Field(alias="from")
-    last: float = Field(alias="to")
+    first: AnyNumber = Field(alias="from")
+    last: AnyNumber = Field(alias="to")
     steps: int = Field(ge=2, le=MOST_STEPS)
     scale: Literal["linear", "log"] = "linear"
 

@@ -16,6 +16,7 @@ from tsas_cli.sweeping.folder import (
     SUMMARY,
     TABLE,
     note,
+    seal,
     sweep_folder,
     what_is_done,
 )
@@ -127,4 +128,5 @@ def _written(
     for name, write in {**tables, SUMMARY: partial(write_json, content=summary)}.items():
         with own_file(out / name) as path:
             write(path)
+    seal(out)
     return summary

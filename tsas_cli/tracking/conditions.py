@@ -10,11 +10,14 @@ from tsas_cli.paper import yang2025
 from tsas_cli.physics.rig import with_values
 from tsas_cli.records.tracking import ConditionChange
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.plausible import Range
 from tsas_cli.tracking.track import Plant
 
 ALLOWED = {
-    name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items() if name != "x_in_zero_mm"
-} | {"total_bend_rad": (0.0, 100.0, "rad")}
+    name: Range(q.lower, q.upper, q.unit)
+    for name, q in QUANTITIES.items()
+    if name != "x_in_zero_mm"
+} | {"total_bend_rad": Range(0.0, 100.0, "rad")}
 ONLY_FROM_THE_START = {
     "preload_N": "all displacements count from the preload",
     "tendon_stiffness_N": "all displacements count from the preload",
@@ -85,13 +88,8 @@ def _change(option: str, where: str) -> ConditionChange:
         ) from error
     if not 0.0 <= from_s < math.inf:
         raise InputError(f"{option!r} begins at {moment} s", where=where, expected="0 s or later")
-    lower, upper, unit = ALLOWED[name]
-    if not lower <= value <= upper:
-        raise InputError(
-            f"{name} of {value:g}",
-            where=where,
-            expected=f"{lower:g} to {upper:g} {unit}",
-        )
+    if value not in ALLOWED[name]:
+        raise InputError(f"{name} of {value:g}", where=where, expected=str(ALLOWED[name]))
     if from_s > 0.0 and name in ONLY_FROM_THE_START:
         raise InputError(
             f"{name} cannot change during a run",

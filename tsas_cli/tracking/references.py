@@ -12,6 +12,7 @@ from tsas_cli.tracking import SHAPE_NAMES
 from tsas_cli.tracking.settings import LONGEST_S, ReferenceSettings
 
 WANTED, MEASURED = "f_out_ref_N", "f_out_N"
+MOST_SAMPLES = 10_000_000  # of a loop, which then takes minutes and 1 GB
 
 
 def sine(t: Floats, form: ReferenceSettings) -> Floats:
@@ -52,12 +53,12 @@ def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
     linear between its samples.
 
     InputError: there is no such shape or file, the file lacks a column or has gaps, or the force is
-    not positive somewhere.
+    not positive somewhere, or there are too many samples.
     """
     if name in SHAPES:
-        time_s: Floats = np.arange(round(form.duration_s / step_s) + 1, dtype=np.float64) * step_s
-        wanted = SHAPES[name](time_s, form)
         where = f"reference {name}"
+        time_s = _grid(round(form.duration_s / step_s) + 1, step_s, where)
+        wanted = SHAPES[name](time_s, form)
     elif Path(name).suffix == ".parquet" or Path(name).exists():
         time_s, wanted = _recorded(Path(name), step_s)
         where = name
@@ -73,6 +74,19 @@ def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
             expected="a tension above zero: a tendon cannot push",
         )
     return wanted
+
+
+def _grid(samples: int, step_s: float, where: object) -> Floats:
+    """Return the times of so many samples, shape (samples,) [s]."""
+    if samples > MOST_SAMPLES:
+        raise InputError(
+            f"has {samples} samples at {1.0 / step_s:g} Hz",
+            where=where,
+            expected=f"at most {MOST_SAMPLES}",
+            remedy="shorten it (reference.duration_s), or lower sensor.rate_Hz",
+        )
+    at: Floats = np.arange(samples, dtype=np.float64) * step_s
+    return at
 
 
 def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:
@@ -91,6 +105,5 @@ def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:
         raise InputError(
             f"lasts {duration_s:.6g} s", where=path, expected=f"at most {LONGEST_S:.0f} s to track"
         )
-    count = int(duration_s / step_s + 1e-9) + 1
-    at: Floats = np.arange(count, dtype=np.float64) * step_s
+    at = _grid(int(duration_s / step_s + 1e-9) + 1, step_s, path)
     return at, np.interp(at, time_s - time_s[0], values)

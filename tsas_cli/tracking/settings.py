@@ -8,7 +8,7 @@ here and said.
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -18,6 +18,25 @@ from tsas_cli.paper.settings import printed
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.support.plausible import (
+    AngularFrequency,
+    Bend,
+    Damping,
+    Diameter,
+    Duration,
+    Friction,
+    GearRatio,
+    Inertia,
+    Length,
+    Modulus,
+    MotorSpeed,
+    NoiseMm,
+    NoiseN,
+    Radius,
+    Stiffness,
+    Tension,
+    plausible,
+)
 from tsas_cli.support.strict_table import StrictTable
 
 LONGEST_S = 3600.0  # of a wanted force
@@ -26,25 +45,25 @@ LONGEST_S = 3600.0  # of a wanted force
 class RigSettings(StrictTable):
     """The rig: its conditions, and what a model would say where none is given."""
 
-    tendon_diameter_mm: float = printed("rig.tendon_diameter", gt=0)
-    tendon_modulus_GPa: float = printed("rig.tendon_modulus", gt=0)
-    friction_coefficient: float = printed("rig.friction_coefficient", ge=0)
-    load_stiffness_N_per_mm: float = printed("rig.load_stiffness", gt=0)
-    sheath_length_mm: float = printed("rig.sheath_length", gt=0)
-    total_bend_rad: float = printed("groups.a.total_bend", ge=0)
-    preload_N: float = printed("rig.preload", gt=0)
+    tendon_diameter_mm: Diameter = printed("rig.tendon_diameter")
+    tendon_modulus_GPa: Modulus = printed("rig.tendon_modulus")
+    friction_coefficient: Friction = printed("rig.friction_coefficient")
+    load_stiffness_N_per_mm: Stiffness = printed("rig.load_stiffness")
+    sheath_length_mm: Length = printed("rig.sheath_length")
+    total_bend_rad: Bend = printed("groups.a.total_bend")
+    preload_N: Tension = printed("rig.preload")
 
 
 class DriveSettings(StrictTable):
     """The plant's drive: the stiffness is km as chosen for kr, Eq. (34); the lag is ours."""
 
-    turntable_radius_mm: float = printed("rig.turntable_radius", gt=0)
-    gear_ratio: float = printed("rig.gear_ratio", gt=0)
-    inertia_N_mm_s2: float = printed("rig.inertia", gt=0)
-    damping_N_s_per_mm: float = printed("rig.drive_damping", ge=0)
-    drive_stiffness_N_per_mm: float = printed("stiffness.chosen.km", gt=0)
-    motor_lag_s: float = Field(default=0.002, ge=0)
-    speed_limit_rpm: float = Field(default=3000.0, gt=0)
+    turntable_radius_mm: Radius = printed("rig.turntable_radius")
+    gear_ratio: GearRatio = printed("rig.gear_ratio")
+    inertia_N_mm_s2: Inertia = printed("rig.inertia")
+    damping_N_s_per_mm: Damping = printed("rig.drive_damping")
+    drive_stiffness_N_per_mm: Stiffness = printed("stiffness.chosen.km")
+    motor_lag_s: Duration = 0.002
+    speed_limit_rpm: MotorSpeed = 3000.0
 
     def actuator(self) -> Actuator:
         """Return the drive as the plant takes it."""
@@ -66,26 +85,26 @@ class DriveSettings(StrictTable):
 class ReferenceSettings(StrictTable):
     """The wanted force mean − amplitude · cos(ω t), or what other shapes make of it."""
 
-    mean_N: float = printed("reference.mean")
-    amplitude_N: float = printed("reference.amplitude", gt=0)
-    angular_frequency_rad_per_s: float = printed("reference.second_angular_frequency", gt=0)
-    duration_s: float = Field(default=8.0 * math.pi, gt=0, le=LONGEST_S)
+    mean_N: Tension = printed("reference.mean")
+    amplitude_N: Tension = printed("reference.amplitude")
+    angular_frequency_rad_per_s: AngularFrequency = printed("reference.second_angular_frequency")
+    duration_s: Annotated[float, plausible(1e-3, LONGEST_S, "s")] = 8.0 * math.pi
 
 
 class SensorSettings(StrictTable):
     """The encoder of x_in and its rate; noise and steps of the other channels are recorded only."""
 
-    rate_Hz: float = Field(default=1000.0, ge=50, le=20000)
-    noise_mm: float = Field(default=0.005, ge=0)
-    step_mm: float = Field(default=0.002, ge=0)
-    force_noise_N: float = Field(default=0.05, ge=0)
+    rate_Hz: Annotated[float, plausible(50.0, 20_000.0, "Hz")] = 1000.0
+    noise_mm: NoiseMm = 0.005
+    step_mm: NoiseMm = 0.002
+    force_noise_N: NoiseN = 0.05
 
 
 class LoopSettings(StrictTable):
     """How the drive's path is made and its rates are estimated."""
 
-    crossing_s: float = Field(default=0.1, gt=0, le=10)
-    filter_Hz: float = Field(default=10.0, gt=0)
+    crossing_s: Annotated[float, plausible(1e-4, 10.0, "s")] = 0.1
+    filter_Hz: Annotated[float, plausible(1e-3, 1e5, "Hz")] = 10.0
     nodes: int = Field(default=50, ge=2, le=1000)
     substeps: int = Field(default=4, ge=1, le=100)
 

@@ -57,6 +57,10 @@ def _of_sums(path: Path) -> Iterator[Claim]:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
         raise InputError("cannot be read", where=path) from error
+    if not lines:
+        raise InputError(
+            "is empty", where=path, expected="a line of checksum and name for each file"
+        )
     for number, line in enumerate(lines, start=1):
         found = _SUM.fullmatch(line)
         if found is None:

@@ -55,8 +55,8 @@ class Hidden:
 class Case:
     """One case of the set of a seed.
 
-    Seed and number, its place in the set, together seed what else is drawn. The same case under
-    other conditions has the same number, and the same rig but for that.
+    Seed, salt and number, its place in the set, together seed what else is drawn. The same case
+    under other conditions has the same number, and the same rig but for that.
     """
 
     name: str  # what it is, for people; sealed like the rest
@@ -66,6 +66,17 @@ class Case:
     seed: int
     number: int
     conditions: Conditions = "clean"  # what its rig has beside what is hidden
+    salt: int = 0  # of the whole set
+
+    @property
+    def chance(self) -> int:
+        """What seeds its streams of chance: the seed, and with a salt nothing that one can try."""
+        return salted(self.seed, self.salt)
+
+
+def salted(seed: int, salt: int) -> int:
+    """Return a seed with the salt in front of its 64 bits; without one, the seed."""
+    return seed + (salt << 64)
 
 
 # Full sizes, from which a case draws one variant. Chosen with benchmarks/challenge_sizes.py: each
@@ -143,26 +154,27 @@ TRIPLES = (
 )
 
 
-def cases(seed: int) -> tuple[Case, ...]:
-    """Return all cases of a seed, about 340.
+def cases(seed: int, salt: int = 0) -> tuple[Case, ...]:
+    """Return all cases of a seed and a salt, about 340.
 
     The clean ones, nulls in slow noise, and the clean ones again under realistic conditions, but
     for small faults of sensors, which are of the size of those conditions.
     """
+    chance = salted(seed, salt)
     listed = (
-        *enumerate(_all(np.random.default_rng(seed))),
-        *enumerate(_near(seed), NEAR_FROM),
-        *enumerate(_triples(seed), TRIPLES_FROM),
-        *enumerate(_faults(seed), FAULTS_FROM),
+        *enumerate(_all(np.random.default_rng(chance))),
+        *enumerate(_near(chance), NEAR_FROM),
+        *enumerate(_triples(chance), TRIPLES_FROM),
+        *enumerate(_faults(chance), FAULTS_FROM),
     )
     clean = [
-        Case(name, kind, size, hidden, seed, number)
+        Case(name, kind, size, hidden, seed, number, salt=salt)
         for number, (name, kind, size, hidden) in listed
         if seed in SCORING or not RESERVED & {cause.cause for cause in hidden}
     ]
     slow = [
-        Case(f"nothing {k + 1} in slow noise", "nothing", 0.0, (), seed, SLOW_FROM + k, "slow")
-        for k in range(NOTHING)
+        Case(name, "nothing", 0.0, (), seed, SLOW_FROM + k, "slow", salt)
+        for k, name in enumerate(f"nothing {n} in slow noise" for n in range(1, NOTHING + 1))
     ]
     realistic = [
         replace(case, name=f"{case.name}, realistic", conditions="realistic")

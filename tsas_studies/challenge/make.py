@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +13,10 @@ from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.conditions import drawn_nuisance
 from tsas_studies.challenge.near import MIXED
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
-from tsas_studies.challenge.sums import CASES, DATASET, sums_of
+from tsas_studies.challenge.sums import CASES, DATASET, sealed_id, sums_of
 from tsas_studies.challenge.truth import BEYOND, FILE
 
-IDS, RECORDINGS, NUISANCE = 0, 1, 2  # streams of chance
+RECORDINGS, NUISANCE = 1, 2  # streams of chance
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 DESCRIPTION = "Simulated, not measured: a case of the blind benchmark."
 
@@ -31,9 +30,9 @@ def make(
 ) -> None:
     """Write `cases/ID/dataset` for each case, and `answers.json` beside them, into an empty folder.
 
-    The same cases, of one or more seeds, give the same files, byte for byte. The ids are drawn, and
-    the folders' order is theirs, so that neither tells a case's place in the list. `step` is called
-    after each case.
+    The same cases, of one or more seeds and one salt, give the same files, byte for byte. An id is
+    a checksum of salt and answer (`sums.sealed_id`), and the folders' order is theirs, so that
+    neither tells a case's place in the list. `step` is called after each case.
 
     Raises
     ------
@@ -43,11 +42,15 @@ def make(
     seeds = sorted({case.seed for case in cases})
     if not seeds:
         raise ValueError("no cases to make a set of")
-    answers = {}
-    for name, case in sorted(((_id(case), case) for case in cases), key=itemgetter(0)):
-        rng = np.random.default_rng([case.seed, case.number, RECORDINGS])
-        nuisance = drawn_nuisance(case.conditions, RUNS, _other(case, NUISANCE))
+    salt = f"{cases[0].salt:032x}"
+    drawn = {}
+    for case in cases:
+        rng = np.random.default_rng([case.chance, case.number, RECORDINGS])
+        nuisance = drawn_nuisance(case.conditions, RUNS, _nuisance_stream(case))
         bench = replace(drawn_bench(rng), nuisance=nuisance)
+        drawn[sealed_id(salt, answer(case, bench))] = case, bench, rng
+    answers = {}
+    for name, (case, bench, rng) in sorted(drawn.items()):
         dataset = out / CASES / name / DATASET
         _write(dataset, case, bench, rate_Hz, rng)
         answers[name] = answer(case, bench) | {"sums": sums_of(dataset)}
@@ -57,6 +60,7 @@ def make(
         "stage": "challenge make",
         "kind": "challenge-answers",
         "seed": seeds[0] if len(seeds) == 1 else seeds,
+        "salt": salt,
         "rate_Hz": rate_Hz,
         "cases": answers,
     }
@@ -64,15 +68,9 @@ def make(
     (out / FILE).write_text(text + "\n", encoding="utf-8")
 
 
-def _id(case: Case) -> str:
-    if case.conditions == "realistic":
-        return _other(case, IDS).bytes(6).hex()
-    return np.random.default_rng([case.seed, case.number, IDS]).bytes(6).hex()
-
-
-def _other(case: Case, what: int) -> np.random.Generator:
+def _nuisance_stream(case: Case) -> np.random.Generator:
     """Return a stream of chance that the same case under clean conditions does not have."""
-    return np.random.default_rng([case.seed, case.number, what, NUISANCE])
+    return np.random.default_rng([case.chance, case.number, NUISANCE, NUISANCE])
 
 
 def _write(

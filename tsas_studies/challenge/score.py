@@ -14,7 +14,7 @@ from tsas_studies.challenge.conditions import CONDITIONS, kind_label
 from tsas_studies.challenge.entry import Entry, read_entry
 from tsas_studies.challenge.figures import RECOGNISED, ScoreRate, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
-from tsas_studies.challenge.sums import check_recordings
+from tsas_studies.challenge.sums import check_answers, check_recordings
 from tsas_studies.challenge.truth import CATALOGUE, FILE, Truth, read_truth
 
 CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
@@ -26,10 +26,11 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The answers or a diagnosis are malformed, an entry is given twice, or the recordings of a
-        case are not those that were sealed.
+        The answers or a diagnosis are malformed, an entry is given twice, or the answers or
+        recordings of a case are not those that were sealed.
     """
     answers = read_truth(sealed)
+    check_answers(sealed)
     check_recordings(sealed, answers)
     sums = {name: case.sums for name, case in answers.cases.items()}
     entries: dict[str, Any] = {}

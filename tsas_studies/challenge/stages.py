@@ -1,5 +1,7 @@
 """The blind benchmark: make a sealed set, let a tool answer it, score the answers."""
 
+import re
+import secrets
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.given import Named, at_least, number_of_seeds, one_of, path_of
+from tsas_cli.stages.given import Named, at_least, number_of_seeds, one_of, path_of, text_of
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if, stage_folder, write_json
@@ -64,22 +66,25 @@ def make_set(
     kind: Kind | None = None,
     conditions: Conditions | None = None,
     rate_Hz: float = 200.0,
+    salt: str | None = None,
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> SealedSet:
     """Make recordings with known causes, and seal the truth beside them in the folder `out`.
 
-    There are so many seeds from the first one on. A small set has each effect once at full size,
-    and a few of what is none; with `kind` or `conditions` only such cases are made. `step` is
-    called once for each.
+    There are so many seeds from the first one on. The salt, up to 32 hexadecimal digits, is fresh
+    by default, so that no trying of seeds finds the answers; with it the set can be made again. A
+    small set has each effect once at full size, and a few of what is none; with `kind` or
+    `conditions` only such cases are made. `step` is called once for each.
 
     Raises
     ------
     InputError
-        No case is left, or `out` exists and `force` is not set.
+        No case is left, the salt is no number, or `out` exists and `force` is not set.
     """
     first, count = at_least(0, seed, "seed"), number_of_seeds(seeds)
-    listed = [case for each in range(first, first + count) for case in cases.cases(each)]
+    grain = secrets.randbits(128) if salt is None else _grain(salt)
+    listed = [case for each in range(first, first + count) for case in cases.cases(each, grain)]
     if small:
         listed = list(cases.part(listed))
     if kind is not None:
@@ -106,6 +111,12 @@ def make_set(
         "cases": dict(Counter(kind_label(case.kind, case.conditions) for case in listed)),
     }
     return SealedSet(summary, path)
+
+
+def _grain(salt: str) -> int:
+    if not re.fullmatch("[0-9a-fA-F]{1,32}", text_of(salt)):
+        raise InputError(f"salt is {salt!r}", expected="1 to 32 hexadecimal digits")
+    return int(salt, 16)
 
 
 def run_set(

@@ -89,6 +89,7 @@ class Truth(Record):
     format: Literal[1]
     kind: Literal["challenge-answers"]
     seed: int | tuple[int, ...]
+    salt: str = Field(default="", pattern="^([0-9a-f]{32})?$")
     cases: dict[CaseId, TrueCase] = Field(min_length=1)
 
 

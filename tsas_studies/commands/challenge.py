@@ -43,6 +43,10 @@ def make(
     rate: Annotated[
         float, typer.Option("--rate", metavar="HZ", min=50.0, max=500.0, help="Samples per second.")
     ] = 200.0,
+    salt: Annotated[
+        str | None,
+        typer.Option("--salt", metavar="HEX", help="That of another set, to make it again."),
+    ] = None,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -59,6 +63,7 @@ def make(
             kind=kind,
             conditions=conditions,
             rate_Hz=rate,
+            salt=salt,
             force=force,
             step=step,
         )

@@ -83,7 +83,7 @@ def test_a_case_that_fails_is_listed_and_scored_as_no_answer(strict, tmp_path):
 def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, tmp_path):
     """Two cases stand for all of a seed, which take minutes."""
     few = cases.cases(17)[:2]
-    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
+    monkeypatch.setattr(cases, "cases", lambda seed, salt: {17: few}[seed])
     make(tmp_path / "set", seed=17, rate=25.0, as_json=True)
     summary = json.loads(capsys.readouterr().out)
     assert (summary["seed"], summary["cases"]) == (17, {"one": 2})
@@ -104,7 +104,7 @@ def test_cases_of_one_kind_and_condition_of_several_seeds_are_a_set(monkeypatch,
         seed: [c for c in cases.cases(seed) if c.kind == "pair" or c.name.startswith("nothing 10")]
         for seed in (17, 18)
     }
-    monkeypatch.setattr(cases, "cases", few.__getitem__)
+    monkeypatch.setattr(cases, "cases", lambda seed, salt: few[seed])
     chosen = {"kind": "nothing", "conditions": "realistic", "rate": 25.0}
     make(tmp_path / "set", seed=17, seeds=2, **chosen)
     assert "2 cases of seeds 17 to 18" in capsys.readouterr().out

@@ -37,7 +37,7 @@ class ReadOptions(BaseModel):
     resample: bool = False  # interpolate channels with different times onto the fastest
     table: str | None = None  # the JSON key or the MATLAB variable that holds the table
     encoding: str = "utf-8-sig"
-    skip_lines: int = Field(default=0, ge=0)
+    skip_lines: int = Field(default=0, ge=0, le=1_000_000_000)
     comment: Annotated[tuple[str, ...], BeforeValidator(_as_list)] = ("%", "#")
     delimiter: str | None = Field(default=None, min_length=1, max_length=1)
     decimal: Literal[".", ","] | None = None

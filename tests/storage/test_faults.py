@@ -1,0 +1,123 @@
+"""A storage that drops, stalls, truncates and lies: told in one line, in time, and gone on from."""
+
+import time
+
+import pyarrow as pa
+import pytest
+
+import tsas_cli as tsas
+from tests.storage.conftest import HOST, forget
+from tests.storage.faults import FaultyWire
+from tsas_cli.recordings import checked, storage
+from tsas_cli.recordings.storage import location_of
+from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.errors import InputError
+
+FAULTS = ["drop", "stall", "trickle", "truncate", "503 Slow Down", "500 Internal Error"]
+RUN = b"runs/a.parquet"
+
+
+@pytest.fixture
+def broken(server, bucket, monkeypatch):
+    """The wire before the storage, with short limits; the bucket is there."""
+    wire = FaultyWire(server)
+    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{wire.port}")
+    monkeypatch.setattr(storage, "PAUSE_S", 0.05)
+    forget()
+    assert not location_of(f"{bucket}/opened").is_file()  # its libraries take their time
+    monkeypatch.setenv(storage.TIMEOUT, "2")
+    yield wire
+    wire.door.close()
+
+
+@pytest.fixture
+def two_runs(tmp_path, manifest, columns):
+    """Return the folder of a dataset with two runs."""
+    folder, (run,) = tmp_path / "two", manifest.run
+    folder.mkdir()
+    both = (run, run.model_copy(update={"id": "b", "file": "runs/b.parquet"}))
+    tables = {name: pa.table(columns) for name in "ab"}
+    write_dataset(folder, manifest.model_copy(update={"run": both}), tables)
+    return folder
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_what_breaks_off_once_is_asked_again(broken, bucket, dataset, fault, caplog):
+    broken.faulty(fault, 1, b"PUT")
+    tsas.upload(dataset, f"{bucket}/bench")
+    broken.faulty(fault, 1, RUN)
+    assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
+    broken.faulty(fault, 2, b"dataset.toml")
+    assert [run.id for run in tsas.read(f"{bucket}/bench").runs] == ["a"]
+    said = [record.getMessage() for record in caplog.records if record.name == "tsas"]
+    assert said or fault == "drop"  # aiohttp itself asks again
+    assert all(line.startswith(f"{bucket}/bench/") for line in said)
+    assert all(line.endswith(("; try 2 of 3 in 0.05 s", "; try 3 of 3 in 0.1 s")) for line in said)
+
+
+@pytest.mark.parametrize("fault", ["drop", "stall", "trickle", "503 Slow Down"])
+def test_what_always_breaks_off_is_one_line_in_time(broken, bucket, dataset, fault):
+    tsas.upload(dataset, f"{bucket}/bench")
+    data = tsas.read(f"{bucket}/bench")
+    broken.faulty(fault, 1000, RUN)
+    before = time.monotonic()
+    with pytest.raises(InputError) as told:
+        data["a"]
+    assert time.monotonic() - before < 40
+    line = told.value.line()
+    assert line.startswith(f"{bucket}/bench/runs/a.parquet: the storage ")
+    assert "\n" not in line
+    if fault[0] != "5":
+        assert storage.TIMEOUT in line
+
+
+def test_a_shorter_answer_than_asked_for_is_asked_again(broken, bucket, dataset, monkeypatch):
+    tsas.upload(dataset, f"{bucket}/bench")
+    broken.faulty("lie", 2, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
+    assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
+    forget()
+    checked._CACHE.clear()
+    broken.faulty("lie", 1000, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
+    with pytest.raises(InputError, match="breaks off"):
+        tsas.read(f"{bucket}/bench")["a"]
+
+
+@pytest.mark.parametrize("of", [b"HEAD", b"GET", b"PUT"])
+def test_an_object_that_is_gone_meanwhile_is_one_line(broken, bucket, dataset, of):
+    if of != b"PUT":
+        tsas.upload(dataset, f"{bucket}/bench")
+    data = None if of == b"PUT" else tsas.read(f"{bucket}/bench")
+    broken.faulty("404 Not Found", 1000, of)
+    with pytest.raises(InputError, match=r"is not on the storage|file is missing"):
+        tsas.upload(dataset, f"{bucket}/bench") if data is None else data["a"]
+    broken.faulty("404 Not Found", 1000, b"GET")
+    with pytest.raises(InputError):
+        tsas.check(f"{bucket}/bench")
+
+
+@pytest.mark.parametrize("fault", ["drop", "stall", "404 Not Found"])
+def test_an_interrupted_upload_goes_on_and_never_reads_as_whole(broken, bucket, two_runs, fault):
+    broken.faulty(fault, 1000, b"runs/b.parquet")
+    with pytest.raises(InputError) as told:
+        tsas.upload(two_runs, f"{bucket}/bench")
+    if fault == "404 Not Found":  # of the question whether it is there, too
+        assert "1 of 2 recordings are there; the next call goes on" in told.value.line()
+    with pytest.raises(InputError, match=r"no dataset\.toml here"):
+        tsas.read(f"{bucket}/bench")
+    broken.faulty("", 0)
+    tsas.upload(two_runs, f"{bucket}/bench")
+    broken.sent = b""
+    tsas.upload(two_runs, f"{bucket}/bench", force=True)
+    assert [path for verb, path in broken.requests if verb == "PUT"] == [
+        f"/{location_of(bucket).path}/bench/dataset.toml"
+    ]
+    assert [tsas.read(f"{bucket}/bench")[run].time_s.size for run in "ab"] == [500, 500]
+
+
+@pytest.mark.parametrize("given", ["x", "0", "-1", "nan", "1e9"])
+def test_a_limit_that_is_no_time_is_refused(keys, given, monkeypatch):
+    monkeypatch.setenv(storage.TIMEOUT, given)
+    forget()
+    with pytest.raises(InputError) as told:
+        tsas.read("s3://a/b")
+    assert told.value.line() == f"{storage.TIMEOUT}: is {given!r}; expected 0.1 to 3600 s"
