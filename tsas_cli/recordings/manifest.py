@@ -83,6 +83,9 @@ class RigSheet(_ManifestTable):
     inertia_N_mm_s2: float | None = Field(default=None, gt=0)
     proximal_length_mm: float | None = Field(default=None, ge=0)
     distal_length_mm: float | None = Field(default=None, ge=0)
+    antagonist_preload_N: float | None = Field(default=None, ge=0)
+    antagonist_friction_ratio: float | None = Field(default=None, gt=0)
+    antagonist_f_in_share: float | None = None
 
 
 class Run(_ManifestTable):

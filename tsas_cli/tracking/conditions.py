@@ -13,7 +13,9 @@ from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.tracking.track import Plant
 
 ALLOWED = {
-    name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items() if name != "x_in_zero_mm"
+    name: (q.lower, q.upper, q.unit)
+    for name, q in QUANTITIES.items()
+    if name != "x_in_zero_mm" and not name.startswith("antagonist.")  # the plant has one tendon
 } | {"total_bend_rad": (0.0, 100.0, "rad")}
 ONLY_FROM_THE_START = {
     "preload_N": "all displacements count from the preload",

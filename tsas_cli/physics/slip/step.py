@@ -14,8 +14,8 @@ friction follows its magnitude.
 """
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
-from tsas_cli.physics.slip.ends import drive_position, load_tangent, update_ends
+from tsas_cli.physics.boundary import DISPLACEMENT, moving_friction
+from tsas_cli.physics.slip.ends import drive_position, pull_at_load, update_ends
 from tsas_cli.physics.slip.nodes import (
     breakaway,
     extrapolate,
@@ -88,7 +88,7 @@ def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     elif chain[SLIP + last] == 0.0 and guide > 0.0:
         p, q, r = 1.0, compliance * F0 - chain[POSITION_BEFORE + last], compliance
     else:
-        p, q = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
+        p, q = pull_at_load(chain, now, laws)
         q += chain[SLIP + last] * guide + p * compliance * F0
         r = 1.0 + p * compliance
     chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r
