@@ -48,8 +48,8 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 from tsas_cli.physics.slip.step import (
-    MOST_ITERATIONS,
-    MOST_SINGLE_CHANGES,
+    changes_at,
+    most_iterations,
     sweep_to_drive,
     sweep_to_load,
     update_active_set,
@@ -65,15 +65,15 @@ def solve_pair(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     chain[FIRST_IS_SLACK], second[IS_SLACK] = chain[FIRST_WAS_SLACK], second[WAS_SLACK]
     begin(chain, now, laws)
     begin(second, mirrored, own)
-    for iteration in range(MOST_ITERATIONS + 2 * MOST_SINGLE_CHANGES * n):
+    for iteration in range(most_iterations(2 * n)):
         set_both_in_motion(chain, now, laws)
-        limit = n if iteration < MOST_ITERATIONS else 1
+        limit, reverse = changes_at(iteration, n)
         unsolved = update_slack(chain, FIRST_IS_SLACK, FIRST_WAS_SLACK, chain, laws)
         unsolved = update_slack(second, IS_SLACK, WAS_SLACK, chain, own) or unsolved
         if chain[FIRST_IS_SLACK] == 0.0:
-            unsolved = update_nodes(chain, now, laws, limit) or unsolved
+            unsolved = update_nodes(chain, now, laws, limit, reverse) or unsolved
         if second[IS_SLACK] == 0.0:
-            unsolved = update_nodes(second, mirrored, own, limit) or unsolved
+            unsolved = update_nodes(second, mirrored, own, limit, reverse) or unsolved
         if not unsolved or limit == n:
             unsolved = update_ends(chain, felt_at_drive(chain, now, laws), laws) or unsolved
         if not unsolved:
@@ -99,11 +99,11 @@ def begin(tendon: Floats, now: Moment, laws: SlipLaws) -> None:
 
 
 @seldom_kernel
-def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int) -> bool:
+def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int, reverse: bool) -> bool:
     """Update a tendon's active set and relations; return whether any changed."""
     if laws.friction_exponent != 0.0:
         set_friction(tendon, now, laws)
-    changed = laws.presliding_mm == 0.0 and update_active_set(tendon, now, laws, limit) > 0
+    changed = laws.presliding_mm == 0.0 and update_active_set(tendon, now, laws, limit, reverse) > 0
     return update_relations(tendon, now, laws) or changed
 
 
@@ -148,18 +148,30 @@ def sweep_both(chain: Floats, x_in: float, now: Moment, driven: SlipLaws) -> Non
     last = driven.n + 1
     second, own, losses = chain[SECOND:], laws_of_second(driven), now.losses
     if second[IS_SLACK] == 0.0:
-        sweep_to_drive(second, Moment(0.0, x_in, losses, now.step_s), own)
+        eliminate(second, Moment(0.0, x_in, losses, now.step_s), own)
     if chain[FIRST_IS_SLACK] == 0.0:
         first = Moment(x_in, now.load, losses, now.step_s)
-        sweep_to_drive(chain, first, driven)
-        sweep_to_load(chain, first, driven)
+        eliminate(chain, first, driven)
+        substitute(chain, first, driven)
     else:
         hang(chain, x_in, load_without_first(chain, now, driven), driven.n)
     x_out = chain[POSITION + last]
     if second[IS_SLACK] == 0.0:
-        sweep_to_load(second, Moment(x_out, x_in, losses, now.step_s), own)
+        substitute(second, Moment(x_out, x_in, losses, now.step_s), own)
     else:
         hang(second, x_out, x_in, driven.n)
+
+
+@seldom_kernel
+def eliminate(tendon: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Sweep over a tendon from its last node on."""
+    sweep_to_drive(tendon, now, laws)
+
+
+@seldom_kernel
+def substitute(tendon: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Set positions and tensions of a tendon, from its first node on."""
+    sweep_to_load(tendon, now, laws)
 
 
 @kernel

@@ -56,16 +56,12 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         extrapolate(chain, laws)
     set_friction(chain, now, laws)
     update_relations(chain, now, laws)
-    reversing = MOST_ITERATIONS + n
-    one_by_one = reversing + MOST_REVERSALS
-    for iteration in range(one_by_one + MOST_SINGLE_CHANGES * n):
+    for iteration in range(most_iterations(n)):
         sweep_to_drive(chain, now, laws)
         sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
-        reverse = reversing <= iteration < one_by_one
-        # One by one ends where all at once cycle, but for nodes with little friction.
-        limit = n if reverse or iteration < MOST_ITERATIONS else 1
+        limit, reverse = changes_at(iteration, n)
         unsolved = (
             laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, limit, reverse) > 0
         )
@@ -75,6 +71,23 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         if not unsolved:
             return True
     return False
+
+
+@kernel
+def most_iterations(n: int) -> int:
+    """Return after how many iterations a problem of n nodes counts as not converged."""
+    return MOST_ITERATIONS + n + MOST_REVERSALS + MOST_SINGLE_CHANGES * n
+
+
+@kernel
+def changes_at(iteration: int, n: int) -> tuple[int, bool]:
+    """Return how many nodes may change in an iteration, and whether they reverse without a rest.
+
+    One by one ends where all at once cycle, but for nodes with little friction.
+    """
+    reversing = MOST_ITERATIONS + n
+    reverse = reversing <= iteration < reversing + MOST_REVERSALS
+    return n if reverse or iteration < MOST_ITERATIONS else 1, reverse
 
 
 @kernel
