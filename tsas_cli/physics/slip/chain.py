@@ -285,7 +285,7 @@ def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     if laws.load.given == DISPLACEMENT:
         return float(tension - chain[SLIP + n + 1] * before)
     share = before / moving_friction(laws.load)
-    return tension - share * (chain[TENSION + n] - load_force(chain, now, laws))
+    return float(tension - share * (chain[TENSION + n] - load_force(chain, now, laws)))
 
 
 @kernel

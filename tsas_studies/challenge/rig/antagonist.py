@@ -65,7 +65,7 @@ class Pair(NamedTuple):
 @compiled
 def run_pair(
     first: Tendon, second: Tendon, net: Net, time: Floats, x_in: Floats, mu: Floats, ratio: float
-) -> tuple[Floats, Floats, Floats, Floats, Floats, int]:
+) -> tuple[Floats, int]:
     """March through all samples, starting at rest with x_in = 0.
 
     Parameters
@@ -81,10 +81,11 @@ def run_pair(
 
     Returns
     -------
-    t_in, t_out, t_in_2, t_out_2, guide, y, solved
-        Tensions of both tendons at the drive and at the load [N], state of the load's guide,
-        position of the load [mm], each of shape (m,), and the number of samples before the first
-        tendon went slack or a step did not converge.
+    signals
+        Tensions of the first and of the second tendon, each at the drive and at the load [N], state
+        of the load's guide, position of the load [mm], shape (6, m).
+    solved
+        The number of samples before the first tendon went slack or a step did not converge.
     """
     m = x_in.size
     out = np.full((6, m), np.nan)
@@ -112,14 +113,14 @@ def run_pair(
             else:
                 part *= 0.5
                 if part < SHORTEST_PART:
-                    return out[0], out[1], out[2], out[3], out[4], out[5], i
+                    return out, i
         x_before, mu_before, net_before = x_in[i], mu[i], net.preload[i]
         out[0, i], out[1, i] = pair.at_drive, pair.at_load
         out[2, i], out[3, i] = pair.at_drive_2, pair.at_load_2
         out[4, i], out[5, i] = load.guide, load.y
         if min(pair.at_drive, pair.at_load) <= 0.0:
-            return out[0], out[1], out[2], out[3], out[4], out[5], i
-    return out[0], out[1], out[2], out[3], out[4], out[5], m
+            return out, i
+    return out, m
 
 
 @compiled

@@ -165,9 +165,8 @@ def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> 
     lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
     held = load(end, kL, restraint(rig.restraint, kL, F0))
     net = Net(F0 * course(rig.preload_course, t) - lost, kL, held)
-    t_in, t_out, t_in_2, t_out_2, guide, y, solved = run_pair(
-        first, second, net, t, position, mu, other.friction_ratio
-    )
+    signals, solved = run_pair(first, second, net, t, position, mu, other.friction_ratio)
+    t_in, t_out, t_in_2, t_out_2, guide, y = signals
     _refuse_failed(t, t_in, solved)
     f_in = t_in - other.f_in_share * t_in_2
     return CleanRun(
