@@ -116,6 +116,14 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             _one(compliance_ratio=3.0),
             planes=(F_IN_OVER_X_IN, X_OUT_OVER_X_IN),
         ),
+        "antagonist": Signature(
+            "The torque of the drive has a wider loop over f_out, which ends in a kink where the "
+            "second tendon goes slack; a load cell in the first tendon reads too much, until then.",
+            (
+                Variant({"preload_N": 30.0}, "f_in_N", "torque of the drive"),
+                Variant({"preload_N": 30.0, "f_in_share": 0.0}, "f_in_N", "load cell"),
+            ),
+        ),
         "direction_dependent_friction": Signature(
             "In f_in over f_out both lines turn the same way about the origin: f_in too high on "
             "pull and release alike, in proportion to the tension.",

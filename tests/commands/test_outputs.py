@@ -60,8 +60,8 @@ NO_FILES = {
     "speed",
 }
 NO_FILES |= {"fit_own", "nodes", "controller", "compare", "disturb", "as_printed", "seeds", "seed"}
-NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate", "salt"}
-NO_FILES |= {"tool", "what", "conditions"}
+NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
+NO_FILES |= {"tool", "what", "conditions", "salt"}
 NO_FILES |= {"to", "sheath_length_mm", "total_bend_rad", "preload_n"}
 FILES = {"sources", "map_path", "dataset", "model", "a", "b", "on", "path", "plant", "drive"}
 FILES |= {"given", "settings", "reference", "datasets", "options", "folders", "sealed", "entries"}

@@ -101,6 +101,22 @@ def test_the_static_model_knows_springs_only(recorded, tmp_path, load):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("dynamics", ["static", "lugre"])
+def test_only_the_distributed_model_has_a_second_tendon(
+    strict, recorded, model, tmp_path, dynamics
+):
+    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(TRUE))])
+    pair = tmp_path / "pair.toml"
+    line = '\n[effects.antagonist.preload_N]\nvalue = 20.0\nunit = "N"\n'
+    pair.write_text(model.read_text() + line)
+    done = strict("simulate", folder, "--model", pair, "--dynamics", dynamics)
+    assert done.returncode == 2
+    assert done.stderr == (
+        "tsas: run a: antagonist is in the model, which the static and the dynamic model do not "
+        "have; use --dynamics slip\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("model", "options", "says"),
     [

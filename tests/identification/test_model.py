@@ -93,6 +93,15 @@ def test_the_data_sheet_is_a_model():
     assert data_sheet(manifest(made, friction_coefficient=0.0)).rig(made.run)[0] == 0.0
 
 
+def test_a_data_sheet_may_state_a_second_tendon():
+    """A key of the maker's own that a parameter happens to be named like states nothing."""
+    made = prepared(Rig())
+    pair = manifest(made, antagonist_preload_N=12.0, antagonist_f_in_share=0.0, preload_N=99.0)
+    rig = data_sheet(pair).rig(made.run)
+    assert rig.effects.antagonist == (12.0, 1.0, 0.0)
+    assert data_sheet(manifest(made)).rig(made.run).effects.antagonist == (0.0, 1.0, 1.0)
+
+
 def test_a_preload_of_zero_is_told():
     made = prepared(Rig(), preload_N=0.0)
     assert data_sheet(manifest(made)).value("preload_N", "a") == 0.0

@@ -52,3 +52,13 @@ def test_a_tendon_that_cannot_be_followed_is_one_line(tmp_path, settings):
             out=tmp_path / "out",
         )
     assert not (tmp_path / "out").exists()
+
+
+def test_a_model_with_two_tendons_is_refused(tmp_path, settings):
+    model = tmp_path / "pair.toml"
+    model.write_text("format = 1\n[effects.antagonist.preload_N]\nvalue = 20.0\nunit = 'N'\n")
+    for files in ({"model": model}, {"plant": model}):
+        with pytest.raises(InputError, match=r"antagonist is in the model.*leave out"):
+            track(settings=settings, **files)
+    with pytest.raises(InputError, match=r"unknown quantity antagonist.preload_N"):
+        track(settings=settings, disturb="antagonist.preload_N=20")

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from tsas_cli.effects.antagonist import ANTAGONIST, Antagonist
 from tsas_cli.effects.backlash import BACKLASH, Backlash
 from tsas_cli.effects.bend_drift import BEND_DRIFT, BendDrift
 from tsas_cli.effects.channel_delay import CHANNEL_DELAY, ChannelDelay
@@ -67,6 +68,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     PROXIMAL_SPRING,
     FREE_TENDON,
     SHEATH_COMPRESSION,
+    ANTAGONIST,
     DIRECTION_DEPENDENT_FRICTION,
     STRIBECK_FRICTION,
     VISCOUS_FRICTION,
@@ -117,6 +119,7 @@ class Effects(NamedTuple):
     proximal_spring: ProximalSpring = ProximalSpring()
     free_tendon: FreeTendon = FreeTendon()
     sheath_compression: SheathCompression = SheathCompression()
+    antagonist: Antagonist = Antagonist()
     direction_dependent_friction: DirectionDependentFriction = DirectionDependentFriction()
     stribeck_friction: StribeckFriction = StribeckFriction()
     viscous_friction: ViscousFriction = ViscousFriction()
@@ -154,6 +157,7 @@ class Effects(NamedTuple):
 __all__ = [
     "EFFECTS",
     "LAWS",
+    "Antagonist",
     "Backlash",
     "BendDrift",
     "ChannelDelay",

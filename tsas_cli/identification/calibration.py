@@ -7,7 +7,7 @@ import numpy as np
 
 from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.base_fit import base_fit, slopes_of
-from tsas_cli.identification.comparison import Compared, compare
+from tsas_cli.identification.comparison import Compared, compare, refuse_invalid
 from tsas_cli.identification.dynamic_fit import dynamic_fit
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
@@ -60,6 +60,8 @@ def calibrate_runs(
     by default the data sheet's.
     """
     stated = stated or data_sheet(manifest)
+    for run in runs if dynamics == "lugre" else ():
+        refuse_invalid(run.run, stated, run.drive_column, dynamics)
     step.ahead(len(runs) + 1)
     segments, measured = [], []
     for run in runs:

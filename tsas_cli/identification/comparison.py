@@ -100,9 +100,10 @@ def compare(
 
     With `nodes` a chain of that many is used in place of the closed form.
 
-    InputError: the static model with a load that is not a spring, or with a drive by force.
+    InputError: the static model with a load that is not a spring, or with a drive by force; an
+    antagonist with another than the distributed model.
     """
-    refuse_static(run.run, run.drive_column, dynamics)
+    refuse_invalid(run.run, model, run.drive_column, dynamics)
     response = simulate(
         model.rig(run.run),
         run.drive,
@@ -116,8 +117,17 @@ def compare(
     return Compared(response, channels, summary_of(response, channels, run.measured, notes))
 
 
-def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
-    """Refuse the static model for a load that is not a spring, or a drive by force."""
+def refuse_invalid(run: Run, model: Model, drive_column: str, dynamics: Dynamics) -> None:
+    """Refuse the static model for a load that is no spring, or a drive by force; two tendons too.
+
+    The dynamic model has one tendon alone as well.
+    """
+    if dynamics != "slip" and model.rig(run).effects.antagonist.preload_N != 0.0:
+        raise InputError(
+            "antagonist is in the model, which the static and the dynamic model do not have",
+            where=f"run {run.id}",
+            remedy="use --dynamics slip",
+        )
     valid = run.load == "spring" and drive_column == "x_in_mm"
     if dynamics == "static" and not valid:
         raise InputError(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from tsas_cli.identification.comparison import RunSummary, channels_of, refuse_static, summary_of
+from tsas_cli.identification.comparison import RunSummary, channels_of, refuse_invalid, summary_of
 from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import CHANNELS, LOAD_COLUMNS, Prepared, drive_of
@@ -28,7 +28,7 @@ def simulate_long(
 
     InputError: there is no folder, or the model is not valid for the run or for pieces.
     """
-    refuse_static(long.run, long.drive_column, dynamics)
+    refuse_invalid(long.run, model, long.drive_column, dynamics)
     if folder is None or dynamics == "lugre":
         cannot = "returned in memory" if folder is None else "simulated with the dynamic model"
         raise InputError(

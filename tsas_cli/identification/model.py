@@ -10,7 +10,7 @@ from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
 from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
@@ -106,7 +106,8 @@ def data_sheet(manifest: Manifest) -> Model:
     estimates = [_stated(name, value) for name, value in stated.items() if value is not None]
     for effect in EFFECTS:
         for p in effect.parameters:
-            value = getattr(rig, p.name, None)
+            named = {p.name, f"{effect.name}_{p.name}"} & RigSheet.model_fields.keys()
+            value = getattr(rig, named.pop()) if named else None
             if value is not None:
                 estimates.append(Estimate(f"{effect.name}.{p.name}", value, p.unit, "data sheet"))
     preloads = [

@@ -91,6 +91,15 @@ def kernel(function: Function) -> Function:
     With `TSAS_PLAIN_PYTHON=1` in the environment the function stays as it is, for debugging and
     for the tests that compare compiled with plain code.
     """
+    return _compiled(function, inlined=True)
+
+
+def seldom_kernel(function: Function) -> Function:
+    """Compile a numeric function that most runs do not need: its callers do not grow by it."""
+    return _compiled(function, inlined=False)
+
+
+def _compiled(function: Function, *, inlined: bool) -> Function:
     if PLAIN:
         return function
     import numba
@@ -98,7 +107,7 @@ def kernel(function: Function) -> Function:
     folder = cache_folder()
     numba.config.CACHE_DIR = folder or ""  # type: ignore[attr-defined] # numba sets it by name
     compiler = numba.njit(
-        cache=folder is not None, error_model="numpy", nogil=True, forceinline=True
+        cache=folder is not None, error_model="numpy", nogil=True, forceinline=inlined
     )
     compiled = compiler(function)
     if folder is not None:

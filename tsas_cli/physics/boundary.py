@@ -86,6 +86,22 @@ def load_end(rig: Rig, given: int) -> LoadEnd:
 
 
 @kernel
+def with_given(load: LoadEnd, given: int) -> LoadEnd:
+    """Return a distal end with another given quantity."""
+    return LoadEnd(
+        given,
+        load.stiffness_N_per_mm,
+        load.nonlinearity,
+        load.ripple,
+        load.friction,
+        load.mass_kg,
+        load.damping_N_s_per_mm,
+        load.hysteresis,
+        load.relaxation,
+    )
+
+
+@kernel
 def spring_law(x: float, load: LoadEnd) -> tuple[float, float]:
     """Return the load spring's force above the preload [N] and its slope [N/mm]."""
     stiffness = load.stiffness_N_per_mm

@@ -168,6 +168,8 @@ def _dynamic(
     """Return the solution of the dynamic chain, from the slip chain's state of rest."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
+    if rig.effects.antagonist.preload_N != 0.0:
+        raise ValueError("the dynamic model has no antagonist")
     ends = ends_of(rig, drive)
     before = history(rig, ends, drive.start_f_in_N, lumps)
     start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)

@@ -30,12 +30,14 @@ from tsas_cli.support.plausible import (
     Diameter,
     FreeLength,
     Friction,
+    FrictionRatio,
     GearRatio,
     Inertia,
     Length,
     Modulus,
     Preload,
     Radius,
+    Share,
     Stiffness,
 )
 
@@ -96,6 +98,9 @@ class RigSheet(_ManifestTable):
     inertia_N_mm_s2: Inertia | None = None
     proximal_length_mm: FreeLength | None = None
     distal_length_mm: FreeLength | None = None
+    antagonist_preload_N: Preload | None = None
+    antagonist_friction_ratio: FrictionRatio | None = None
+    antagonist_f_in_share: Share | None = None
 
 
 class Run(_ManifestTable):

@@ -246,11 +246,17 @@ def what_is_known(
     Raises
     ------
     InputError
-        A model file is wrong.
+        A model file is wrong, or has two tendons.
     """
     run, stated = conditions("track", settings), stated_model(settings)
     known = stated if model is None else model_of(model).over(stated)
     real = known if plant is None else model_of(plant).over(stated)
+    for which in (known, real):
+        if which.rig(run).effects.antagonist.preload_N != 0.0:
+            raise InputError(
+                "antagonist is in the model, and plant and controllers have one tendon",
+                remedy="leave out the antagonist's lines of the model file",
+            )
     actuator = known_drive(drive, settings.drive)
     return Known(known.rig(run), actuator), Plant(real.rig(run), settings.drive.actuator())
 

@@ -16,7 +16,7 @@ from tsas_cli.tracking.track import Plant
 ALLOWED = {
     name: Range(q.lower, q.upper, q.unit)
     for name, q in QUANTITIES.items()
-    if name != "x_in_zero_mm"
+    if name != "x_in_zero_mm" and not name.startswith("antagonist.")  # the plant has one tendon
 } | {"total_bend_rad": Range(0.0, 100.0, "rad")}
 ONLY_FROM_THE_START = {
     "preload_N": "all displacements count from the preload",

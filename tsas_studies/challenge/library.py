@@ -74,6 +74,8 @@ def terms(run: Prepared) -> Iterator[Term]:
     yield Term("proximal_spring", "x", {"f_in_N": x})
     yield Term("free_tendon", "moved by f_out", moved(-f_out))
     yield Term("sheath_compression", "moved by f L", moved(-0.5 * length * (f_in + f_out)))
+    second = np.maximum(float(tension.mean()) - tension, 0.0)  # taut where the first one is loose
+    yield Term("antagonist", "sign(v) (mean f_in − f_in), if positive", {"f_in_N": s * second})
     yield Term("direction_dependent_friction", "f_in θ", rubbed(s * bend))
     falling = np.exp(-((v / VELOCITY_MM_PER_S) ** 2))
     yield Term("stribeck_friction", "f_in θ sign(v) exp(−v²)", rubbed(bend * falling))

@@ -87,6 +87,11 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
     "skewed_laser": (sized(False, per_mm=1e-3),),
     "encoder_play": (sized(play_mm=0.15),),
     "amplifier_filter": (sized(f_in_time_s=0.014), sized(f_out_time_s=0.03)),
+    # An antagonist shows by 1 N however little it is tensed, since the drive tenses it on releases.
+    "antagonist": (
+        sized(preload_N=25.0, friction_ratio=(0.8, 1.25), f_in_share=(1.0, 1.0)),
+        sized(preload_N=25.0, friction_ratio=(0.8, 1.25), f_in_share=(0.0, 0.0)),
+    ),
 }  # fmt: skip
 
 

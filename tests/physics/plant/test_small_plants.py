@@ -26,7 +26,7 @@ STARTS = {
         f"{e.name}.{p.name}": min(LARGER.get(e.name, 1.0) * p.start, p.upper) for p in e.parameters
     }
     for e in EFFECTS
-    if e.acts_on != "sensor"
+    if e.acts_on != "sensor" and e.name != "antagonist"  # plants have one tendon
 }
 # Their own frequency or their own instability shows where the slip chain has neither.
 DYNAMIC = {"drive_inertia", "load_inertia", "stribeck_friction"}
@@ -84,7 +84,7 @@ def test_a_tendon_that_is_slack_at_times_does_what_the_slip_chain_does(values):
 
 # The path is that of the tendon's end, and has no speed or place to the inverse: none is given.
 INVERTED = {"drive_compliance", *(e.name for e in EFFECTS if e.acts_on in ("tendon", "load"))}
-INVERTED -= {"stribeck_friction", "position_dependent_friction"}
+INVERTED -= {"stribeck_friction", "position_dependent_friction", "antagonist"}
 WANTED = np.array([25.0, 26.0, 31.0, 44.0, 43.9, 43.0, 43.4, 38.0, 30.0, 30.0, 21.0, 24.0])
 
 

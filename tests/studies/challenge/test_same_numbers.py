@@ -39,6 +39,7 @@ MODEL = Rig(0.125, VIRTUAL.axial_stiffness, 1.579, RADIUS * BEND, BEND, 25.0)
 SESSION_S = 600.0
 # By how much of its RMS a change may differ: by 0.5 % from mesh to mesh, and more for a reason.
 APART = {
+    "antagonist": 0.02,  # a reversal of a loop as wide as ten times that of other effects
     "drive_friction": 0.05,  # one sample, where the drive turns
     "viscous_friction": 0.04,  # speeds of a sample before
     "stribeck_friction": 0.15,  # each place's own speed, with a memory

@@ -5,9 +5,9 @@ and with the travel since its reversals; f_out and x_out have none of it.
 Equation: f_in = T + (1 + speed(ln|v|))·(Σ (friction_k + share_k·T)·s_k + Σ (gap_friction_k +
 gap_share_k·T)·g_k) + curve(x), T the tension of the tendon, s_k the stop operator of width
 travel·4^(1−k) on the displacement of the motor where its angle was recorded, else of the drive, g_k
-that of width travel·2^(1−k) whose spring is loose over half of it, v the speed of that displacement:
-generalised Maxwell slip (Al-Bender, Lampaert and Swevers 2005). With weights that are not negative
-its elements only dissipate at a steady speed. The paper has none.
+that of width travel·2^(1−k) whose spring is loose over half of it, v the speed of that
+displacement: generalised Maxwell slip (Al-Bender, Lampaert and Swevers 2005). With weights that are
+not negative its elements only dissipate at a steady speed. The paper has none.
 Mistaken for: a cause. A law describes what no proven cause explains: friction, lost motion or
 springs at the drive, and whatever else acts there.
 Not validated: displacements, tensions and speeds beyond those that it was fitted to.

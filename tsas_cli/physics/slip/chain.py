@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tsas_cli.effects.antagonist import net_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import (
     DISPLACEMENT,
@@ -35,16 +36,25 @@ from tsas_cli.physics.course import (
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.ends import load_force, update_end_speeds, update_load_state
+from tsas_cli.physics.slip.ends import (
+    load_force,
+    tension_of_second,
+    update_end_speeds,
+    update_load_state,
+)
 from tsas_cli.physics.slip.frames import write_frame
 from tsas_cli.physics.slip.nodes import accept, update_speeds
+from tsas_cli.physics.slip.pair import accept_pair, solve_pair
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,
     ELEMENT,
     END_SPEED,
+    FIRST_IS_SLACK,
+    IS_SLACK,
     POSITION,
     POSITION_BEFORE,
+    SECOND,
     SHARE_BEFORE,
     SLIP,
     STRETCH,
@@ -165,11 +175,11 @@ def follow_sample(
     if laws.load.given == DISPLACEMENT and now.load != before.load:
         chain[SLIP + last] = 1 if now.load > before.load else -1
     converged = advance(chain, before, now, laws)
-    phase = phase_of(chain, laws.n) if converged else UNCONVERGED
-    if laws.load.given != FORCE and chain[TENSION] < 0.0:
+    phase = phase_of(chain, laws) if converged else UNCONVERGED
+    if laws.antagonist.preload_N == 0.0 and laws.load.given != FORCE and chain[TENSION] < 0.0:
         phase = SLACK
         go_slack(chain, now, laws)
-    f_in = now.drive if laws.drive.given == FORCE else chain[TENSION]
+    f_in = now.drive if laws.drive.given == FORCE else tension_at_drive(chain, laws)
     f_out = tension_at_sensor(chain, now, laws)
     return phase, ChainEnds(chain[POSITION], chain[POSITION + last], f_in, f_out)
 
@@ -192,25 +202,37 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
             return False
         target = min(reached + step, 1.0)
         now = between(start, end, target, end.step_s * (target - reached))
-        if solve_sample(chain, now, laws):
+        paired = laws.antagonist.preload_N > 0.0
+        if solve_pair(chain, now, laws) if paired else solve_sample(chain, now, laws):
             update_end_speeds(chain, now.step_s, laws.n)
             update_speeds(chain, now.step_s, laws)
             update_load_state(chain, now.step_s, laws)
-            accept(chain, laws)
+            if paired:
+                accept_pair(chain, now, laws)
+            else:
+                accept(chain, laws)
             if target == 1.0:
                 return True
             reached = target
             step *= 2.0
         else:
-            for j in range(laws.n + 2):
-                chain[POSITION + j], chain[TENSION + j], chain[SLIP + j] = (
-                    chain[POSITION_BEFORE + j],
-                    chain[TENSION_BEFORE + j],
-                    0.0,
-                )
-                chain[TRAVEL + j] = 0.0
+            go_back(chain, laws.n)
+            if paired:
+                go_back(chain[SECOND:], laws.n)
             step *= 0.5
     return False
+
+
+@kernel
+def go_back(tendon: Floats, n: int) -> None:
+    """Set a tendon back to the end of the last step, with no node slipping."""
+    for j in range(n + 2):
+        tendon[POSITION + j], tendon[TENSION + j], tendon[SLIP + j] = (
+            tendon[POSITION_BEFORE + j],
+            tendon[TENSION_BEFORE + j],
+            0.0,
+        )
+        tendon[TRAVEL + j] = 0.0
 
 
 @kernel
@@ -227,29 +249,43 @@ def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
 
 
 @kernel
-def phase_of(chain: Floats, n: int) -> int:
-    """Return +1 or −1 where all nodes of the sheath slip in that direction, else 0."""
-    first = chain[SLIP + 1]
+def phase_of(chain: Floats, laws: SlipLaws) -> int:
+    """Return +1 or −1 where all nodes of the sheaths slip in that direction, 2 slack, else 0."""
+    n, first, paired = laws.n, chain[SLIP + 1], laws.antagonist.preload_N > 0.0
+    if paired and chain[FIRST_IS_SLACK] != 0.0:
+        return SLACK
     for i in range(2, n + 1):
         if chain[SLIP + i] != first:
             return 0
+    if paired and chain[SECOND + IS_SLACK] == 0.0:
+        for i in range(1, n + 1):
+            if chain[SECOND + SLIP + i] != first:
+                return 0
     return int(first)
 
 
 @kernel
+def tension_at_drive(chain: Floats, laws: SlipLaws) -> float:
+    """Return the tension at the drive's force sensor [N], an antagonist's share subtracted."""
+    second_N = tension_of_second(chain, laws.n, laws)
+    return net_force(chain[TENSION], second_N, laws.antagonist.f_in_share)
+
+
+@kernel
 def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
-    """Return the tension at the load's force sensor [N], friction before it subtracted."""
+    """Return the force of the load [N]: the tension less an antagonist's and less friction."""
     n = laws.n
-    tension: float = chain[TENSION + n]
     if laws.load.given == FORCE:
         return now.load
+    second_N = tension_of_second(chain, 0, laws)
+    tension = net_force(chain[TENSION + n], second_N, 1.0)
     before = laws.load.friction.before_sensor_N
     if before == 0.0:
         return tension
     if laws.load.given == DISPLACEMENT:
         return float(tension - chain[SLIP + n + 1] * before)
     share = before / moving_friction(laws.load)
-    return tension - share * (tension - load_force(chain, now, laws))
+    return float(tension - share * (chain[TENSION + n] - load_force(chain, now, laws)))
 
 
 @kernel

@@ -11,14 +11,16 @@ from tsas_cli.effects.load_relaxation import relaxing_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.settling import lag_after
-from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction, spring_law
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, moving_friction, spring_law
 from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
     ELEMENT,
     END_SPEED,
+    IS_SLACK,
     POSITION,
     POSITION_BEFORE,
+    SECOND,
     SLIP,
     STRETCH,
     SWEEP_P,
@@ -41,7 +43,7 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     x = chain[POSITION + n + 1]
     force, slope = spring_law(x, laws.load)
     value = force - slope * x
-    value += laws.preload_N - now.losses.preload_N
+    value += laws.load_preload_N - now.losses.preload_N
     mass = laws.load.mass_kg
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
@@ -65,6 +67,26 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
         at_zero = kept - gained * chain[POSITION_BEFORE + n + 1]
         value += relaxing_force(at_zero, stiffness, share)
     return slope, value
+
+
+@kernel
+def pull_at_load(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
+    """Return slope and value at x = 0 of the tangent of the first tendon's tension [N/mm, N].
+
+    It holds the load and the antagonist, if there is one; the guide's friction is not in it.
+    """
+    slope, value = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
+    if laws.antagonist.preload_N > 0.0 and chain[SECOND + IS_SLACK] == 0.0:
+        r = chain[SECOND + SWEEP_R]
+        slope += chain[SECOND + SWEEP_P] / r
+        value += chain[SECOND + SWEEP_Q] / r
+    return slope, value
+
+
+@kernel
+def tension_of_second(chain: Floats, j: int, laws: SlipLaws) -> float:
+    """Return the tension of an antagonist's segment, 0 at the load and n at the drive [N]."""
+    return float(chain[SECOND + TENSION + j]) if laws.antagonist.preload_N > 0.0 else 0.0
 
 
 @kernel
@@ -157,8 +179,6 @@ def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 
 @kernel
 def load_force(chain: Floats, now: Moment, laws: SlipLaws) -> float:
-    """Return the load's force at its present position, without friction [N]."""
-    if laws.load.given == FORCE:
-        return now.load
-    slope, value = load_tangent(chain, now, laws)
+    """Return the first tendon's tension that balances the load as it is, without friction [N]."""
+    slope, value = pull_at_load(chain, now, laws)
     return float(slope * chain[POSITION + laws.n + 1] + value)

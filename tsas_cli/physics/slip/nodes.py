@@ -62,7 +62,7 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
             chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i] = pulled, released
             chain[RATIO_PULLED + i], chain[RATIO_RELEASED + i] = ratio_pulled, ratio_released
         return
-    per_N = 0.5 / laws.preload_N
+    per_N = 0.5 / laws.load_preload_N
     for i in range(1, n + 1):  # short loops: in one, the compiler runs out of registers
         mean = (chain[TENSION + i - 1] + chain[TENSION + i]) * per_N
         chain[WRAP_PULLED + i] = load_exponent(mean, laws.friction_exponent)

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from tsas_cli.effects.antagonist import Antagonist
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.boundary import DriveEnd, LoadEnd
 from tsas_cli.physics.course import Losses
@@ -15,7 +16,8 @@ class SlipLaws(NamedTuple):
     """The constants of the rig for a static problem; the whole rig would be copied at each call."""
 
     n: int  # nodes of the sheath
-    preload_N: float
+    preload_N: float  # of the tendon
+    load_preload_N: float  # of the load, at which friction is the nominal one
     scale_mm: float  # elongation of a node's segment at the preload
     friction_exponent: float
     friction_slope: float  # along the sheath, over the mean
@@ -23,6 +25,7 @@ class SlipLaws(NamedTuple):
     stribeck: StribeckFriction
     drive: DriveEnd
     load: LoadEnd
+    antagonist: Antagonist
 
 
 class Moment(NamedTuple):
@@ -56,3 +59,8 @@ ELEMENT, STRETCH = PITCH * 24, PITCH * 24 + 1  # force of the load's hysteresis,
 # stretch of its relaxing spring [mm]
 SPEED = PITCH * 25  # at which the node has slid within the frictional lag [mm/s]
 ROWS = 26
+# An antagonist's rows follow, with node 0 at the load and n + 1 at the drive: the pair is one loop,
+# on which the load pulls, and x and the directions of slip are those of the first tendon.
+SECOND = PITCH * ROWS
+IS_SLACK, WAS_SLACK = PITCH * 24, PITCH * 24 + 1  # of the second tendon, which has no load
+FIRST_IS_SLACK, FIRST_WAS_SLACK = SECOND + END_SPEED, SECOND + END_SPEED + 1

@@ -14,8 +14,8 @@ friction follows its magnitude.
 """
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
-from tsas_cli.physics.slip.ends import drive_position, load_tangent, update_ends
+from tsas_cli.physics.boundary import DISPLACEMENT, moving_friction
+from tsas_cli.physics.slip.ends import drive_position, pull_at_load, update_ends
 from tsas_cli.physics.slip.nodes import (
     breakaway,
     extrapolate,
@@ -56,16 +56,12 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         extrapolate(chain, laws)
     set_friction(chain, now, laws)
     update_relations(chain, now, laws)
-    reversing = MOST_ITERATIONS + n
-    one_by_one = reversing + MOST_REVERSALS
-    for iteration in range(one_by_one + MOST_SINGLE_CHANGES * n):
+    for iteration in range(most_iterations(n)):
         sweep_to_drive(chain, now, laws)
         sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
-        reverse = reversing <= iteration < one_by_one
-        # One by one ends where all at once cycle, but for nodes with little friction.
-        limit = n if reverse or iteration < MOST_ITERATIONS else 1
+        limit, reverse = changes_at(iteration, n)
         unsolved = (
             laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, limit, reverse) > 0
         )
@@ -75,6 +71,23 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         if not unsolved:
             return True
     return False
+
+
+@kernel
+def most_iterations(n: int) -> int:
+    """Return after how many iterations a problem of n nodes counts as not converged."""
+    return MOST_ITERATIONS + n + MOST_REVERSALS + MOST_SINGLE_CHANGES * n
+
+
+@kernel
+def changes_at(iteration: int, n: int) -> tuple[int, bool]:
+    """Return how many nodes may change in an iteration, and whether they reverse without a rest.
+
+    One by one ends where all at once cycle, but for nodes with little friction.
+    """
+    reversing = MOST_ITERATIONS + n
+    reverse = reversing <= iteration < reversing + MOST_REVERSALS
+    return n if reverse or iteration < MOST_ITERATIONS else 1, reverse
 
 
 @kernel
@@ -88,7 +101,7 @@ def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     elif chain[SLIP + last] == 0.0 and guide > 0.0:
         p, q, r = 1.0, compliance * F0 - chain[POSITION_BEFORE + last], compliance
     else:
-        p, q = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
+        p, q = pull_at_load(chain, now, laws)
         q += chain[SLIP + last] * guide + p * compliance * F0
         r = 1.0 + p * compliance
     chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r

@@ -109,7 +109,7 @@ def run(
         The number of samples before the tendon went slack or a step did not converge.
     """
     m, n = x_in.size, tendon.bend.size
-    state = _at_rest(n, tendon.surface)
+    state = at_rest(n, tendon.surface)
     load = AT_REST
     t_in, t_out = np.full(m, np.nan), np.full(m, np.nan)
     u_end, guide = np.full(m, np.nan), np.full(m, np.nan)
@@ -132,10 +132,20 @@ def run(
 
 
 @compiled
-def _at_rest(n: int, law: Surface) -> State:
+def at_rest(n: int, law: Surface) -> State:
     """Return the state of n nodes before the first sample."""
     start = roughness(Past(0.0, 0.0, 0.0), 0.0, law)
     return State(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.full(n, start))
+
+
+@compiled
+def stretched(
+    state: State, tendon: Tendon, ends: Ends, h: float
+) -> tuple[bool, Floats, float, float]:
+    """Return whether a step between two displacements converged, what moved, and both tensions."""
+    good, du = _solve(state, AT_REST, tendon, ends, h)
+    tension, _, e = _stretched(state, du, tendon, ends.mu)
+    return good, du, _at_drive(tendon, tension, e, du, h), _at_load(tendon, tension, e, du, h)
 
 
 @compiled
@@ -162,7 +172,7 @@ def _advance(
             ends = (_at_drive(tendon, tension, e, du, step), _at_load(tendon, tension, e, du, step))
             y = state.u[-1] + du[-1] - tendon.c_out * (ends[1] - tendon.preload)
             load = moved(tendon.load, load, y, step)
-            _keep(state, du, tendon, step)
+            keep(state, du, tendon, step)
             done = to
         else:
             part *= 0.5
@@ -172,7 +182,7 @@ def _advance(
 
 
 @compiled
-def _keep(state: State, du: Floats, tendon: Tendon, h: float) -> None:
+def keep(state: State, du: Floats, tendon: Tendon, h: float) -> None:
     """Add a solved displacement to the state."""
     forgotten = 1.0 - np.exp(-h / MEMORY_S)
     for j in range(du.size):

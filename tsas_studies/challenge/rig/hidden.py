@@ -30,6 +30,11 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "distal_length_mm": ("distal_length_mm",),
     },
     "sheath_compression": {"compliance_ratio": ("sheath_compliance_ratio",)},
+    "antagonist": {
+        "preload_N": ("antagonist", "preload_N"),
+        "friction_ratio": ("antagonist", "friction_ratio"),
+        "f_in_share": ("antagonist", "f_in_share"),
+    },
     "direction_dependent_friction": {"asymmetry": ("friction", "asymmetry")},
     "stribeck_friction": {
         "excess": ("friction", "stribeck_excess"),

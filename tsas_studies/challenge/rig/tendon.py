@@ -6,11 +6,12 @@ columns = measure(clean, Sensors(), seed=1)          # in tsas_studies.challenge
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from tsas_studies.challenge.rig import continuum
+from tsas_studies.challenge.rig.antagonist import Antagonist, Net, run_pair
 from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
 from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
 from tsas_studies.challenge.rig.friction import Friction, over_time, over_travel
@@ -47,6 +48,8 @@ class Rig:
         How much more the sheath is compressed than the tendon stretches.
     stiffening_per_N
         The tendon's force over its stretch s is F0 + (exp(stiffening · k s) − 1) / stiffening.
+    antagonist
+        A second tendon that pulls the load back; it needs a spring at the load.
     drive_end, friction, surface, load_end, restraint, give
         What else there is along the way; nothing by default. The load's end needs a spring.
     """
@@ -68,6 +71,7 @@ class Rig:
     presliding_length_mm: float = 5e-6
     sheath_compliance_ratio: float = 0.0
     stiffening_per_N: float = 0.0
+    antagonist: Antagonist = field(default_factory=Antagonist)
     drive_end: DriveEnd = field(default_factory=DriveEnd)
     friction: Friction = field(default_factory=Friction)
     surface: Surface = field(default_factory=Surface)
@@ -134,10 +138,10 @@ def simulate(
     mu = mu * over_time(rig.friction, rig.total_bend_rad, t, session_s)
     mu = mu * over_travel(rig.friction, x_in)
     position = tendon_end(rig.drive_end, x_in)
+    if rig.antagonist.preload_N > 0.0:
+        return _with_antagonist(rig, motion, position, mu)
     t_in, t_out, u_end, guide, solved = continuum.run(tendon, Path(rig.give), t, position, mu, q)
-    if solved < t.size:
-        what = "the tendon is slack" if np.isfinite(t_in[solved]) else "the step fails"
-        raise ValueError(f"{what} at {t[solved]:.6g} s")
+    _refuse_failed(t, t_in, solved)
     return CleanRun(
         {
             "time_s": t,
@@ -147,6 +151,40 @@ def simulate(
             "f_out_N": t_out - rig.load_end.friction_before_N * guide,
         }
     )
+
+
+def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> CleanRun:
+    """Return the recording of a rig with two tendons."""
+    if rig.load != "spring" or rig.give != Give():
+        raise ValueError("an antagonist needs a spring at the load and a firm path")
+    t, other, F0 = motion.time_s, rig.antagonist, rig.preload_N
+    between = replace(rig, load="displacement", load_end=LoadEnd(), restraint=Restraint())
+    first = _tendon(replace(between, preload_N=F0 + other.preload_N))
+    second = _tendon(replace(between, preload_N=other.preload_N))
+    kL, end = rig.load_stiffness_N_per_mm, rig.load_end
+    lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
+    held = load(end, kL, restraint(rig.restraint, kL, F0))
+    net = Net(F0 * course(rig.preload_course, t) - lost, kL, held)
+    signals, solved = run_pair(first, second, net, t, position, mu, other.friction_ratio)
+    t_in, t_out, t_in_2, t_out_2, guide, y = signals
+    _refuse_failed(t, t_in, solved)
+    f_in = t_in - other.f_in_share * t_in_2
+    return CleanRun(
+        {
+            "time_s": t,
+            "x_in_mm": motion.x_in_mm,
+            "x_out_mm": y,
+            "f_in_N": sensed_force(rig.drive_end, t, position, f_in),
+            "f_out_N": t_out - t_out_2 - end.friction_before_N * guide,
+        }
+    )
+
+
+def _refuse_failed(t: Floats, t_in: Floats, solved: int) -> None:
+    """Raise ValueError where not every sample was solved."""
+    if solved < t.size:
+        what = "the tendon is slack" if np.isfinite(t_in[solved]) else "the step fails"
+        raise ValueError(f"{what} at {t[solved]:.6g} s")
 
 
 def _tendon(rig: Rig) -> continuum.Tendon:

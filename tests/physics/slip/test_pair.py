@@ -1,0 +1,249 @@
+"""A tendon and its antagonist: every law by hand after every sample, and two exact solutions.
+
+The second tendon is looked at as it is mounted: from the drive on, its displacements towards the
+drive, −x_in there and −x_out at the load.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from tests.physics.references import (
+    DRIVEN_BY_FORCE,
+    GROUP_A,
+    LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
+    LOADED_BY_SPRING,
+    course_of,
+    through,
+    wrap_of,
+)
+from tests.physics.slip.test_small_chains import ROUNDING, SPRINGY, Nodes, gives, moments, rubs
+from tsas_cli.effects import Effects
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
+from tsas_cli.physics.response import simulate
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.chain import follow, initial_state, slip_chain
+from tsas_cli.physics.slip.state import POSITION, SECOND, TENSION
+
+N = 3
+PAIR = {"antagonist.preload_N": 18.0, "antagonist.friction_ratio": 1.4}
+MOTIONS = {
+    "both taut": np.array([0.3, 0.5, 0.7, 0.68, 0.6, 0.62, 0.6, 0.3, -0.1, -0.3, -0.2, 0.1]),
+    "either slack": np.array([0.4, 2.5, 4.6, 4.5, 2.0, 1.9, -1.5, -7.5, -9.5, -9.4, -3.0, 0.6]),
+}
+EFFECTS = {
+    "friction alone": {},
+    "free tendon": {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0},
+    "friction rises with tension": {"load_dependent_friction.exponent": 0.25},
+    "presliding": {"presliding.length_mm": 0.02},
+    "uneven friction": {"uneven_friction.slope": 1.5},
+    "a guide at the load": {
+        "load_friction.after_sensor_N": 3.0,
+        "load_friction.before_sensor_N": 1.5,
+    },
+}
+
+
+def states(course, rig, boundary):
+    """Yield positions and tensions of both tendons, each from the drive on, after every sample."""
+    for i in range(course.shape[1]):
+        part = np.ascontiguousarray(course[:, : i + 1])
+        start = initial_state(part, rig, boundary, N)
+        chain = follow(part, start, rig, boundary, N, None)[1].chain
+        x, T = (chain[row : row + N + 2].copy() for row in (POSITION, TENSION))
+        x_2, T_2 = (chain[SECOND + row : SECOND + row + N + 2] for row in (POSITION, TENSION))
+        yield (x, T[:-1]), (-x_2[::-1], T_2[:-1][::-1].copy())
+
+
+def friction_of(rig):
+    """Return the rig whose nodes hold the second tendon, which has the same effects."""
+    return rig._replace(effects=rig.effects._replace(antagonist=Effects().antagonist))
+
+
+class Tendon:
+    """One of both tendons: its tension at rest, and where its nodes were."""
+
+    def __init__(self, rig, preload_N):
+        self.preload_N, self.give = preload_N, gives(rig)
+        self.nodes, self.before, self.was_slack = Nodes(friction_of(rig)), np.zeros(N + 2), False
+
+    def hold(self, x, T, now):
+        """Hold a state against the laws of its segments and nodes; return whether it is slack."""
+        slack = not T.any()
+        if slack:
+            assert x[0] - x[-1] < -self.give.sum() * self.preload_N + ROUNDING
+        else:
+            assert T.min() > 0.0
+            np.testing.assert_allclose(
+                x[:-1] - x[1:], self.give * (T - self.preload_N), atol=ROUNDING
+            )
+            for i in range(1, N + 1):
+                way = 0.0 if self.was_slack else x[i] - self.before[i]
+                self.nodes.hold(i, way, T[i - 1], T[i], now)
+        self.before, self.was_slack = x, slack
+        return slack
+
+
+def hold_everywhere(course, rig, boundary):
+    """Hold every state against all laws; return which tendons were slack, shape (m, 2)."""
+    effects, ratio = rig.effects, rig.effects.antagonist.friction_ratio
+    second_N = effects.antagonist.preload_N
+    first, second = Tendon(rig, rig.preload_N + second_N), Tendon(rig, second_N)
+    x_before, slack = 0.0, []
+    for now, ((x, T), (x_2, T_2)) in zip(
+        moments(course), states(course, rig, boundary), strict=True
+    ):
+        assert (x_2[0], x_2[-1]) == (-x[0], -x[-1])
+        losses = now.losses
+        rougher = losses._replace(pulled=ratio * losses.pulled, released=ratio * losses.released)
+        slack.append((first.hold(x, T, now), second.hold(x_2, T_2, now._replace(losses=rougher))))
+        way, net = x[-1] - x_before, T[-1] - T_2[-1]
+        guide = effects.load_friction.before_sensor_N
+        if boundary == LOADED_BY_FORCE:
+            assert rubs(net - now.load, way, guide)
+        elif boundary == LOADED_BY_DISPLACEMENT:
+            assert x[-1] == now.load
+        else:
+            held = rig.preload_N - losses.preload_N + rig.load_stiffness_N_per_mm * x[-1]
+            assert rubs(net - held, way, guide + effects.load_friction.after_sensor_N)
+        x_before = x[-1]
+    return np.array(slack)
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_law_holds_at_a_spring(name, motion):
+    if (name, motion) == ("presliding", "either slack"):
+        pytest.skip("where a tendon was slack its nodes' shares are not known")
+    rig = with_values(SPRINGY, EFFECTS[name] | PAIR)
+    a = wrap_of(rig)
+    course = course_of(
+        MOTIONS[motion],
+        rig,
+        pulled=np.linspace(0.9, 1.3, 12) * a,
+        released=np.linspace(0.8, 0.6, 12) * a,
+        lost=np.linspace(0.0, 2.0, 12),
+        step=0.05,
+    )
+    slack = hold_everywhere(course, rig, LOADED_BY_SPRING)
+    assert slack.any(axis=0).tolist() == [motion == "either slack"] * 2
+    assert UNCONVERGED not in slip_chain(course, rig, LOADED_BY_SPRING, N)[4]
+
+
+@pytest.mark.parametrize("boundary", [LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT])
+def test_every_law_holds_with_the_load_given(boundary):
+    rig = with_values(SPRINGY, PAIR | {"load_friction.before_sensor_N": 1.5})
+    motion = MOTIONS["both taut"]
+    load = 25.0 + 6.0 * np.sin(np.arange(12.0)) if boundary == LOADED_BY_FORCE else 0.5 * motion
+    course = course_of(motion, rig, load=load, released=0.8 * wrap_of(rig))
+    hold_everywhere(course, rig, boundary)
+    np.testing.assert_array_equal(
+        slip_chain(course, rig, boundary, N)[3 if boundary == LOADED_BY_FORCE else 1], load
+    )
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_a_force_at_the_drive_moves_it_as_the_displacement_did(share):
+    """The force that a sensor reads of a motion, given in its place, makes the same motion."""
+    rig = with_values(SPRINGY, PAIR | {"antagonist.f_in_share": share})
+    motion = MOTIONS["both taut"]
+    moved = slip_chain(course_of(motion, rig), rig, LOADED_BY_SPRING, N)
+    again = slip_chain(course_of(moved[2], rig), rig, DRIVEN_BY_FORCE, N)
+    assert UNCONVERGED not in again[4]
+    for found, expected in zip(again[:4], moved[:4], strict=True):
+        np.testing.assert_allclose(found, expected, atol=1e-5)
+
+
+def test_without_friction_both_are_springs_that_cannot_push():
+    """K (x_in − x + s₁) − K (x − x_in + s₂) = F₀ + kL x, each term at least zero, s₁ = T₁/K."""
+    rig = with_values(
+        GROUP_A._replace(friction_coefficient=1e-9, tendon_stiffness_N=3e3),
+        {"antagonist.preload_N": 10.0},
+    )
+    K, kL = rig.tendon_stiffness_N / rig.sheath_length_mm, rig.load_stiffness_N_per_mm
+    x_in = through(20.0, -70.0, 5.0, samples=40)
+
+    def tensions(x, drive):
+        return max(35.0 + K * (drive - x), 0.0), max(10.0 + K * (x - drive), 0.0)
+
+    def unbalanced(x, drive):
+        first, second = tensions(x, drive)
+        return first - second - 25.0 - kL * x
+
+    exact = np.array([brentq(unbalanced, -90.0, 60.0, args=(drive,), xtol=1e-12) for drive in x_in])
+    pulls = np.array([tensions(*both) for both in zip(exact, x_in, strict=True)])
+    assert (pulls.min(axis=0) == 0.0).all()
+    answer = simulate(rig, DriveInput(x_in), nodes=4)
+    np.testing.assert_allclose(answer.x_out_mm, exact, atol=1e-6)
+    np.testing.assert_allclose(answer.f_in_N, pulls[:, 0] - pulls[:, 1], atol=1e-5)
+    assert np.array_equal(answer.phase == SLACK, pulls[:, 0] == 0.0)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 0.5])
+def test_in_full_slip_both_are_capstans(ratio):
+    """T(s) = T(0) e^(∓a s/L) of each tendon, its elongation by Eq. (8), and the load's balance."""
+    second_N = 60.0
+    rig = with_values(
+        GROUP_A, {"antagonist.preload_N": second_N, "antagonist.friction_ratio": ratio}
+    )
+    a, kL = wrap_of(rig), rig.load_stiffness_N_per_mm
+    give = rig.sheath_length_mm / rig.tendon_stiffness_N
+
+    def longer(tension_at_load, exponent):
+        return give * tension_at_load * math.expm1(exponent) / exponent
+
+    def solved(drive, way):
+        """Return positions and tensions where everything slips one way."""
+        growth, shrinkage = way * a, -way * ratio * a
+
+        def second_of(x):
+            return (x - drive + give * second_N) * shrinkage / (give * math.expm1(shrinkage))
+
+        def unbalanced(x):
+            first = 25.0 + kL * x + second_of(x)
+            return drive - x - longer(first, growth) + give * (25.0 + second_N)
+
+        x = brentq(unbalanced, drive - 3.0, drive + 3.0, xtol=1e-13)
+        second = second_of(x)
+        first = 25.0 + kL * x + second
+        return x, first * math.exp(growth) - second * math.exp(shrinkage), second
+
+    x_in = np.concatenate((np.linspace(0.0, 12.0, 600), np.linspace(12.0, 4.0, 400)[1:]))
+    answer = simulate(rig, DriveInput(x_in), nodes=400)
+    for sample, way in ((400, 1), (599, 1), (900, -1), (998, -1)):
+        x, f_in, second = solved(x_in[sample], way)
+        assert answer.phase[sample] == way
+        assert second > 5.0
+        assert answer.x_out_mm[sample] == pytest.approx(x, abs=1e-5)
+        assert answer.f_in_N[sample] == pytest.approx(f_in, rel=1e-5)
+        assert answer.f_out_N[sample] == pytest.approx(25.0 + kL * x, abs=1e-5)
+
+
+def test_a_load_cell_in_the_first_tendon_reads_the_second_one_on_top():
+    x_in = np.append(0.0, through(8.0, 2.0, samples=50))
+    runs = [
+        simulate(
+            with_values(GROUP_A, PAIR | {"antagonist.f_in_share": share}), DriveInput(x_in), nodes=6
+        )
+        for share in (0.0, 0.5, 1.0)
+    ]
+    np.testing.assert_allclose(runs[1].f_in_N, 0.5 * (runs[0].f_in_N + runs[2].f_in_N), atol=1e-9)
+    assert (runs[0].f_in_N[0], runs[2].f_in_N[0]) == pytest.approx((43.0, 25.0))
+    for channel in ("x_out_mm", "f_out_N"):
+        np.testing.assert_array_equal(getattr(runs[0], channel), getattr(runs[2], channel))
+
+
+def test_a_run_in_parts_is_the_whole():
+    rig = with_values(SPRINGY, PAIR)
+    course = course_of(MOTIONS["either slack"], rig)
+    whole = slip_chain(course, rig, LOADED_BY_SPRING, N)
+    state, parts = initial_state(course, rig, LOADED_BY_SPRING, N), []
+    for part in (course[:, :5].copy(), course[:, 5:].copy()):
+        output, state = follow(part, state, rig, LOADED_BY_SPRING, N, None)
+        parts.append(output)
+    for k, column in enumerate(whole):
+        np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)
