@@ -1,9 +1,12 @@
 """Diagnose the effects that a calibrated model lacks, from runs to a verdict."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
+from tsas_cli.diagnosis.faults.rivals import effects_as_good
+from tsas_cli.diagnosis.faults.search import fault_of_recording
+from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.law import Law, describe
@@ -24,7 +27,7 @@ from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.records.diagnosis import INCOMPLETE, Verdict
+from tsas_cli.records.diagnosis import INCOMPLETE, RecordingFault, Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Endable, Ended, Steps
 from tsas_cli.support.wording import count_of
 
@@ -59,6 +62,7 @@ class Diagnosis:
     cannot_tell: tuple[str, ...] = ()
     stand_in_model: Model | None = None
     law: Law | None = None
+    fault: RecordingFault | None = None
 
     @property
     def unexplained(self) -> bool:
@@ -93,10 +97,13 @@ def diagnose_runs(
     stated: Model,
     runs: Sequence[Prepared],
     step: Steps = NO_PROGRESS,
+    accepted: Collection[str] = (),
 ) -> Diagnosis:
     """Return the effects that a model of these runs lacks; `step` reports progress.
 
-    `stated` is the data sheet as a model, or another initial model.
+    Where a fault of the recordings explains what the nominal model leaves, none is sought; those
+    of codes that are `accepted` are not. `stated` is the data sheet as a model, or another initial
+    model.
     """
     step.doing("fits the nominal model")
     step.ahead(1)
@@ -114,6 +121,13 @@ def diagnose_runs(
     step = Endable(step)
     search = Search(bench, folds, step)
     try:
+        fault = fault_of_recording(bench, folds, accepted)
+        if fault is not None and not any(effects_as_good(search, fault)):
+            record = record_of(fault.found, [run.run.id for run in runs])
+            reason = reason_of_fault(record, fault.share)
+            return Diagnosis(
+                "undecided", reason, model, model, cannot_tell=cannot_tell, fault=record
+            )
         found = _concluded(proven_effects(find_effects(search), step), base, step)
     except Ended:
         return _ended(search, model, cannot_tell)

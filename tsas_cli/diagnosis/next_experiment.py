@@ -9,6 +9,11 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     """Return the instruction for the next experiment."""
     experiments = {effect.name: effect.experiment for effect in EFFECTS}
+    if result.fault is not None:
+        return (
+            "Correct the recording, or leave its run out, and diagnose again; then record that run "
+            "once more without any change."
+        )
     if result.verdict == "undecided" and result.search is not None:
         return "Repeat the call and let the search end; fewer runs (--runs) take less time."
     if result.verdict == "undecided":

@@ -75,13 +75,13 @@ class RunErrors:
     def errors(self, rig: Rig) -> dict[str, Floats]:
         """Return the weighted residuals of each channel, at the samples that enter the fit."""
         predicted = self.predict(rig)
-        out = {}
-        for name, at in self.samples.items():
-            errors = ((predicted[name] - self.run.measured[name]) / self.weights[name])[at]
-            turns = self.turns[name]
-            projection = np.add.reduceat(turns.shape * errors, turns.starts)
-            out[name] = errors - turns.shape * np.repeat(projection, turns.counts)
-        return out
+        return {n: self._weighted(n, predicted[n] - self.run.measured[n]) for n in self.samples}
+
+    def _weighted(self, name: str, difference: Floats) -> Floats:
+        """Return a channel's weighted residuals, from predicted minus measured at all samples."""
+        errors, turns = (difference / self.weights[name])[self.samples[name]], self.turns[name]
+        projection = np.add.reduceat(turns.shape * errors, turns.starts)
+        return np.asarray(errors - turns.shape * np.repeat(projection, turns.counts))
 
     def delays(self, rig: Rig) -> dict[str, Floats]:
         """Return by how much each stroke lags behind the model's, in each channel.
@@ -99,12 +99,15 @@ class RunErrors:
 
     def residuals(self, rig: Rig) -> Floats:
         """Return means of neighbouring residuals, scaled to unit variance, channel by channel."""
-        parts = []
-        for errors in self.errors(rig).values():
-            edges = mean_edges(errors.size)
-            counts = np.diff(edges, append=errors.size)
-            parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
-        return np.concatenate(parts)
+        return _means(self.errors(rig))
+
+    def changed(self, changes: Mapping[str, Floats]) -> Floats:
+        """Return the change of the residuals where predicted minus measured changes by so much.
+
+        The changes are those of some channels at all samples, shape (n,) each.
+        """
+        none = np.zeros(self.run.time_s.size)
+        return _means({n: self._weighted(n, changes.get(n, none)) for n in self.samples})
 
     def spread(self, name: str, chosen: Mask) -> Mask:
         """Return which samples of a channel belong to the chosen residuals of the run."""
@@ -131,6 +134,15 @@ class RunErrors:
         first = [at[mean_edges(at.size)] for at in self.samples.values()]
         numbers: Indices = np.unique(np.concatenate(first) // length, return_inverse=True)[1]
         return numbers
+
+
+def _means(errors: Mapping[str, Floats]) -> Floats:
+    parts = []
+    for each in errors.values():
+        edges = mean_edges(each.size)
+        counts = np.diff(edges, append=each.size)
+        parts.append(np.add.reduceat(each, edges) / np.sqrt(counts))
+    return np.concatenate(parts)
 
 
 def run_errors(

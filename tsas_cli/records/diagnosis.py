@@ -172,6 +172,17 @@ class ResidualMaps(Record):
     after: Maps = {}
 
 
+class RecordingFault(Record):
+    """What is wrong with the recordings: the code of a check, or of a fault of single runs."""
+
+    SPARSE = frozenset({"run", "column", "first_s"})
+    code: str
+    run: str | None = None
+    column: str | None = None
+    sentence: str = ""
+    first_s: Number = None
+
+
 class Findings(Record):
     """The part of a diagnosis that any tool can write, and that the blind benchmark scores."""
 
@@ -180,6 +191,7 @@ class Findings(Record):
     named: tuple[NamedCause, ...]
     stand_ins: tuple[NamedCause, ...] = ()
     laws: tuple[DescribedLaw, ...] = ()
+    faults: tuple[RecordingFault, ...] = ()
     channels: dict[str, HeldOut] = {}
     remainder: RemainingResidual
     next_experiment: str = ""

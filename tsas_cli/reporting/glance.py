@@ -36,6 +36,7 @@ _NO_CAUSE = {
     "unexplained": "No known effect explains what the model misses",
     "undecided": "These recordings hold too little to decide",
 }
+_FAULT = "A fault of the recordings explains what the model misses"
 
 
 def glance(inputs: Inputs) -> Glance | None:
@@ -64,6 +65,8 @@ def _of_diagnosis(
     named = diagnosis.named
     reason = diagnosis.reason[:1].upper() + diagnosis.reason[1:].rstrip(".")
     verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, reason)
+    if isinstance(diagnosis, DiagnosisFile) and diagnosis.faults:
+        verdict = _FAULT
     numbers = "RMS of the residual on held-out data"
     extended = diagnosis.extended if isinstance(diagnosis, DiagnosisFile) else bool(named)
     facts = (*_gains(named), *_errors(channels, extended=extended))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tsas_cli.diagnosis import found
 from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
+from tsas_cli.diagnosis.faults.words import CODES
 from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.proof import FoundCause
@@ -27,7 +28,7 @@ from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.checked import accepted_errors
-from tsas_cli.stages.given import Named, dataset_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, listed, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -133,7 +134,8 @@ def diagnose(
     runs
         The ids of the runs that are taken; all without it.
     despite
-        Codes of checks whose errors are accepted (`tsas.check`); any other error stops it.
+        Codes of checks whose errors are accepted (`tsas.check`); any other error stops it. The
+        codes of faults of single runs too, which are not sought then.
     force
         Replace the folder if it is there.
     step
@@ -155,7 +157,7 @@ def diagnose(
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
-        accepted = accepted_errors(data, despite, step)
+        accepted = accepted_errors(data, despite, step, further=CODES)
         counted = without_duplicates(data)
         step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)
@@ -166,7 +168,7 @@ def diagnose(
             step()
         for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
             step.say(sentence)
-        result = diagnose_runs(data.manifest, stated, prepared, step)
+        result = diagnose_runs(data.manifest, stated, prepared, step, accepted=listed(despite))
         record = records.DiagnosisFile(
             **counted.dataset.header(path),
             despite=accepted,
@@ -176,6 +178,7 @@ def diagnose(
             named=[found.cause_of(cause) for cause in result.causes],
             stand_ins=[found.cause_of(cause) for cause in result.stand_ins],
             laws=() if result.law is None else records_of(result.law),
+            faults=() if result.fault is None else (result.fault,),
             channels=found.held_out_of(result),
             remainder=found.remainder_of(result),
             next_experiment=next_experiment(result, step),

@@ -2,8 +2,8 @@
 
 A seed tells everything: `cases(seed)` gives every effect of the catalogue at full size and at
 0.4 of it, pairs, triples, cases with nothing hidden, causes that the catalogue does not hold,
-causes that are near to it, and small faults of sensors; then all but the last under realistic
-conditions. Whoever builds or tunes a
+causes that are near to it, small faults of sensors, and faults of recording; then all but the last
+two under realistic conditions. Whoever builds or tunes a
 tool uses the seeds of BUILDING; those of SCORING are for measuring it, once.
 """
 
@@ -24,6 +24,7 @@ from tsas_studies.challenge.near import (
     drawn_near,
     stream,
 )
+from tsas_studies.challenge.recording_faults import RECORDING_FAULTS, drawn_recording
 from tsas_studies.challenge.rig.hidden import CATALOGUE
 
 BUILDING = range(1000)
@@ -37,10 +38,10 @@ FEW = 2  # cases of a kind in a small part of a set
 
 RANDOM_TRIPLES = 2
 
-Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near", "fault"]
+Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near", "fault", "recording"]
 Drawn = Iterator[tuple[str, Kind, float, tuple["Hidden", ...]]]
 # Where the numbers of later kinds of cases begin: one more case leaves the others as they are.
-NEAR_FROM, SLOW_FROM, TRIPLES_FROM, FAULTS_FROM = 1000, 2000, 3000, 4000
+NEAR_FROM, SLOW_FROM, TRIPLES_FROM, FAULTS_FROM, RECORDING_FROM = 1000, 2000, 3000, 4000, 5000
 
 
 @dataclass(frozen=True)
@@ -155,10 +156,10 @@ TRIPLES = (
 
 
 def cases(seed: int, salt: int = 0) -> tuple[Case, ...]:
-    """Return all cases of a seed and a salt, about 340.
+    """Return all cases of a seed and a salt, about 430.
 
     The clean ones, nulls in slow noise, and the clean ones again under realistic conditions, but
-    for small faults of sensors, which are of the size of those conditions.
+    for faults of recording and small faults of sensors, which are of the size of those conditions.
     """
     chance = salted(seed, salt)
     listed = (
@@ -166,6 +167,7 @@ def cases(seed: int, salt: int = 0) -> tuple[Case, ...]:
         *enumerate(_near(chance), NEAR_FROM),
         *enumerate(_triples(chance), TRIPLES_FROM),
         *enumerate(_faults(chance), FAULTS_FROM),
+        *enumerate(_of_recording(chance), RECORDING_FROM),
     )
     clean = [
         Case(name, kind, size, hidden, seed, number, salt=salt)
@@ -179,7 +181,7 @@ def cases(seed: int, salt: int = 0) -> tuple[Case, ...]:
     realistic = [
         replace(case, name=f"{case.name}, realistic", conditions="realistic")
         for case in clean
-        if case.kind != "fault"
+        if case.kind not in ("fault", "recording")
     ]
     return (*clean, *slow, *realistic)
 
@@ -188,7 +190,7 @@ def part(of: Iterable[Case]) -> tuple[Case, ...]:
     """Return a small part of the cases: each effect once at full size, a few of what is none."""
     listed = [case for case in of if case.conditions == "clean"]
     kept = [case for case in listed if case.kind == "one" and case.size == max(SIZES)]
-    for kind in ("nothing", "unknown", "near", "fault"):
+    for kind in ("nothing", "unknown", "near", "fault", "recording"):
         kept += [case for case in listed if case.kind == kind][:FEW]
     return tuple(kept)
 
@@ -238,6 +240,14 @@ def _faults(seed: int) -> Drawn:
         for size in SIZES:
             hidden = Hidden(fault, drawn_fault(fault, size, seed))
             yield f"small {fault}, size {size:g}", "fault", size, (hidden,)
+
+
+def _of_recording(seed: int) -> Drawn:
+    """Yield a sound rig with one fault of recording, at each size."""
+    for fault, known in RECORDING_FAULTS.items():
+        for size in known.sizes:
+            hidden = Hidden(fault, drawn_recording(fault, size, seed))
+            yield f"{fault}, {size:g} x the noise", "recording", size, (hidden,)
 
 
 def drawn(effect: str, size: float, rng: np.random.Generator) -> Hidden:

@@ -22,6 +22,11 @@ class SubmittedDiagnosis(Findings):
 
     seconds: float | None = Field(default=None, ge=0)
 
+    @property
+    def said(self) -> frozenset[str]:
+        """The effects that are named, and the codes of the faults of recording that are found."""
+        return self.effects | {fault.code for fault in self.faults}
+
 
 class Log(Record):
     """The content of `entry.json`, which `tsas challenge run` writes: why answers are missing."""

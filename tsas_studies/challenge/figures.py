@@ -54,6 +54,7 @@ def figures(judged: Sequence[Judged]) -> list[ScoreRate]:
         *(_under("slow", f) for f in _of_nothing(slow)),
         *_beyond(clean),
         *_of_faults(clean),
+        *_of_recording(judged),
         *_of_names(clean),
         _under(
             "realistic",
@@ -143,6 +144,31 @@ def _of_faults(judged: Iterable[Judged]) -> list[ScoreRate]:
     ]
 
 
+def _of_recording(judged: Iterable[Judged]) -> list[ScoreRate]:
+    """Return the rates of faults of recording, and of sound recordings of any conditions."""
+    listed = list(judged)
+    faults, sound = _of(listed, "recording"), _of(listed, "nothing")
+    at = sorted({j.case.size for j in faults if j.case.size is not None})
+    return [
+        ScoreRate("recording_right", "fault of recording: said", _share(faults, "right")),
+        *(
+            ScoreRate(
+                f"recording_{size:g}_right",
+                f"  at {size:g} times the noise",
+                _share((j for j in faults if j.case.size == size), "right"),
+            )
+            for size in at
+        ),
+        ScoreRate("recording_wrong", "fault of recording: a mechanism named", _false(faults)),
+        ScoreRate("sound_accused", "nothing hidden: a fault of recording said", _accused(sound)),
+        ScoreRate(
+            "one_accused",
+            "one effect: a fault of recording said",
+            _accused(_of(listed, "one")),
+        ),
+    ]
+
+
 def _of_names(judged: Iterable[Judged]) -> list[ScoreRate]:
     listed = list(judged)
     covered = [inside for j in listed for inside in j.covered]
@@ -217,6 +243,10 @@ def _share(cases: Iterable[Judged], *outcomes: str) -> Rate:
 
 def _warned(cases: Iterable[Judged]) -> Rate:
     return rate(j.diagnosis.warns for j in cases if j.diagnosis is not None)
+
+
+def _accused(cases: Iterable[Judged]) -> Rate:
+    return rate(bool(j.diagnosis.faults) for j in cases if j.diagnosis is not None)
 
 
 def _false(cases: Iterable[Judged]) -> Rate:

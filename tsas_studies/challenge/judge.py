@@ -22,13 +22,20 @@ class Judged:
         """The class of the case, one of those that docs/challenge.md defines for its kind.
 
         one: exact, rivals, false, none. pair: both, one, none. triple: all, some, none. nothing:
-        named, quiet. unknown, near: recognised, right kind, false, missed. All: no answer.
+        named, quiet. unknown, near, fault: recognised, right kind, false, missed. recording: right,
+        recognised, false, missed. All: no answer.
         """
         case, diagnosis = self.case, self.diagnosis
         if diagnosis is None:
             return NO_ANSWER
         if case.kind == "nothing":
             return "named" if diagnosis.named else "quiet"
+        if case.kind == "recording":
+            if diagnosis.said & case.right:
+                return "right"
+            if self.false_names:
+                return "false"
+            return "recognised" if diagnosis.warns or diagnosis.faults else "missed"
         if case.kind in BEYOND:
             if diagnosis.warns:
                 return "recognised"

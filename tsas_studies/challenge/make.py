@@ -12,6 +12,9 @@ from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn
 from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.conditions import drawn_nuisance
 from tsas_studies.challenge.near import MIXED
+from tsas_studies.challenge.recording_faults import RECORDING_FAULTS
+from tsas_studies.challenge.rig.recording import recorded_with
+from tsas_studies.challenge.rig.recording.recorded import RecordedRun
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
 from tsas_studies.challenge.sums import CASES, DATASET, sealed_id, sums_of
 from tsas_studies.challenge.truth import BEYOND, FILE
@@ -76,10 +79,12 @@ def _nuisance_stream(case: Case) -> np.random.Generator:
 def _write(
     folder: Path, case: Case, bench: Bench, rate_Hz: float, rng: np.random.Generator
 ) -> None:
-    runs = []
+    of_recording = case.kind == "recording"
+    runs = {}
     for run, (_, _, radius, bend) in RUNS.items():
         seed = int(rng.integers(2**32))
-        columns = recorded(bench, case.hidden, run, rate_Hz=rate_Hz, seed=seed)
+        hidden = () if of_recording else case.hidden
+        columns = recorded(bench, hidden, run, rate_Hz=rate_Hz, seed=seed)
         conditions = {
             "started": bench.started[run],
             "sheath_length_mm": radius * bend,
@@ -87,9 +92,18 @@ def _write(
             "preload_N": data_sheet()["preload_N"],
             "load": "spring",
         }
-        runs.append(Run(run, columns, conditions))
+        runs[run] = RecordedRun(columns, conditions)
+    for fault in case.hidden if of_recording else ():
+        function = RECORDING_FAULTS[fault.cause].function
+        runs = dict(recorded_with(runs, function, fault.parameters, rng))
+    written = [Run(name, run.columns, run.conditions) for name, run in runs.items()]
     write_dataset(
-        folder, runs, name="case", description=DESCRIPTION, data_sheet=DATA_SHEET, license="CC0-1.0"
+        folder,
+        written,
+        name="case",
+        description=DESCRIPTION,
+        data_sheet=DATA_SHEET,
+        license="CC0-1.0",
     )
 
 

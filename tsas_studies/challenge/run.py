@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.numerics.side_by_side import THREADS
+from tsas_cli.records.diagnosis import RecordingFault
+from tsas_cli.stages.check import check
 from tsas_cli.stages.diagnose import diagnose as diagnose_recordings
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
@@ -23,12 +25,28 @@ from tsas_studies.challenge.sums import CASES, DATASET
 Diagnose = Callable[[Path, Path], None]
 
 # A case is one process on one core, and a file in the folder that it starts in is no module.
+NOTHING_LEFT = {"unexplained": False}
 SURROUNDINGS = {"OPENBLAS_NUM_THREADS": "1", THREADS: "1", "PYTHONSAFEPATH": "1"}
 
 
 def diagnose(dataset: Path, out: Path) -> None:
-    """Diagnose one dataset with this program; writes `out/diagnosis.json`."""
-    diagnose_recordings(dataset, out=out)
+    """Check and diagnose one dataset with this program; writes `out/diagnosis.json`.
+
+    Where a fault stops the diagnosis, what the checks find is the answer.
+    """
+    found = [one for one in check(dataset).findings if one.severity != "note"]
+    faults = [RecordingFault.model_validate(vars(one)).content() for one in found]
+    try:
+        diagnose_recordings(dataset, out=out)
+        content = read_json(out / FILE)
+    except InputError:
+        if not faults:
+            raise
+        out.mkdir()
+        content = {"format": 1, "verdict": "undecided", "named": [], "remainder": NOTHING_LEFT}
+    there = content.get("faults", [])
+    content["faults"] = [*there, *(fault for fault in faults if fault not in there)]
+    write_json(out / FILE, content)
 
 
 TOOLS: dict[str, Diagnose] = {

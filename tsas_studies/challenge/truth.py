@@ -14,6 +14,7 @@ from tsas_cli.support.files import read_json
 from tsas_studies.challenge.cases import Kind
 from tsas_studies.challenge.conditions import Conditions
 from tsas_studies.challenge.near import MIXED
+from tsas_studies.challenge.recording_faults import RECORDING_FAULTS
 from tsas_studies.challenge.right_kind import RIGHT_KIND
 
 FILE = "answers.json"
@@ -22,7 +23,11 @@ CATALOGUE: dict[str, dict[str, Parameter]] = {
     effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS
 }
 OUTSIDE: tuple[Kind, ...] = ("unknown", "near")  # mechanisms that the catalogue does not hold
-BEYOND: tuple[Kind, ...] = (*OUTSIDE, "fault")  # what is hidden need not be in the catalogue
+BEYOND: tuple[Kind, ...] = (
+    *OUTSIDE,
+    "fault",
+    "recording",
+)  # what is hidden need not be in the catalogue
 _HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "triple": 3}  # 0 for the others
 
 
@@ -64,6 +69,8 @@ class TrueCase(Record):
         """The names that are right: the hidden effects, or fair ones for what is none."""
         if self.unknown is None:
             return self.effects
+        if self.kind == "recording" and self.unknown in RECORDING_FAULTS:
+            return frozenset(RECORDING_FAULTS[self.unknown].right)
         parts = self.unknown_parameters if self.unknown == MIXED else (self.unknown,)
         return frozenset().union(*(RIGHT_KIND.get(part, frozenset((part,))) for part in parts))
 

@@ -16,7 +16,7 @@ challenge = typer.Typer(
 )
 SealedSet = Annotated[Path, typer.Argument(metavar="SET", help="A sealed set's folder.")]
 Tool = Literal["diagnose", "bic", "training", "sparse"]
-Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near", "fault"]
+Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near", "fault", "recording"]
 Conditions = Literal["clean", "slow", "realistic"]
 
 

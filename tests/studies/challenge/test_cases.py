@@ -7,6 +7,7 @@ from tsas_cli.effects import EFFECTS
 from tsas_studies.challenge.cases import BUILDING, FULL, PAIRS, SCORING, SIZES, TRIPLES, cases, part
 from tsas_studies.challenge.faults import FAULTS
 from tsas_studies.challenge.near import NEAR_FULL, RESERVED
+from tsas_studies.challenge.recording_faults import RECORDING_FAULTS
 from tsas_studies.challenge.rig.hidden import CATALOGUE as HIDEABLE
 from tsas_studies.challenge.rig.near import NEAR
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS
@@ -37,6 +38,8 @@ def test_every_effect_is_there_at_every_size_and_the_rest_beside_it():
     faults = Counter((c.hidden[0].cause, c.size) for c in CLEAN if c.kind == "fault")
     assert faults == {(fault, size): 1 for fault in set(FAULTS) - RESERVED for size in SIZES}
     assert set(NEAR) <= set(NEAR_FULL) | set(FAULTS)
+    of_recording = {(c.hidden[0].cause, c.size) for c in CLEAN if c.kind == "recording"}
+    assert of_recording == {(name, s) for name, f in RECORDING_FAULTS.items() for s in f.sizes}
     assert all(len({h.cause for h in c.hidden}) == 3 for c in CLEAN if mixed(c))
     assert sum(map(mixed, CLEAN)) == len(SIZES)
 
@@ -47,7 +50,7 @@ def test_every_clean_case_but_small_faults_is_there_again_under_realistic_condit
         for c in ALL
         if c.conditions == "realistic"
     ]
-    assert again == [c for c in CLEAN if c.kind != "fault"]
+    assert again == [c for c in CLEAN if c.kind not in ("fault", "recording")]
     slow = [c for c in ALL if c.conditions == "slow"]
     assert {c.kind for c in slow} == {"nothing"}
     assert len(slow) == len([c for c in CLEAN if c.kind == "nothing"])
@@ -142,5 +145,6 @@ def test_a_small_part_has_each_effect_once_at_full_size_and_a_few_of_what_is_non
         "unknown": 2,
         "near": 2,
         "fault": 2,
+        "recording": 2,
     }
     assert all(case in ALL for case in small)

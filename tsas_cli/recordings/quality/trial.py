@@ -13,12 +13,13 @@ from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.quality.batches import Batches, batches_of
 from tsas_cli.recordings.quality.outlying import outlying
-from tsas_cli.recordings.quality.samples import span_of, step_of
+from tsas_cli.recordings.quality.samples import alternates, span_of, step_of
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.arrays import Floats, Mask
 
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
+_STEPS, _ROUNDING = 2.0, 1e-5  # of a step, and of the span: the least noise of a sensor
 _FEWEST = 16  # samples of a channel that is checked
 _STROKE = 0.2  # of the drive's span: the smallest reversal that begins a new stroke
 
@@ -130,6 +131,12 @@ class RunSignals:
     def moves(self, name: str) -> bool:
         """Return whether a channel moves visibly."""
         return self.sizes[name].span > 2.0 * self.visible(name)
+
+    def is_noisy(self, name: str) -> bool:
+        """Return whether a channel has noise of a sensor: beyond its steps, and no rounding."""
+        size = self.sizes[name]
+        least = max(_STEPS * size.step, _ROUNDING * size.span)
+        return size.noise > least and alternates(self.channels[name])
 
     def references(self, name: str) -> tuple[str, ...]:
         """Return the other channels that show the motion: the drive, or its followers.

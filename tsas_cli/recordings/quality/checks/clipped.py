@@ -3,7 +3,9 @@
 The sensor or its amplifier is at the end of its range, or the part is at a stop. Reported when the
 channel stays constant at its extreme while the drive moves on by more than a twentieth of its span.
 Not clipping: a dwell (everything rests), the dead band after a reversal (the drive moves back), a
-coarse step at the peak of a sine, a rest at the beginning.
+coarse step at the peak of a sine, a rest at the beginning. With noise behind the end of the range,
+or a soft end, nothing is constant: then the end of each long stroke is flat, and lacks what the
+stroke before it foretells.
 """
 
 from collections.abc import Iterator
@@ -12,11 +14,17 @@ import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import plateaus
-from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.recordings.quality.trial import RunSignals, Stroke
 from tsas_cli.support.wording import count_of
 
 _FEWEST_ROWS = 5
 _TRAVEL = 0.05  # of the drive's span
+_LONG = 0.8  # of that span: strokes that are compared with what a line foretells
+_BEFORE, _LAST = (0.5, 0.8), 0.93  # shares of such a stroke
+_FOLLOWS = 0.3  # of the channel's span, that it changes by over a stroke at least
+_FLAT = 0.25  # slope at the end over that before
+_NEAR, _FEWEST_STROKES = 2.0, 2
+_REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
 
 
 def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
@@ -28,7 +36,8 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         if trial.sizes[name].lowest == trial.sizes[name].highest:
             continue
         for end, sign in (("highest", 1), ("lowest", -1)):
-            yield from _clipping(trial, name, end, sign)
+            exact = list(_clipping(trial, name, end, sign))
+            yield from exact or _saturation(trial, name, end, sign)
 
 
 def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
@@ -47,10 +56,56 @@ def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Rem
             "error",
             f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in "
             f"{count_of(len(flat), 'plateau')} while the motion goes on",
-            "raise the sensor's range or lower its gain, check for a stop, and record again",
+            _REMEDY,
             name,
             float(trial.time_s[flat[0].start]),
         )
+
+
+def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
+    """Yield that a channel ends at a level, with noise on it, in all strokes that reach there."""
+    strokes = [s for s in trial.strokes if s.direction == sign]
+    ends = [_end_of_stroke(trial, name, s) for s in strokes] if name != "x_in_mm" else []
+    flat = [(level, lacks) for level, lacks, at_end in filter(None, ends) if at_end]
+    if not flat:
+        return
+    level = sign * max(sign * level for level, _ in flat)
+    near = [e for e in filter(None, ends) if abs(e[0] - level) < _NEAR * trial.visible(name)]
+    lacks = [e[1] for e in near if e[2]]
+    if len(lacks) >= max(_FEWEST_STROKES, 0.8 * len(near)):
+        yield Remark(
+            "error",
+            f"{name} ends at its {end} level {level:.4g} in {count_of(len(lacks), 'stroke')} while "
+            f"the motion goes on: up to {max(lacks):.2g} {name.rsplit('_', 1)[1]} are cut off",
+            _REMEDY,
+            name,
+        )
+
+
+def _end_of_stroke(
+    trial: RunSignals, name: str, stroke: Stroke
+) -> tuple[float, float, bool] | None:
+    """Return a channel's level at the end of a stroke, how much it lacks there, and if it is flat.
+
+    It lacks what a line through the part of the stroke before foretells; None for a stroke that is
+    short, or in which the channel does not follow.
+    """
+    x, y = (trial.channels[n][stroke.rows] for n in ("x_in_mm", name))
+    share = (x - x[0]) / (x[-1] - x[0])
+    before, last = (share > _BEFORE[0]) & (share < _BEFORE[1]), share > _LAST
+    long = abs(x[-1] - x[0]) > _LONG * trial.sizes["x_in_mm"].span
+    if not long or min(before.sum(), last.sum()) < _FEWEST_ROWS or not np.isfinite(y).all():
+        return None
+    slope, at_zero = np.polyfit(share[before], y[before], 1)
+    if stroke.direction * slope < _FOLLOWS * trial.sizes[name].span:
+        return None
+    own, _ = np.polyfit(share[last], y[last], 1)
+    if float(np.ptp(y[last])) == 0.0:
+        return None
+    level = float(y[last].mean())
+    lacks = stroke.direction * (at_zero + slope - level)
+    flat = own / slope < _FLAT and lacks > trial.visible(name) + 0.5 * (1.0 - _LAST) * abs(slope)
+    return level, float(lacks), bool(flat)
 
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:

@@ -21,14 +21,20 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the displacements and tensions that seldom change from one row to the next."""
     fresh = ~trial.repeats
     for name, values in trial.mechanical.items():
-        rows = rows_between_changes(values[fresh])
-        if rows.size >= _FEWEST_CHANGES and np.quantile(rows, 0.05) >= 2.0 and _jumps(values):
+        if is_held(values[fresh]) and _jumps(values):
+            rows = rows_between_changes(values[fresh])
             yield Remark(
                 "warning",
                 f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
                 "record the channel at its own rate, or correct for half an update of delay",
                 name,
             )
+
+
+def is_held(values: Floats) -> bool:
+    """Return whether a channel changes in every second row at most."""
+    rows = rows_between_changes(values)
+    return rows.size >= _FEWEST_CHANGES and bool(np.quantile(rows, 0.05) >= 2.0)
 
 
 def _jumps(values: Floats) -> bool:

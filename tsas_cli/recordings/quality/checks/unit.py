@@ -24,6 +24,7 @@ _TRAVEL = {
     10.0: "x_in_mm looks like centimetre",
     25.4: "x_in_mm looks like inch",
     1000.0: "x_in_mm looks like metre",
+    2.0: "x_in_mm looks like taken with the radius of a wheel for its diameter",
 }
 _TENSION = {
     1 / 4.448: "f_out_N looks like pound-force",
@@ -38,10 +39,16 @@ _STIFFNESS = {
     1 / 5.710: "load_stiffness_N_per_mm looks like pound-force per inch",
     1 / 10: "f_out_N looks like kilogram-force, or load_stiffness_N_per_mm like N/cm",
     1 / 1000: "f_out_N looks like kilonewton, or load_stiffness_N_per_mm like N/m",
+    0.5: "x_out_mm looks like taken with the diameter of a wheel for its radius, or half of the "
+    "load's springs are stated",
+    2.0: "x_out_mm looks like taken with the radius of a wheel for its diameter, or one of two "
+    "springs is stated",
     10.0: "x_out_mm looks like centimetre",
     25.4: "x_out_mm looks like inch",
     1000.0: "x_out_mm looks like metre",
 }
+_TWICE = 1.2  # factor within which x_in is taken for twice what it is
+_STRETCH = 10.0  # times what the whole tendon stretches by at the largest change of the tension
 _SAME = 1.25  # factor within which a slope agrees with the stated one
 _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
@@ -54,6 +61,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     if travel is None and tension is None and stiffness is None:
         yield CannotTell("no two channels whose sizes must agree were recorded and move")
     yield from _suspect_unit(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
+    yield from _halved(trial, travel)
     for remark in _suspect_unit(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
         if remark.column != "f_out_N" or not _as_stated(stiffness):
             yield remark
@@ -65,6 +73,28 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
             "warning",
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
+        )
+
+
+def _halved(trial: RunSignals, travel: float | None) -> Iterator[Remark]:
+    """Yield that x_in is twice what it is, where the tendon cannot stretch by what is lost."""
+    sheet, run, forces = trial.rig, trial.recording.run, trial.sizes.get("f_in_N")
+    modulus, diameter = sheet.tendon_modulus_GPa, sheet.tendon_diameter_mm
+    length = run.sheath_length_mm
+    if travel is None or not 0.5 / _TWICE < travel < 0.5 * _TWICE:
+        return
+    if forces is None or modulus is None or diameter is None or length is None:
+        return
+    stiffness_N = 1e3 * modulus * math.pi * diameter**2 / 4.0
+    lost = (1.0 - travel) * trial.sizes["x_in_mm"].span
+    if lost > _STRETCH * forces.span * length / stiffness_N:
+        yield Remark(
+            "error",
+            f"x_out_mm moves {travel:.4g} mm per mm of x_in_mm, and the tendon cannot stretch by "
+            f"the {lost:.3g} mm that are lost; x_in_mm looks like taken with the diameter of a "
+            "wheel for its radius",
+            "check the radius that x_in_mm was calculated with, and set it at ingest",
+            "x_in_mm",
         )
 
 

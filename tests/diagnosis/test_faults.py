@@ -1,0 +1,77 @@
+"""A fault of one run is said in place of a mechanism; a sound rig and a mechanism are not accused.
+
+The recordings are those of the independent rig.
+"""
+
+import pytest
+
+from tsas_cli.stages.diagnose import diagnose
+from tsas_studies.challenge.cases import Case, Hidden
+from tsas_studies.challenge.make import make
+
+RATE_HZ = 50.0
+
+
+def made(folder, kind, *hidden):
+    case = Case("made for a test", kind, 1.0, hidden, seed=3, number=77)
+    make(folder, [case], rate_Hz=RATE_HZ)
+    (dataset,) = (folder / "cases").glob("*/dataset")
+    return dataset
+
+
+def of_a_run(function, **values):
+    return Hidden(function, {"run": "b", **values})
+
+
+@pytest.mark.parametrize(
+    ("fault", "values", "code", "column", "words"),
+    [
+        (
+            "gain_of_a_run",
+            {"channel": "f_in_N", "gain": 1.03},
+            "run-gain",
+            "f_in_N",
+            ("run b: f_in_N reads ", 3.0, " % more than in the other runs"),
+        ),
+        (
+            "step_in_a_run",
+            {"channel": "f_out_N", "offset": -1.0, "since": 0.5},
+            "run-offset",
+            "f_out_N",
+            ("run b: f_out_N reads ", 1.0, " N less than the other runs and channels fit since"),
+        ),
+        (
+            "shifted_start_of_a_run",
+            {"channels": ("x_out_mm",), "late_s": 0.02},
+            "run-delay",
+            "x_out_mm",
+            ("run b: x_out_mm comes ", 20.0, " ms later than the other channels"),
+        ),
+    ],
+)
+def test_a_fault_of_one_run_is_said_with_its_size(fault, values, code, column, words, tmp_path):
+    dataset = made(tmp_path, "recording", of_a_run(fault, **values))
+    result = diagnose(dataset)
+    assert (result.verdict, result.causes) == ("undecided", ())
+    (found,) = result.record.faults
+    assert (found.code, found.run, found.column) == (code, "b", column)
+    before, size, after = words
+    assert after in found.sentence
+    said = float(found.sentence.removeprefix(before).split(after)[0])
+    assert said == pytest.approx(size, rel=0.1)
+    assert found.sentence in result.reason
+    assert "leave its run out" in result.next_experiment
+
+
+def test_the_sign_of_a_gain(tmp_path):
+    dataset = made(tmp_path, "recording", of_a_run("gain_of_a_run", channel="f_in_N", gain=0.97))
+    (found,) = diagnose(dataset).record.faults
+    assert " % less than in the other runs" in found.sentence
+
+
+@pytest.mark.parametrize("effect", ["direction_dependent_friction", None])
+def test_a_mechanism_and_a_sound_rig_are_not_accused(effect, tmp_path):
+    hidden = (Hidden(effect, {"asymmetry": 0.08}),) if effect else ()
+    result = diagnose(made(tmp_path, "one" if effect else "nothing", *hidden))
+    assert result.record.faults == ()
+    assert [cause.effect for cause in result.causes] == ([effect] if effect else [])

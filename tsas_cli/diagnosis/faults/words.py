@@ -1,0 +1,113 @@
+"""A fault of the recording in a sentence, and what to do about it."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+from tsas_cli.diagnosis.faults.search import Candidate
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.records.diagnosis import RecordingFault
+from tsas_cli.support.wording import listed
+
+REMEDY = "Correct it, or leave the run out with --runs, and diagnose again"
+
+
+def record_of(found: Sequence[Candidate], runs: Sequence[str]) -> RecordingFault:
+    """Return the record of the best of some faults, the others named as rivals in its sentence."""
+    best = found[0]
+    sentence = _sentence(best, runs)
+    if found[1:]:
+        sentence += f"; as likely: {'; '.join(_sentence(c, runs) for c in found[1:])}"
+    return RecordingFault(
+        code=best.code,
+        run=None if best.run is None else runs[best.run],
+        column=best.channels[0] if best.channels else None,
+        sentence=sentence,
+        first_s=best.first_s,
+    )
+
+
+def reason_of_fault(fault: RecordingFault, share: float) -> str:
+    """Return the verdict where a fault explains a share of what the nominal model leaves."""
+    return (
+        f"A fault of the recordings explains {100.0 * min(share, 1.0):.0f} % of what the nominal "
+        f"model leaves beyond the noise: {fault.sentence}. {REMEDY}, or accept it with --despite "
+        f"{fault.code}; no mechanism is sought before."
+    )
+
+
+def _sentence(c: Candidate, runs: Sequence[str]) -> str:
+    where = "" if c.run is None else f"run {runs[c.run]}: "
+    return f"{where}{_SAID[c.code](c)}{_when(c)}"
+
+
+def _when(c: Candidate) -> str:
+    if c.first_s is not None and c.last_s is not None:
+        return f" from about {c.first_s:.3g} to {c.last_s:.3g} s"
+    if c.first_s is not None:
+        return f" since about {c.first_s:.3g} s"
+    return "" if c.last_s is None else f" until about {c.last_s:.3g} s"
+
+
+def _more(amount: float) -> str:
+    return "more" if amount > 0.0 else "less"
+
+
+def _offset(c: Candidate) -> str:
+    (name,) = c.channels
+    return (
+        f"{name} reads {abs(c.amount):.2g} {BY_NAME[name].unit} {_more(c.amount)} than the other "
+        "runs and channels fit"
+    )
+
+
+def _gain(c: Candidate) -> str:
+    (name,) = c.channels
+    return f"{name} reads {100.0 * abs(c.amount):.2g} % {_more(c.amount)} than in the other runs"
+
+
+def _delay(c: Candidate) -> str:
+    verb = ("comes", "come")[len(c.channels) > 1]
+    way = "later" if c.amount > 0.0 else "earlier"
+    return f"{listed(c.channels)} {verb} {1e3 * abs(c.amount):.2g} ms {way} than the other channels"
+
+
+def _clock(c: Candidate) -> str:
+    way = "slower" if c.amount > 0.0 else "faster"
+    return (
+        f"the clock of {listed(c.channels)} runs {100.0 * abs(c.amount):.2g} % {way} than that of "
+        "the other channels"
+    )
+
+
+def _friction(c: Candidate) -> str:
+    return (
+        f"its friction is {math.exp(c.amount):.3g} times that of the other runs, as if its "
+        "total_bend_rad were that many times what the manifest says"
+    )
+
+
+def _length(c: Candidate) -> str:
+    return (
+        f"its tendon is {math.exp(c.amount):.3g} times as stiff as in the other runs, as if its "
+        f"sheath_length_mm were {math.exp(-c.amount):.3g} times what the manifest says"
+    )
+
+
+def _coupled(c: Candidate) -> str:
+    (name,) = c.channels
+    return (
+        f"{name} loses its constant part within about {c.amount:.2g} s, as behind an amplifier "
+        "coupled to AC"
+    )
+
+
+_SAID: Mapping[str, Callable[[Candidate], str]] = {
+    "run-offset": _offset,
+    "run-gain": _gain,
+    "run-delay": _delay,
+    "clock": _clock,
+    "ac-coupled": _coupled,
+    "run-friction": _friction,
+    "run-length": _length,
+}
+CODES = tuple(_SAID)

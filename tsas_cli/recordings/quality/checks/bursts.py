@@ -1,0 +1,54 @@
+"""The noise of a channel rises manifold for short times.
+
+A radio, a welder, a motor's brake or a loose plug. Reported where a few short stretches have four
+times the noise of the rest of the run. Not reported: noise that grows with the speed or lasts as
+long as the motion.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.quality.checks.slow_channel import is_held
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
+from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.wording import count_of
+
+_BLOCK = 16  # rows
+_TIMES = 4.0  # the usual noise
+_IN_A_ROW = 2  # blocks, at least
+_MOST = 0.15  # share of the blocks
+_REPEATS = 0.02  # share of the rows
+
+
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
+    """Yield the bursts of each channel."""
+    if float(trial.repeats.mean()) > _REPEATS:
+        yield CannotTell("rows repeat")
+        return
+    for name, values in trial.mechanical.items():
+        if not trial.is_noisy(name) or is_held(values) or not np.isfinite(values).all():
+            continue
+        third = np.diff(values, 3)
+        third = third[: third.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+        if not third.size:
+            continue
+        level = np.median(np.abs(third), axis=1)
+        alternates = np.mean(third[:, 1:] * third[:, :-1] < 0.0, axis=1) > 0.5  # noise, no motion
+        loud = alternates & (level > _TIMES * np.median(level))
+        edges = np.flatnonzero(np.diff(loud.astype(int), prepend=0, append=0))
+        bursts = [(a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW]
+        if bursts and float(loud.mean()) < _MOST:
+            start = _BLOCK * int(bursts[0][0])
+            more = float(np.median(level[loud]) / np.median(level))
+            yield Remark(
+                "warning",
+                f"the noise of {name} rises to {more:.2g} times its level in "
+                f"{count_of(len(bursts), 'burst')}, the first at {trial.time_s[start]:.4g} s",
+                "look for what switches at that time, shield the cable, or leave these cells empty",
+                name,
+                float(trial.time_s[start]),
+            )
+
+
+CHECK = QualityCheck("bursts", find)

@@ -1,0 +1,129 @@
+"""Samples are lost, and the times run on as if none were.
+
+Where the rows of a lost buffer are closed up, every channel jumps by its slope times the same
+time, and goes on with that slope. A corner of the motion changes the slope, a slipped encoder moves
+one channel alone, and a tendon that slips moves no drive. Reported where x_in and another channel
+jump by the same time from one row to the next, far beyond the noise. A drive that sticks and slips
+takes several rows.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
+from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.wording import count_of
+
+_OF_A_STROKE, _LONGEST_S = 0.03, 0.1  # window on each side
+_FEWEST_ROWS = 6
+_FAR, _SEEN = 8.0, 5.0  # standard deviations, of x_in and of another channel
+_SUDDEN, _STEPS = 8.0, 3.0  # noise levels, and steps, that x_in changes by from row to row
+_EVEN, _MOSTLY, _GAP = 0.2, 0.98, 1.5  # intervals that are even, most of them, and a gap
+_SAME_SLOPE, _SAME_TIME = 0.4, 0.3  # relative
+
+
+class _Jumps(NamedTuple):
+    """What a channel does between neighbouring rows: its jump and slopes, shape (m,)."""
+
+    jump: Floats
+    before: Floats  # slope per second
+    after: Floats
+    usual: float
+    slope_sd: float
+    at_once: Floats  # what it changes by between the two rows, without its slope
+
+
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
+    """Yield the places where all channels jump by the same time."""
+    if not trial.increases or not trial.strokes:
+        yield CannotTell("time does not increase, or the drive does not move")
+        return
+    interval = np.diff(trial.time_s)
+    even = float(np.mean(np.abs(interval / np.median(interval) - 1.0) < _EVEN))
+    if even < _MOSTLY or float(trial.repeats.mean()) > 1.0 - _MOSTLY:
+        yield CannotTell("the times are uneven, or rows repeat")
+        return
+    strokes = [trial.time_s[s.stop] - trial.time_s[s.start] for s in trial.strokes]
+    step_s = float(np.median(interval))
+    window_s = min(_OF_A_STROKE * float(np.median(strokes)), _LONGEST_S)
+    rows = max(round(window_s / step_s), _FEWEST_ROWS)
+    moving = {n: v for n, v in trial.mechanical.items() if trial.moves(n) and np.isfinite(v).all()}
+    if "x_in_mm" not in moving or len(moving) < 2 or trial.time_s.size < 4 * rows:
+        yield CannotTell("too few channels move without a gap")
+        return
+    jumps = {name: _jumps(values, rows, step_s) for name, values in moving.items()}
+    size = trial.sizes["x_in_mm"]
+    sudden = np.abs(jumps["x_in_mm"].at_once) > max(_SUDDEN * size.noise, _STEPS * size.step)
+    gap = np.convolve(interval > _GAP * step_s, np.ones(2 * rows), mode="same") > 0.0
+    places = _places(jumps, rows, sudden & ~gap[rows - 1 : rows - 1 + sudden.size])
+    if places:
+        lost = [lost_s for _, lost_s in places]
+        first, lost_s = places[0]
+        at = first + rows - 1
+        yield Remark(
+            "error",
+            f"all channels jump at {count_of(len(places), 'place')}, as if samples were lost and "
+            f"the gap closed up: {lost_s:.2g} s at {trial.time_s[at]:.5g} s"
+            + (f", {sum(lost):.2g} s in total" if lost[1:] else ""),
+            "write down the time of each sample, and look for lost buffers at the source",
+            None,
+            float(trial.time_s[at]),
+        )
+
+
+def _places(jumps: dict[str, _Jumps], rows: int, possible: Mask) -> list[tuple[int, float]]:
+    """Return where samples are lost, and how long that lasted [s]."""
+    drive = jumps["x_in_mm"]
+    slope = 0.5 * (drive.before + drive.after)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lost_s = drive.jump / slope
+        steady = np.abs(drive.after - drive.before) < _SAME_SLOPE * np.abs(slope)
+    found: list[tuple[int, float]] = []
+    sudden = np.abs(drive.at_once - drive.jump) < _SAME_TIME * np.abs(drive.jump) + drive.usual
+    far = np.where(
+        possible & steady & sudden & (lost_s > 0.0), np.abs(drive.jump) / drive.usual, 0.0
+    )
+    for place in np.argsort(-far):
+        if far[place] < _FAR:
+            break
+        if any(abs(place - other) <= 2 * rows for other, _ in found):
+            continue
+        if _of_all(jumps, int(place), float(lost_s[place])):
+            found.append((int(place), float(lost_s[place])))
+    return sorted(found)
+
+
+def _of_all(jumps: dict[str, _Jumps], place: int, lost_s: float) -> bool:
+    """Return whether every other channel jumps by the same time, and one of them visibly."""
+    seen = False
+    for name, (jump, before, after, usual, slope_sd, at_once) in jumps.items():
+        if name == "x_in_mm":
+            continue
+        ends = sorted((lost_s * before[place], lost_s * after[place]))
+        slack = _SEEN * (usual + lost_s * slope_sd) + _SAME_TIME * max(abs(ends[0]), abs(ends[1]))
+        if not ends[0] - slack <= jump[place] <= ends[1] + slack:
+            return False
+        sudden = abs(at_once[place] - jump[place]) < _SAME_TIME * abs(jump[place]) + 3.0 * usual
+        seen = seen or bool(sudden and abs(jump[place]) > _SEEN * usual)
+    return seen
+
+
+def _jumps(values: Floats, rows: int, step_s: float) -> _Jumps:
+    """Return the jumps of a channel between parabolas through the rows before and after."""
+    at = np.arange(-rows, 0) + 0.5
+    fit = np.linalg.pinv(np.vander(at, 3))  # the last row gives the value, the one before the slope
+    windows = np.lib.stride_tricks.sliding_window_view(values, rows)
+    left, right = windows[:-rows], windows[rows:, ::-1]
+    jump = right @ fit[2] - left @ fit[2]
+    slope = 0.5 * (left @ fit[1] - right @ fit[1])
+    at_once = values[rows : rows + jump.size] - values[rows - 1 : rows - 1 + jump.size] - slope
+    usual = 1.4826 * float(np.median(np.abs(jump - np.median(jump))))
+    before, after = left @ fit[1] / step_s, -(right @ fit[1]) / step_s
+    slope_sd = 1.05 * float(np.median(np.abs(after - before)))  # of one side
+    return _Jumps(jump, before, after, max(usual, 1e-12), slope_sd, at_once)
+
+
+CHECK = QualityCheck("lost-samples", find, needs=("x_in_mm",))
