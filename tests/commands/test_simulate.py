@@ -109,7 +109,8 @@ def test_only_the_distributed_model_has_a_second_tendon(
     pair = tmp_path / "pair.toml"
     line = '\n[effects.antagonist.preload_N]\nvalue = 20.0\nunit = "N"\n'
     pair.write_text(model.read_text() + line)
-    done = strict("simulate", folder, "--model", pair, "--dynamics", dynamics)
+    out = tmp_path / "out"
+    done = strict("simulate", folder, "--model", pair, "--dynamics", dynamics, "--out", out)
     assert done.returncode == 2
     assert done.stderr == (
         "tsas: run a: antagonist is in the model, which the static and the dynamic model do not "

@@ -185,7 +185,7 @@ def test_what_cannot_predict_is_refused(root, tmp_path):
     model = root / "calibrated-1"
     for models, said in (
         (simulated, "does not hold its model"),
-        ([], "0 models; expected 1 to 26"),
+        ([], "no folder or file is named"),
         ([model] * 27, "27 models"),
         (root / "again", "nothing that can be compared is here"),
         ([None], "of type NoneType"),

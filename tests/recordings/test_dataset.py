@@ -314,7 +314,7 @@ def test_other_conditions_are_said_of_every_run_and_stay_on_record(dataset: Path
     }
     with pytest.raises(InputError, match="unknown condition bend; known are sheath_length_mm"):
         whole.under(bend=1.0)
-    with pytest.raises(InputError, match=r"dataset\.toml: preload_N: input should be greater"):
+    with pytest.raises(InputError, match=r"dataset\.toml: preload_N: expected 0, or 1e-06 to"):
         whole.under(preload_N=-1.0)
 
 

@@ -34,7 +34,7 @@ def diagnosed(tmp_path_factory):
         patch.setattr(
             diagnose_stage,
             "diagnose_runs",
-            lambda _, stated, __, ___: Diagnosis(
+            lambda _, stated, *__, **___: Diagnosis(
                 "named", "known", model=Model((LENGTH,)).over(stated), nominal=stated
             ),
         )
@@ -99,7 +99,7 @@ def test_what_contradicts_the_data_sheet_is_said_beside_the_causes(tmp_path, mon
     monkeypatch.setattr(
         diagnose_stage,
         "diagnose_runs",
-        lambda _, stated, __, ___: Diagnosis(
+        lambda _, stated, *__, **___: Diagnosis(
             "named", "known", model=Model(tuple(half)).over(stated), nominal=stated, causes=(cause,)
         ),
     )
@@ -113,7 +113,7 @@ def test_what_gains_and_is_not_proven_has_a_model_of_its_own(tmp_path, monkeypat
     folder = write_dataset(tmp_path / "dataset", [Run("a", RECORDED, conditions(TRUE))])
     gains = FoundCause("free_tendon", (), (LENGTH,), 40.0, (30.0, 50.0), ("may be zero",))
 
-    def found(_, stated, __, ___):
+    def found(_, stated, *__, **___):
         whole = Model((LENGTH,)).over(stated)
         if proven:
             return Diagnosis("named", "known", model=whole, nominal=stated)

@@ -124,9 +124,9 @@ class Address:
         files = files_of(self.scheme)
         longest_s = timeout_s() * (1.0 + transfers / BYTES_IN_TIME)
         for tried in range(1, TRIES + 1):
-            told_late = threading.Timer(PATIENCE_S, LOG.info, ["waits for %s", self])
-            told_late.daemon = True
-            told_late.start()
+            late = threading.Timer(PATIENCE_S, LOG.info, ["waits for %s", self])
+            late.daemon = True
+            late.start()
             try:
                 found = sync(files.loop, getattr(files, name), *given, timeout=longest_s, **named)
                 _refuse_short(found, transfers if exactly else None)
@@ -135,17 +135,17 @@ class Address:
                     raise NotThereError(self) from error
                 raise InputError("there is no such bucket", where=self) from error
             except Exception as error:  # fsspec passes on the errors of each storage's library
-                told = _storage_error(self, error)
+                failure = _storage_error(self, error)
                 if not _passes(error) or tried == TRIES:
-                    raise told from error
+                    raise failure from error
                 pause_s = PAUSE_S * 2.0 ** (tried - 1)
                 again = f"try {tried + 1} of {TRIES} in {pause_s:g} s"
-                LOG.warning("%s: %s; %s", self, told.what, again)
+                LOG.warning("%s: %s; %s", self, failure.what, again)
                 time.sleep(pause_s)
             else:
                 return found
             finally:
-                told_late.cancel()
+                late.cancel()
         raise AssertionError  # the last try returns or raises
 
 

@@ -94,7 +94,7 @@ def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
     """What the ends do does not count."""
     chain = chain_at_rest(GROUP_A, 3)
     chain[SLIP : SLIP + 5] = [5.0, *slips, 7.0]
-    assert phase_of(chain, 3) == phase
+    assert phase_of(chain, slip_laws(GROUP_A, 3, LOADED_BY_SPRING)) == phase
 
 
 def test_what_a_sensor_at_the_load_feels():
