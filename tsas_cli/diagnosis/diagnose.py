@@ -190,7 +190,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
     law = None
-    if stand_ins or not after.complete:
+    if not after.complete:
         law = describe(bench, final, predicted_folds(final, folds), step)
     if law is not None:  # one number of one name: before the law is after the causes
         law = replace(law, before=proven.held_out[named])

@@ -59,7 +59,8 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
     The one that fails and gains least is left out, and the others are fitted again, until none
-    fails. What is negligible is no stand-in.
+    fails. What is negligible is no stand-in; nor, where nothing is left without it, what may be
+    zero.
     """
     stand_ins: list[FoundCause] = []
     first: tuple[Estimate, ...] | None = None
@@ -69,6 +70,9 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
         first = first or proven.estimates
         failing = [cause for cause in proven.causes if cause.failed]
         if not failing:
+            kept = (c for c in stand_ins if not may_be_zero(c.effect, c.parameters))
+            if proven.after.complete:
+                proven = replace(proven, stand_ins=tuple(kept))
             return replace(proven, with_stand_ins=first)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
         if not weakest.negligible:

@@ -67,14 +67,14 @@ def solve_pair(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     begin(second, mirrored, own)
     for iteration in range(most_iterations(2 * n)):
         set_both_in_motion(chain, now, laws)
-        limit, reverse = changes_at(iteration, n)
+        limit, reverse = changes_at(iteration, 2 * n)
         unsolved = update_slack(chain, FIRST_IS_SLACK, FIRST_WAS_SLACK, chain, laws)
         unsolved = update_slack(second, IS_SLACK, WAS_SLACK, chain, own) or unsolved
         if chain[FIRST_IS_SLACK] == 0.0:
             unsolved = update_nodes(chain, now, laws, limit, reverse) or unsolved
         if second[IS_SLACK] == 0.0:
             unsolved = update_nodes(second, mirrored, own, limit, reverse) or unsolved
-        if not unsolved or limit == n:
+        if not unsolved or limit > 1:
             unsolved = update_ends(chain, felt_at_drive(chain, now, laws), laws) or unsolved
         if not unsolved:
             return True

@@ -76,7 +76,7 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 @kernel
 def most_iterations(n: int) -> int:
     """Return after how many iterations a problem of n nodes counts as not converged."""
-    return MOST_ITERATIONS + n + MOST_REVERSALS + MOST_SINGLE_CHANGES * n
+    return MOST_ITERATIONS + MOST_SINGLE_CHANGES * n + MOST_REVERSALS
 
 
 @kernel
@@ -85,8 +85,7 @@ def changes_at(iteration: int, n: int) -> tuple[int, bool]:
 
     One by one ends where all at once cycle, but for nodes with little friction.
     """
-    reversing = MOST_ITERATIONS + n
-    reverse = reversing <= iteration < reversing + MOST_REVERSALS
+    reverse = iteration >= MOST_ITERATIONS + MOST_SINGLE_CHANGES * n
     return n if reverse or iteration < MOST_ITERATIONS else 1, reverse
 
 
