@@ -1,12 +1,13 @@
 """Which effects that fail their proof are said to stand in for something."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import pytest
 
 from tsas_cli.diagnosis import proven as p
 from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.steps import NO_PROGRESS
 
 
@@ -18,15 +19,31 @@ class Search:
     rivals: dict[str, tuple[str, ...]]
 
 
-@pytest.mark.parametrize(("negligible", "stand_ins"), [(True, []), (False, ["backlash"])])
-def test_an_effect_that_is_negligible_stands_in_for_nothing(monkeypatch, negligible, stand_ins):
+ZERO = Estimate("backlash.play_mm", 0.01, "mm", "fitted", None, 0.01, 0.0, 0.03, False)
+CLEAR = replace(ZERO, value=0.1, interval_low=0.08, interval_high=0.12)
+
+
+@pytest.mark.parametrize(
+    ("negligible", "complete", "play", "stand_ins"),
+    [
+        (True, False, CLEAR, []),
+        (False, False, CLEAR, ["backlash"]),
+        (False, False, ZERO, ["backlash"]),
+        (False, True, CLEAR, ["backlash"]),
+        (False, True, ZERO, []),  # nothing is left without it
+    ],
+)
+def test_an_effect_that_is_negligible_stands_in_for_nothing(
+    monkeypatch, negligible, complete, play, stand_ins
+):
     """It is left out all the same, and the others are judged without it."""
-    fails = FoundCause("backlash", (), (), 1.0, (0.0, 2.0), ("fails",), negligible=negligible)
+    fails = FoundCause("backlash", (), (play,), 1.0, (0.0, 2.0), ("fails",), negligible=negligible)
     holds = FoundCause("preload_loss", (), (), 9.0, (8.0, 10.0))
 
     def judged(search, fits, found):
         causes = [cause for cause in (fails, holds) if cause.effect in search.named]
-        return p.Proven(search, fits, tuple(causes), found, (), {}, SimpleNamespace())
+        after = SimpleNamespace(complete=complete)
+        return p.Proven(search, fits, tuple(causes), found, (), {}, after)
 
     monkeypatch.setattr(p, "_judged", judged)
     monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)
