@@ -19,6 +19,7 @@ from tsas_cli.support.plausible import Range
 
 IN_MEMORY = "in memory"  # in place of a file, for a model passed in Python
 CORRECTIONS_N = Range(-1e5, 1e5, "N")
+LOAD_STIFFNESS = Range(1e-9, 1e9, "N/mm")  # as in a dataset: a drive alone has a load without force
 MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 
 
@@ -159,7 +160,7 @@ def _checked(values: Sequence[_Value], where: object) -> Model:
     ranges = {
         name: Range(q.lower, q.upper, q.unit, or_zero=name in MAY_BE_ZERO)
         for name, q in QUANTITIES.items()
-    } | {CORRECTION: CORRECTIONS_N}
+    } | {CORRECTION: CORRECTIONS_N, "load_stiffness_N_per_mm": LOAD_STIFFNESS}
     seen: set[tuple[str, str | None]] = set()
     for name, run, value in values:
         if name not in ranges:
