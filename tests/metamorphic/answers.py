@@ -24,12 +24,12 @@ class Answers:
     @cached_property
     def calibrate(self):
         """What calibrate says."""
-        return tsas.calibrate(self.dataset)
+        return tsas.calibrate(self.dataset, despite=("filtered",))
 
     @cached_property
     def diagnose(self):
-        """What diagnose says."""
-        return tsas.diagnose(self.dataset)
+        """What diagnose says; samples laid between samples look filtered, and are."""
+        return tsas.diagnose(self.dataset, despite=("filtered",))
 
     @property
     def verdict(self):

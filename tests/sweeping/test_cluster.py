@@ -92,7 +92,7 @@ def test_files_are_the_same_as_by_local_processes_and_a_task_may_fail(two, recor
     assert there.summary["counts"] == {"done": 4, "failed": 2}
     found = files(tmp_path / "there")
     assert found == files(tmp_path / "here")
-    assert len(found) == 4 * 5 + 3
+    assert len(found) == 4 * 5 + 4
     same, other, _ = filecmp.cmpfiles(tmp_path / "there", tmp_path / "here", found, shallow=False)
     assert [str(path) for path in other] == ["journal.jsonl"]
     assert len(same) == len(found) - 1
