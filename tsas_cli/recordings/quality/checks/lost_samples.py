@@ -64,7 +64,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         first, lost_s = places[0]
         at = first + rows - 1
         yield Remark(
-            "error",
+            "warning",
             f"all channels jump at {count_of(len(places), 'place')}, as if samples were lost and "
             f"the gap closed up: {lost_s:.2g} s at {trial.time_s[at]:.5g} s"
             + (f", {sum(lost):.2g} s in total" if lost[1:] else ""),
