@@ -52,6 +52,7 @@ def test_without_a_folder_there_is_nowhere_to_write(strict, dataset):
 
 def test_pipelines_write_a_stream_of_every_stage_that_can():
     files = [path for folder in PIPELINES for path in folder.glob("*.mk")]
+    files = [path for path in files if path.name != "setup.mk"]  # which compiles kernels alone
     text = "".join(path.read_text(encoding="utf-8") for path in files)
     stages = re.findall(r"^STAGE = (.*)$", text, flags=re.MULTILINE)
     assert stages
