@@ -106,8 +106,15 @@ def progress(label: str, *, quiet: bool, endable: bool = False) -> Iterator[Step
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         bar = Bar(shown, label)
-        log = logging.getLogger("tsas")
+        log, said = logging.getLogger("tsas"), _Said(bar)
+        level = log.level
         log.setLevel(logging.INFO)
-        log.addHandler(_Said(bar))
-        with asked_first(bar.end) if endable and "MAKELEVEL" not in os.environ else nullcontext():
-            yield bar
+        log.addHandler(said)
+        try:
+            with (
+                asked_first(bar.end) if endable and "MAKELEVEL" not in os.environ else nullcontext()
+            ):
+                yield bar
+        finally:
+            log.removeHandler(said)
+            log.setLevel(level)
