@@ -121,7 +121,7 @@ def diagnose_runs(
     step = Endable(step)
     search = Search(bench, folds, step)
     try:
-        fault = fault_of_recording(bench, folds, accepted)
+        fault = fault_of_recording(search, accepted)
         if fault is not None and not any(effects_as_good(search, fault)):
             record = record_of(fault.found, [run.run.id for run in runs])
             reason = reason_of_fault(record, fault.share)

@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from tsas_cli.diagnosis.faults.shapes import CONSTANTS_S, RATES, WINDOWS, RunShapes, shapes_of
-from tsas_cli.diagnosis.held_out import Folds
+from tsas_cli.diagnosis.search import Search
 from tsas_cli.diagnosis.tolerances import SCATTER, friction_of_runs, tolerances
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -112,13 +112,13 @@ class FoundFault:
     rest: float
 
 
-def fault_of_recording(bench: Bench, folds: Folds, accepted: Collection[str]) -> FoundFault | None:
+def fault_of_recording(search: Search, accepted: Collection[str]) -> FoundFault | None:
     """Return the fault that explains most of what the nominal model leaves, and faults as good.
 
     None is returned where the nominal model leaves little, or no fault explains most of it: a
     mechanism acts in every run. Faults of the codes that are `accepted` are not sought.
     """
-    trial, run = bench.fit(), folds.run
+    bench, trial, run = search.bench, search.trial(frozenset()), search.folds.run
     tolerated = tolerances(bench, trial)
     left = beside(trial, tolerated, run)
     found = [c for c in candidates(bench, trial, left, run) if c.code not in accepted]
@@ -248,7 +248,7 @@ def _one(
     code: str, k: int | None, channels: tuple[str, ...], column: Floats, left: Beside
 ) -> Iterator[Candidate]:
     square = float(column @ column)
-    if square > 1e-9:
+    if square > TINY:
         along = float(column @ left.residual)
         yield Candidate(code, k, channels, along / square, along**2 / square)
 
