@@ -11,6 +11,7 @@ from tests.storage.conftest import HOST, forget
 from tests.storage.faults import FaultyWire
 from tsas_cli.recordings import checked, storage
 from tsas_cli.recordings.storage import location_of
+from tsas_cli.recordings.storage_failures import TIMEOUT
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
 
@@ -26,7 +27,7 @@ def broken(server, bucket, monkeypatch):
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     forget()
     assert not location_of(f"{bucket}/opened").is_file()  # its libraries take their time
-    monkeypatch.setenv(storage.TIMEOUT, "2")
+    monkeypatch.setenv(TIMEOUT, "2")
     yield wire
     wire.door.close()
 
@@ -73,7 +74,7 @@ def test_what_always_breaks_off_is_one_line_in_time(broken, bucket, dataset, fau
     assert line.startswith(f"{bucket}/bench/runs/a.parquet: the storage ")
     assert "\n" not in line
     if fault[0] != "5":
-        assert storage.TIMEOUT in line
+        assert TIMEOUT in line
 
 
 def test_a_shorter_answer_than_asked_for_is_asked_again(broken, bucket, dataset, monkeypatch):
@@ -121,8 +122,8 @@ def test_an_interrupted_upload_goes_on_and_never_reads_as_whole(broken, bucket, 
 
 @pytest.mark.parametrize("given", ["x", "0", "-1", "nan", "1e9"])
 def test_a_limit_that_is_no_time_is_refused(keys, given, monkeypatch):
-    monkeypatch.setenv(storage.TIMEOUT, given)
+    monkeypatch.setenv(TIMEOUT, given)
     forget()
     with pytest.raises(InputError) as told:
         tsas.read("s3://a/b")
-    assert told.value.line() == f"{storage.TIMEOUT}: is {given!r}; expected 0.1 to 3600 s"
+    assert told.value.line() == f"{TIMEOUT}: is {given!r}; expected 0.1 to 3600 s"

@@ -7,6 +7,7 @@ import pytest
 import tsas_cli as tsas
 from tsas_cli.recordings import storage
 from tsas_cli.recordings.storage import location_of
+from tsas_cli.recordings.storage_failures import storage_error
 from tsas_cli.support.errors import InputError
 
 
@@ -101,6 +102,6 @@ def test_what_a_refused_upload_leaves_behind_prints_no_traceback(scheme, keys, c
 
 def test_a_refusal_of_google_s_is_told_as_one():
     refused = OSError("Forbidden: https://storage.googleapis.com/upload?token=secret")
-    told = storage._storage_error(storage.Address("gs", "bucket/x"), refused).line()
+    told = storage_error(storage.Address("gs", "bucket/x"), refused).line()
     assert "the storage refuses access" in told
     assert "secret" not in told

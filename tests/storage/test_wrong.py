@@ -10,6 +10,7 @@ import pytest
 import tsas_cli as tsas
 from tests.storage.conftest import HOST, KEY, SECRET, forget, free_port
 from tsas_cli.recordings import storage
+from tsas_cli.recordings.storage_failures import TIMEOUT
 from tsas_cli.support.errors import InputError
 
 
@@ -44,7 +45,7 @@ def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
 
 
 def test_a_server_that_never_answers(keys, monkeypatch):
-    monkeypatch.setenv(storage.TIMEOUT, "0.5")
+    monkeypatch.setenv(TIMEOUT, "0.5")
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     with socket.create_server((HOST, 0)) as silent:
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
@@ -54,7 +55,7 @@ def test_a_server_that_never_answers(keys, monkeypatch):
 
 
 def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
-    monkeypatch.setenv(storage.TIMEOUT, "1")
+    monkeypatch.setenv(TIMEOUT, "1")
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     with socket.create_server((HOST, 0)) as silent:
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")

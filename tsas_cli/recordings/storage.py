@@ -4,7 +4,6 @@ An address has the few methods of a path that reading a dataset needs. It uses f
 imported on first use.
 """
 
-import errno
 import logging
 import os
 import re
@@ -17,16 +16,16 @@ from typing import Any
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
+from tsas_cli.recordings.storage_failures import may_pass, storage_error, timeout_s
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.plausible import Range
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
-TIMEOUT = "TSAS_STORAGE_TIMEOUT_S"  # of a request; one of many bytes has longer
-TIMEOUT_S, TIMEOUTS_S = 20.0, Range(0.1, 3600.0, "s")
 BYTES_IN_TIME = 4 << 20  # for each of these it has that time once more
 TRIES, PAUSE_S = 3, 1.0  # the pause doubles
 PATIENCE_S = 5.0  # after which it is said what is waited for
 LOG = logging.getLogger("tsas")
+_SUM = "tsas-sha256"  # key of an object's metadata
+_METADATA = {"s3": "Metadata", "gs": "metadata"}
 _EXPECTED = "SCHEME://BUCKET/PATH"
 SCHEME = re.compile(r"(\w[\w+.-]*)://")
 
@@ -135,8 +134,8 @@ class Address:
                     raise NotThereError(self) from error
                 raise InputError("there is no such bucket", where=self) from error
             except Exception as error:  # fsspec passes on the errors of each storage's library
-                failure = _storage_error(self, error)
-                if not _passes(error) or tried == TRIES:
+                failure = storage_error(self, error)
+                if not may_pass(error) or tried == TRIES:
                     raise failure from error
                 pause_s = PAUSE_S * 2.0 ** (tried - 1)
                 again = f"try {tried + 1} of {TRIES} in {pause_s:g} s"
@@ -251,76 +250,3 @@ if hasattr(os, "register_at_fork"):  # connections belong to one process
 def _refuse_short(found: Any, size: int | None) -> None:
     if size is not None and len(found) != size:
         raise ConnectionError(f"{len(found)} of {size} bytes")
-
-
-def timeout_s() -> float:
-    """Return the time limit of a request [s], of the environment where it says one.
-
-    Raises
-    ------
-    InputError
-        It says no time, or one that nobody waits.
-    """
-    given = os.environ.get(TIMEOUT) or str(TIMEOUT_S)
-    try:
-        return TIMEOUTS_S(float(given))
-    except ValueError as error:
-        raise InputError(f"is {given!r}", where=TIMEOUT, expected=str(TIMEOUTS_S)) from error
-
-
-def _passes(error: Exception) -> bool:
-    """Return whether an error may be over at the next try."""
-    kinds = {kind.__name__ for kind in type(error).__mro__}
-    number, code = getattr(error, "errno", None), getattr(error, "code", None)
-    unreached = isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED
-    return bool(unreached) or number in _BUSY or ("HttpError" in kinds and code in _BUSY_CODES)
-
-
-def _storage_error(address: Address, error: Exception) -> InputError:
-    """Return an error of the storage's library as one line, without keys or signatures."""
-    kinds = {kind.__name__ for kind in type(error).__mro__}
-    if kinds & {"NoCredentialsError", "PartialCredentialsError", "ProfileNotFound"}:
-        return InputError(
-            "no credentials found",
-            where=address,
-            remedy="set them as for the storage's own tools (docs/object-storage.md)",
-        )
-    code = getattr(error, "code", None)
-    if (
-        isinstance(error, PermissionError)
-        or ("HttpError" in kinds and code in {401, 403})
-        or (isinstance(error, OSError) and str(error).startswith("Forbidden"))  # of gcsfs
-    ):
-        return InputError(
-            "the storage refuses access",
-            where=address,
-            remedy="check that the credentials are valid and may read the bucket",
-        )
-    if isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED:
-        return InputError(
-            f"the storage cannot be reached, or breaks off ({type(error).__name__})",
-            where=address,
-            remedy="check the network, and the endpoint if one is set; repeat the call, "
-            f"with a longer {TIMEOUT} (in seconds) if the storage is slow",
-        )
-    reason = (str(error).splitlines() or [""])[0]
-    reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)
-    return InputError(f"the storage fails ({type(error).__name__}: {reason})", where=address)
-
-
-_SUM = "tsas-sha256"  # key of an object's metadata
-_METADATA = {"s3": "Metadata", "gs": "metadata"}
-_BUSY = {errno.EBUSY, getattr(errno, "EREMOTEIO", errno.EIO)}  # 503 and 500, as s3fs has them
-_BUSY_CODES = {408, 429, *range(500, 505)}
-# By name, since the libraries are optional.
-_UNREACHED = {
-    "ConnectionError",
-    "HTTPClientError",
-    "ClientConnectionError",
-    "ClientPayloadError",
-    "FSTimeoutError",
-    "TransportError",
-    "FlexibleChecksumError",
-    "ChecksumError",
-    "RequestException",
-}

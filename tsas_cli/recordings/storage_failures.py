@@ -1,0 +1,80 @@
+"""How long a storage may be silent, and what its failures mean."""
+
+import errno
+import os
+import re
+
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.plausible import Range
+
+TIMEOUT = "TSAS_STORAGE_TIMEOUT_S"  # of a request; one of many bytes has longer
+TIMEOUT_S, TIMEOUTS_S = 20.0, Range(0.1, 3600.0, "s")
+_BUSY = {errno.EBUSY, getattr(errno, "EREMOTEIO", errno.EIO)}  # 503 and 500, as s3fs has them
+_BUSY_CODES = {408, 429, *range(500, 505)}
+# By name, since the libraries are optional.
+_UNREACHED = {
+    "ConnectionError",
+    "HTTPClientError",
+    "ClientConnectionError",
+    "ClientPayloadError",
+    "FSTimeoutError",
+    "TransportError",
+    "FlexibleChecksumError",
+    "ChecksumError",
+    "RequestException",
+}
+
+
+def timeout_s() -> float:
+    """Return the time limit of a request [s], of the environment where it says one.
+
+    Raises
+    ------
+    InputError
+        It says no time, or one that nobody waits.
+    """
+    given = os.environ.get(TIMEOUT) or str(TIMEOUT_S)
+    try:
+        return TIMEOUTS_S(float(given))
+    except ValueError as error:
+        raise InputError(f"is {given!r}", where=TIMEOUT, expected=str(TIMEOUTS_S)) from error
+
+
+def may_pass(error: Exception) -> bool:
+    """Return whether an error may be over at the next try."""
+    kinds = {kind.__name__ for kind in type(error).__mro__}
+    number, code = getattr(error, "errno", None), getattr(error, "code", None)
+    unreached = isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED
+    return bool(unreached) or number in _BUSY or ("HttpError" in kinds and code in _BUSY_CODES)
+
+
+def storage_error(address: object, error: Exception) -> InputError:
+    """Return an error of the storage's library as one line, without keys or signatures."""
+    kinds = {kind.__name__ for kind in type(error).__mro__}
+    if kinds & {"NoCredentialsError", "PartialCredentialsError", "ProfileNotFound"}:
+        return InputError(
+            "no credentials found",
+            where=address,
+            remedy="set them as for the storage's own tools (docs/object-storage.md)",
+        )
+    code = getattr(error, "code", None)
+    if (
+        isinstance(error, PermissionError)
+        or ("HttpError" in kinds and code in {401, 403})
+        or (isinstance(error, OSError) and str(error).startswith("Forbidden"))  # of gcsfs
+    ):
+        return InputError(
+            "the storage refuses access",
+            where=address,
+            remedy="check that the credentials are valid and may read the bucket",
+        )
+    if isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED:
+        return InputError(
+            f"the storage cannot be reached, or breaks off ({type(error).__name__})",
+            where=address,
+            remedy="check the network, and the endpoint if one is set; repeat the call, "
+            f"with a longer {TIMEOUT} (in seconds) if the storage is slow",
+        )
+    reason = (str(error).splitlines() or [""])[0]
+    reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)
+    return InputError(f"the storage fails ({type(error).__name__}: {reason})", where=address)
