@@ -20,7 +20,7 @@ from tsas_cli.physics.plant.turntable import (
 )
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import tension_at_sensor
+from tsas_cli.physics.slip.outputs import tension_at_sensor
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import COMPLIANCE, POSITION, TENSION, Moment
 

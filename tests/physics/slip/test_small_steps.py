@@ -25,13 +25,12 @@ from tsas_cli.physics.slip.chain import (
     between,
     go_slack,
     initial_state,
-    phase_of,
     rest_after,
     slip_chain,
-    tension_at_sensor,
 )
 from tsas_cli.physics.slip.chain import follow as go_on
 from tsas_cli.physics.slip.chain import moment as moment_of
+from tsas_cli.physics.slip.outputs import phase_of, tension_at_sensor
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,

@@ -13,13 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.effects.antagonist import net_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import (
     DISPLACEMENT,
     FORCE,
     Boundary,
-    moving_friction,
     unloaded_position,
 )
 from tsas_cli.physics.course import (
@@ -37,21 +35,18 @@ from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.ends import (
-    load_force,
-    tension_of_second,
     update_end_speeds,
     update_load_state,
 )
 from tsas_cli.physics.slip.frames import write_frame
 from tsas_cli.physics.slip.nodes import accept, update_speeds
+from tsas_cli.physics.slip.outputs import phase_of, tension_at_drive, tension_at_sensor
 from tsas_cli.physics.slip.pair import accept_pair, solve_pair
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,
     ELEMENT,
     END_SPEED,
-    FIRST_IS_SLACK,
-    IS_SLACK,
     POSITION,
     POSITION_BEFORE,
     SECOND,
@@ -246,46 +241,6 @@ def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
         losses_between(start.losses, end.losses, part),
         step_s,
     )
-
-
-@kernel
-def phase_of(chain: Floats, laws: SlipLaws) -> int:
-    """Return +1 or −1 where all nodes of the sheaths slip in that direction, 2 slack, else 0."""
-    n, first, paired = laws.n, chain[SLIP + 1], laws.antagonist.preload_N > 0.0
-    if paired and chain[FIRST_IS_SLACK] != 0.0:
-        return SLACK
-    for i in range(2, n + 1):
-        if chain[SLIP + i] != first:
-            return 0
-    if paired and chain[SECOND + IS_SLACK] == 0.0:
-        for i in range(1, n + 1):
-            if chain[SECOND + SLIP + i] != first:
-                return 0
-    return int(first)
-
-
-@kernel
-def tension_at_drive(chain: Floats, laws: SlipLaws) -> float:
-    """Return the tension at the drive's force sensor [N], an antagonist's share subtracted."""
-    second_N = tension_of_second(chain, laws.n, laws)
-    return net_force(chain[TENSION], second_N, laws.antagonist.f_in_share)
-
-
-@kernel
-def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
-    """Return the force of the load [N]: the tension less an antagonist's and less friction."""
-    n = laws.n
-    if laws.load.given == FORCE:
-        return now.load
-    second_N = tension_of_second(chain, 0, laws)
-    tension = net_force(chain[TENSION + n], second_N, 1.0)
-    before = laws.load.friction.before_sensor_N
-    if before == 0.0:
-        return tension
-    if laws.load.given == DISPLACEMENT:
-        return float(tension - chain[SLIP + n + 1] * before)
-    share = before / moving_friction(laws.load)
-    return float(tension - share * (chain[TENSION + n] - load_force(chain, now, laws)))
 
 
 @kernel

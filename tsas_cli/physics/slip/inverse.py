@@ -17,7 +17,8 @@ from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
 from tsas_cli.physics.course import PULLED, RELEASED, Losses, losses_of
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.chain import advance, tension_at_sensor
+from tsas_cli.physics.slip.chain import advance
+from tsas_cli.physics.slip.outputs import tension_at_sensor
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import POSITION, ROWS, TENSION, Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
