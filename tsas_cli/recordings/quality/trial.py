@@ -1,5 +1,6 @@
 """One run for the checks: its channels, their noise and span, and the strokes of the drive."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -80,6 +81,11 @@ class RunSignals:
     def increases(self) -> bool:
         """Whether time increases strictly."""
         return bool((np.diff(self.time_s) > 0).all())
+
+    @cached_property
+    def step_s(self) -> float:
+        """The median time between two samples [s]."""
+        return float(np.median(np.diff(self.time_s)))
 
     @cached_property
     def channels(self) -> dict[str, Floats]:
@@ -173,6 +179,12 @@ class RunSignals:
             for a, b in pairwise(reversals)
             if abs(x[b] - x[a]) > threshold
         )
+
+    @cached_property
+    def stroke_s(self) -> float:
+        """The median time of a stroke [s]; NaN without one."""
+        lasted_s = [self.time_s[s.stop] - self.time_s[s.start] for s in self.strokes]
+        return float(np.median(lasted_s)) if lasted_s else math.nan
 
     @cached_property
     def direction(self) -> Floats:

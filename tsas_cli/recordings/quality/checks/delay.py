@@ -58,10 +58,9 @@ def _not_judged(trial: RunSignals) -> str:
 
 def _smallest(trial: RunSignals) -> float:
     """Return the shortest delay that matters [s]."""
-    interval = float(np.median(np.diff(trial.time_s)))
     force = trial.channels["f_out_N"]
     rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
-    return max(0.5 * interval, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
+    return max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
 
 
 def _delay(trial: RunSignals, rows: slice) -> float:

@@ -36,8 +36,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     if not trial.increases or not trial.strokes:
         yield CannotTell("time does not increase, or the drive does not move")
         return
-    strokes = [trial.time_s[s.stop] - trial.time_s[s.start] for s in trial.strokes]
-    segment_s = min(_SEGMENT_S, _OF_A_STROKE * float(np.median(strokes)))
+    segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
     for name, values in trial.mechanical.items():
         whole = np.isfinite(values).all() and trial.moves(name) and not is_held(values)
         spectrum = noise_spectrum(trial.time_s, values, segment_s) if whole else None
@@ -50,7 +49,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
             yield Remark(
                 "warning",
                 f"the noise of {name} ends at about {end_Hz:.2g} Hz, as behind a low-pass filter "
-                f"(the sampling rate is {1.0 / _step_s(trial):.4g} Hz)",
+                f"(the sampling rate is {1.0 / trial.step_s:.4g} Hz)",
                 _REMEDY,
                 name,
             )
@@ -77,7 +76,7 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
 
 def _rounding(trial: RunSignals, name: str) -> float:
     """Return the power per hertz of the rounding of a channel [unit²/Hz]."""
-    return trial.sizes[name].step ** 2 / 6.0 * _step_s(trial)
+    return trial.sizes[name].step ** 2 / 6.0 * trial.step_s
 
 
 def _noise(spectrum: NoiseSpectrum, end_Hz: float) -> float:
@@ -90,10 +89,6 @@ def _change(time_s: Floats, values: Floats, end_Hz: float) -> float:
     """Return the RMS change of a channel by a delay of a filter that ends there."""
     delay_s = 1.0 / (2.0 * np.pi * end_Hz)
     return float(np.sqrt(np.mean((np.interp(time_s - delay_s, time_s, values) - values) ** 2)))
-
-
-def _step_s(trial: RunSignals) -> float:
-    return float(np.median(np.diff(trial.time_s)))
 
 
 CHECK = QualityCheck("filtered", find)

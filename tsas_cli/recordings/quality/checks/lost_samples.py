@@ -42,13 +42,12 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         yield CannotTell("time does not increase, or the drive does not move")
         return
     interval = np.diff(trial.time_s)
-    even = float(np.mean(np.abs(interval / np.median(interval) - 1.0) < _EVEN))
+    even = float(np.mean(np.abs(interval / trial.step_s - 1.0) < _EVEN))
     if even < _MOSTLY or float(trial.repeats.mean()) > 1.0 - _MOSTLY:
         yield CannotTell("the times are uneven, or rows repeat")
         return
-    strokes = [trial.time_s[s.stop] - trial.time_s[s.start] for s in trial.strokes]
-    step_s = float(np.median(interval))
-    window_s = min(_OF_A_STROKE * float(np.median(strokes)), _LONGEST_S)
+    step_s = trial.step_s
+    window_s = min(_OF_A_STROKE * trial.stroke_s, _LONGEST_S)
     rows = max(round(window_s / step_s), _FEWEST_ROWS)
     moving = {n: v for n, v in trial.mechanical.items() if trial.moves(n) and np.isfinite(v).all()}
     if "x_in_mm" not in moving or len(moving) < 2 or trial.time_s.size < 4 * rows:

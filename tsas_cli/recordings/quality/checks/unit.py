@@ -166,12 +166,11 @@ def _slope(trial: RunSignals, x: str, y: str) -> float | None:
 
 
 def _time(trial: RunSignals) -> Iterator[Remark]:
-    interval = float(np.median(np.diff(trial.time_s)))
-    strokes = [trial.time_s[s.stop] - trial.time_s[s.start] for s in trial.strokes]
-    if strokes and interval >= _SLOW_S and float(np.median(strokes)) > _LONG_S:
+    interval = trial.step_s
+    if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
         yield Remark(
             "error",
-            f"one sample each {interval:.4g} s and {np.median(strokes):.4g} s per stroke; "
+            f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
             f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
             "check the unit of time_s and set it at ingest",
             "time_s",
