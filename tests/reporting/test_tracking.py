@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from tests.reporting.made_folders import make_tracking
 from tests.reporting.test_page import Outline, headings
 from tsas_cli import controllers
-from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels
@@ -141,8 +142,8 @@ def test_one_controller_under_one_condition_is_a_page_too(spoiled):
 def test_each_controller_is_drawn_in_its_own_colour(whole, what):
     for condition in range(2):
         shown = svg(whole, f"tracking-{what}-{condition}-")
-        assert "stroke: var(--pid)" in shown
-        assert "stroke: var(--adaptive-sliding-mode)" in shown
+        assert "stroke: var(--first)" in shown
+        assert "stroke: var(--third)" in shown
 
 
 def test_every_controller_has_a_colour_and_one_that_is_not_known_has_one_too():

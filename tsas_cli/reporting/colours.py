@@ -4,7 +4,9 @@ import re
 from functools import cache
 from importlib.resources import files
 
-CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
+from tsas_cli.controllers import CONTROLLERS
+
+SERIES = ("first", "second", "third", "fourth")  # of controllers, in their order
 MODELS = ("data-sheet", "calibrated", "extended", "true")
 ROLES = (
     "ink",
@@ -22,7 +24,7 @@ ROLES = (
     "before",
     "after",
     "alike",
-    *CONTROLLERS,
+    *SERIES,
     *MODELS,
 )
 STAND_IN = {role: f"#c0ff{number:02x}" for number, role in enumerate(ROLES)}
@@ -43,9 +45,16 @@ def dark(role: str) -> int:
     return int(scheme[role].removeprefix("#"), 16) << 8 | 0xFF
 
 
+def role_of_controller(name: str) -> str:
+    """Return the role of a controller's colour, the same in every plot."""
+    if name not in CONTROLLERS:
+        return "unknown"
+    return SERIES[CONTROLLERS.index(name) % len(SERIES)]
+
+
 def of_controller(name: str) -> str:
-    """Return the stand-in of a controller's colour, the same in every plot."""
-    return STAND_IN[name if name in CONTROLLERS else "unknown"]
+    """Return the stand-in of a controller's colour."""
+    return STAND_IN[role_of_controller(name)]
 
 
 def themed(svg: str) -> str:

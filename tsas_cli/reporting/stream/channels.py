@@ -3,7 +3,7 @@
 A column of a file is read once, recorded, and forgotten.
 """
 
-from tsas_cli.reporting.colours import CONTROLLERS, dark
+from tsas_cli.reporting.colours import dark, role_of_controller
 from tsas_cli.reporting.stream.loops import LoopPlane
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, SeenRun
@@ -55,7 +55,7 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
     for channel in run.channels:
         measured, name, colour = run.measured(channel.column), channel.key, _ROLES[channel.key]
         if controller and channel.column == SPEED:  # which a controller asks for
-            name, colour = controller, _role_of(controller)
+            name, colour = controller, role_of_controller(controller)
         entity, width = run.entity(channel.quantity, channel.key), _WIDTHS[channel.key]
         recorder.series(entity, run.times, measured, name, dark(colour), width=width)
         loop = LoopPlane.of(recorder, run, channel, measured) if channel in run.loops else None
@@ -81,8 +81,4 @@ def record_tracking(recorder: Recorder, run: SeenRun) -> None:
     kept = {run.entity(FORCE, "true"): true, run.entity(ERROR): wanted - true}
     kept |= {run.entity(state): run.file.read(state) for state in STATES if state in run.file.names}
     for entity, values in kept.items():
-        recorder.series(entity, run.times, values, name, dark(_role_of(name)))
-
-
-def _role_of(controller: str) -> str:
-    return controller if controller in CONTROLLERS else "unknown"
+        recorder.series(entity, run.times, values, name, dark(role_of_controller(name)))
