@@ -24,20 +24,26 @@ CLEAR = replace(ZERO, value=0.1, interval_low=0.08, interval_high=0.12)
 
 
 @pytest.mark.parametrize(
-    ("negligible", "complete", "play", "stand_ins"),
+    ("negligible", "convincing", "complete", "play", "stand_ins"),
     [
-        (True, False, CLEAR, []),
-        (False, False, CLEAR, ["backlash"]),
-        (False, False, ZERO, ["backlash"]),
-        (False, True, CLEAR, ["backlash"]),
-        (False, True, ZERO, []),  # nothing is left without it
+        (True, True, False, CLEAR, []),
+        (False, True, False, CLEAR, ["backlash"]),
+        (False, True, False, ZERO, ["backlash"]),
+        (False, False, False, CLEAR, ["backlash"]),
+        (False, True, True, CLEAR, ["backlash"]),
+        (False, True, True, ZERO, []),  # nothing is left without it
+        (False, False, True, CLEAR, []),
     ],
 )
 def test_an_effect_that_is_negligible_stands_in_for_nothing(
-    monkeypatch, negligible, complete, play, stand_ins
+    monkeypatch, negligible, convincing, complete, play, stand_ins
 ):
     """It is left out all the same, and the others are judged without it."""
-    fails = FoundCause("backlash", (), (play,), 1.0, (0.0, 2.0), ("fails",), negligible=negligible)
+    fails = FoundCause(
+        *("backlash", (), (play,), 1.0, (0.0, 2.0), ("fails",)),
+        convincing=convincing,
+        negligible=negligible,
+    )
     holds = FoundCause("preload_loss", (), (), 9.0, (8.0, 10.0))
 
     def judged(search, fits, found):

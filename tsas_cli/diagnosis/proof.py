@@ -39,8 +39,8 @@ class FoundCause:
 
     `failed` is what it does not prove, in sentences without their subject; empty for a named one.
     `law_differs` says over which signal the law of a named one differs from the catalogue's.
-    `negligible` is whether it is no more than what every rig has, or neither gains nor differs from
-    none: then it stands in for nothing.
+    `convincing` is whether it gains with new fits too, `negligible` whether it is no more than what
+    every rig has, or neither gains nor differs from none: then it stands in for nothing.
     """
 
     effect: str
@@ -50,6 +50,7 @@ class FoundCause:
     gain_interval_percent: tuple[float, float]
     failed: tuple[str, ...] = ()
     law_differs: str = ""
+    convincing: bool = True
     negligible: bool = False
 
 

@@ -60,7 +60,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
 
     The one that fails and gains least is left out, and the others are fitted again, until none
     fails. What is negligible is no stand-in; nor, where nothing is left without it, what may be
-    zero.
+    zero or gains too little.
     """
     stand_ins: list[FoundCause] = []
     first: tuple[Estimate, ...] | None = None
@@ -70,8 +70,9 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
         first = first or proven.estimates
         failing = [cause for cause in proven.causes if cause.failed]
         if not failing:
-            kept = (c for c in stand_ins if not may_be_zero(c.effect, c.parameters))
             if proven.after.complete:
+                kept = (c for c in stand_ins if c.convincing)
+                kept = (c for c in kept if not may_be_zero(c.effect, c.parameters))
                 proven = replace(proven, stand_ins=tuple(kept))
             return replace(proven, with_stand_ins=first)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
@@ -146,7 +147,11 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True
-    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, negligible)
+    return FoundCause(
+        *(name, judged.rivals[name], own, gains[0], interval, failed, law),
+        convincing=again.convincing,
+        negligible=negligible,
+    )
 
 
 def estimates_with_tolerances(
