@@ -1,5 +1,7 @@
 """Splits of an effect's parameter, on linear fits to data that are made up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -86,3 +88,23 @@ def test_a_difference_that_a_plausible_tolerance_makes_is_no_split(amount, const
     found = worst(1.0 + 0.1 * amount * (SIGNALS["direction"] > 0.0), off[:, None])
     assert worst(1.0 + 0.1 * amount * (SIGNALS["direction"] > 0.0)).by == "direction"
     assert (found is None) == constant
+
+
+def test_the_friction_of_each_run_is_no_other_law_of_a_drift():
+    """Friction drifts within runs, and scatters from run to run as a rate of the session does."""
+    friction = 20.0 + 10.0 * np.sin(TIME_S)
+    within, session = friction * TIME_S / 30.0, friction * RUN
+    of_run = np.array([0.01, -0.01, 0.015, -0.02])[RUN]
+    J = np.column_stack((friction, within, session))
+    noise = 0.1 * np.random.default_rng(4).standard_normal(RUN.size)
+    data = friction * of_run + 0.05 * within + noise
+    names = "friction_coefficient", "friction_drift.rate_per_s", "friction_drift.session_rate_per_s"
+    unknowns = tuple(Unknown(name, None, 0.0, -1e6, 1e6, 1.0) for name in names)
+    values = np.linalg.lstsq(J, data, rcond=None)[0]
+    solution = Solution(values, np.zeros(3, bool), J @ values - data, J, True, "", 1)
+    fit = HypothesisFit(("friction_drift",), unknowns, solution, (ROWS,) * RUNS, on_mesh=False)
+    none = np.zeros((RUN.size, 0))
+    assert worst_split(fit, "friction_drift", FOLDS, SIGNALS, tuple("abcd"), none) is None
+    late = replace(solution, residual=solution.residual - 0.05 * within * (TIME_S > 20.0))
+    fit = replace(fit, solution=late)
+    assert worst_split(fit, "friction_drift", FOLDS, SIGNALS, tuple("abcd"), none).by == "time_s"

@@ -4,7 +4,7 @@ A mechanism has one value; what stands in for another mechanism has another one 
 asked (invariant prediction, Peters, Buehlmann and Meinshausen 2016). An effect's columns of the
 Jacobian are split by direction, by thirds of each signal, and by run. Where values of their own for
 the parts predict held-out data better than one value does, the effect is not constant. Each run has
-a friction of its own meanwhile, unless that is what the effect does, and load cells and bend are
+a friction of its own meanwhile, unless that is all the effect does, and load cells and bend are
 within their tolerances. Linear: no simulation.
 """
 
@@ -73,8 +73,9 @@ def worst_split(
     J = trial.solution.jacobian
     residual = without_tolerances(trial, tolerated)
     trial = replace(trial, solution=replace(trial.solution, residual=residual))
-    if not any(is_scatter(trial, J[:, j], folds.run) for j in columns):
-        trial = with_friction_of_runs(trial, folds.run)
+    within_runs = [j for j in columns if not is_scatter(trial, J[:, j], folds.run)]
+    if within_runs:  # what differs from run to run alone is the friction of each
+        columns, trial = within_runs, with_friction_of_runs(trial, folds.run)
     stretches = in_stretches(folds)
     before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
     worst: Split | None = None
