@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tests.recordings.quality.bench import LOAD, Bench, columns, trial
+from tests.recordings.quality.bench import LOAD, Bench, columns, motion, trial
 from tsas_cli.recordings.quality import RUN_CHECKS
 from tsas_cli.recordings.quality.finding import Remark
 
@@ -85,6 +85,14 @@ def test_an_encoder_that_waits_for_the_load_at_the_start_is_not_clipped():
     measured["x_in_mm"][start] = measured["x_in_mm"].min()
     measured["x_out_mm"] -= np.where(measured["time_s"] > 0.02, 1.5, 0.0)
     assert "clipped" not in {code for code, _ in complaints(measured, "force")}
+
+
+def test_a_force_that_falls_with_the_speed_at_the_end_of_a_stroke_is_not_clipped():
+    measured = columns(Bench())
+    speed = np.gradient(motion(Bench(), measured["time_s"]), measured["time_s"])
+    size = np.maximum(np.abs(speed), 0.5)
+    measured["f_in_N"] *= np.exp(0.05 * np.sign(speed) * np.log(size / size.max()))
+    assert complaints(measured, "spring") == []
 
 
 @pytest.mark.parametrize("shape", SHAPES)

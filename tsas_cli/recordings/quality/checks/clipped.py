@@ -4,8 +4,8 @@ The sensor or its amplifier is at the end of its range, or the part is at a stop
 channel stays constant at its extreme while the drive moves on by more than a twentieth of its span.
 Not clipping: a dwell (everything rests), the dead band after a reversal (the drive moves back), a
 coarse step at the peak of a sine, a rest at the beginning. With noise behind the end of the range,
-or a soft end, nothing is constant: then the end of each long stroke is flat, and lacks what the
-stroke before it foretells.
+or a soft end, nothing is constant: then the end of each long stroke is a flat line but for noise,
+and lacks what the stroke before it foretells. A force that falls with the speed is curved there.
 """
 
 from collections.abc import Iterator
@@ -23,7 +23,8 @@ _LONG = 0.8  # of that span: strokes that are compared with what a line foretell
 _BEFORE, _LAST = (0.5, 0.8), 0.93  # shares of such a stroke
 _FOLLOWS = 0.3  # of the channel's span, that it changes by over a stroke at least
 _FLAT = 0.25  # slope at the end over that before
-_NEAR, _FEWEST_STROKES = 2.0, 2
+_NEAR, _FEWEST_STROKES, _MOST_OF_THEM = 2.0, 2, 0.7
+_STRAIGHT = 1.0 / 3.0  # of what is visible: the RMS about a line, twice the noise
 _REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
 
 
@@ -72,7 +73,7 @@ def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[R
     level = sign * max(sign * level for level, _ in flat)
     near = [e for e in filter(None, ends) if abs(e[0] - level) < _NEAR * trial.visible(name)]
     lacks = [e[1] for e in near if e[2]]
-    if len(lacks) >= max(_FEWEST_STROKES, 0.8 * len(near)):
+    if len(lacks) >= max(_FEWEST_STROKES, _MOST_OF_THEM * len(near)):
         yield Remark(
             "error",
             f"{name} ends at its {end} level {level:.4g} in {count_of(len(lacks), 'stroke')} while "
@@ -99,13 +100,14 @@ def _end_of_stroke(
     slope, at_zero = np.polyfit(share[before], y[before], 1)
     if stroke.direction * slope < _FOLLOWS * trial.sizes[name].span:
         return None
-    own, _ = np.polyfit(share[last], y[last], 1)
+    own = np.polyfit(share[last], y[last], 1)
     if float(np.ptp(y[last])) == 0.0:
         return None
     level = float(y[last].mean())
     lacks = stroke.direction * (at_zero + slope - level)
-    flat = own / slope < _FLAT and lacks > trial.visible(name) + 0.5 * (1.0 - _LAST) * abs(slope)
-    return level, float(lacks), bool(flat)
+    flat = own[0] / slope < _FLAT and lacks > trial.visible(name) + 0.5 * (1.0 - _LAST) * abs(slope)
+    straight = np.std(y[last] - np.polyval(own, share[last])) < _STRAIGHT * trial.visible(name)
+    return level, float(lacks), bool(flat and straight)
 
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
