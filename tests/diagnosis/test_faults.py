@@ -5,6 +5,8 @@ The recordings are those of the independent rig.
 
 import pytest
 
+from tsas_cli.diagnosis.faults.search import Candidate
+from tsas_cli.diagnosis.faults.words import record_of
 from tsas_cli.stages.diagnose import diagnose
 from tsas_studies.challenge.cases import Case, Hidden
 from tsas_studies.challenge.make import make
@@ -75,3 +77,13 @@ def test_a_mechanism_and_a_sound_rig_are_not_accused(effect, tmp_path):
     result = diagnose(made(tmp_path, "one" if effect else "nothing", *hidden))
     assert result.record.faults == ()
     assert [cause.effect for cause in result.causes] == ([effect] if effect else [])
+
+
+def test_where_one_run_has_its_bend_a_law_of_friction_is_said_beside_a_wrong_bend(tmp_path):
+    values = {"run": "d", "key": "total_bend_rad", "factor": 1.12}
+    dataset = made(tmp_path, "recording", Hidden("bend_of_a_run", values))
+    (found,) = diagnose(dataset).record.faults
+    assert (found.code, found.run) == ("run-friction", "d")
+    assert "no other run has its bend" in found.sentence
+    shared = record_of([Candidate("run-friction", 0, (), 0.1, 9.0)], ["a"])
+    assert "no other run has its bend" not in shared.sentence

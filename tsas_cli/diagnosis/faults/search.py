@@ -33,7 +33,7 @@ class Candidate:
     """A fault by one unknown: what it is, where, the amount, and the squares that it takes away.
 
     `run` is None for a fault of all runs; `edges` counts the ends of the part of the run that it
-    is in, from `first_s` to `last_s`.
+    is in, from `first_s` to `last_s`. A run is `alone` if no other has its bend.
     """
 
     code: str
@@ -44,6 +44,7 @@ class Candidate:
     edges: int = 0
     first_s: float | None = None
     last_s: float | None = None
+    alone: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +125,7 @@ def fault_of_recording(search: Search, accepted: Collection[str]) -> FoundFault 
     found = [c for c in candidates(bench, trial, left, run) if c.code not in accepted]
     choices = [_judged(found, left.squares, run.size)]
     if OWN_FRICTION not in accepted:
-        own = _of_frictions(trial, tolerated, run)
+        own = _of_frictions(trial, tolerated, run, [rig.total_bend_rad for rig in bench.rigs])
         choices += [_judged([c], squares, run.size) for c, squares in own]
     convincing = [fault for fault in choices if _convinces(fault, run.size)]
     return min(convincing, key=lambda fault: fault.rest) if convincing else None
@@ -153,7 +154,7 @@ def _convinces(fault: FoundFault, count: int) -> bool:
 
 
 def _of_frictions(
-    trial: HypothesisFit, tolerated: Floats, run: Indices
+    trial: HypothesisFit, tolerated: Floats, run: Indices, bends: Sequence[float]
 ) -> Iterator[tuple[Candidate, float]]:
     """Yield a friction of each run's own beyond its tolerance, and the squares without it."""
     frictions = friction_of_runs(trial, run)
@@ -162,7 +163,8 @@ def _of_frictions(
         column = left.project(-frictions[:, [k]])[:, 0]
         for found in _one(OWN_FRICTION, k, (), column, left):
             if abs(found.amount) > MOST_SCATTER:
-                yield replace(found, amount=SCATTER * found.amount), left.squares
+                alone = bends.count(bends[k]) == 1
+                yield replace(found, amount=SCATTER * found.amount, alone=alone), left.squares
 
 
 def _of_run(k: int, shapes: RunShapes, left: Beside, run: Indices) -> Iterator[Candidate]:

@@ -80,9 +80,12 @@ def _clock(c: Candidate) -> str:
 
 
 def _friction(c: Candidate) -> str:
+    alone = (
+        "; no other run has its bend: friction that does not grow with it, as of pulleys, fits too"
+    )
     return (
         f"its friction is {math.exp(c.amount):.3g} times that of the other runs, as if its "
-        "total_bend_rad were that many times what the manifest says"
+        f"total_bend_rad were that many times what the manifest says{alone * c.alone}"
     )
 
 
