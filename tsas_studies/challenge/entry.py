@@ -24,8 +24,9 @@ class SubmittedDiagnosis(Findings):
 
     @property
     def said(self) -> frozenset[str]:
-        """The effects that are named, and the codes of the faults of recording that are found."""
-        return self.effects | {fault.code for fault in self.faults}
+        """The named effects with their rivals, and the codes of the faults that are found."""
+        rivals = {rival for named in self.named for rival in named.rivals}
+        return self.effects | rivals | {fault.code for fault in self.faults}
 
 
 class Log(Record):
