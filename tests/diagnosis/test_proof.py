@@ -130,6 +130,7 @@ def test_a_split_is_said_with_its_values():
 def test_only_an_effect_with_a_size_may_be_zero():
     assert may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)])
     assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)])
+    assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.5, 0.9)])
     assert not may_be_zero("drive_friction", [estimate("preload_N", 0.0, -1.0, 1.0)])
 
 

@@ -140,7 +140,9 @@ def may_be_zero(
         half = low if away > 0.0 else high
         if half == abs(away):  # the interval is cut at the neutral value
             half = max(low, high)
-        deviations.append(away / half if half > 0.0 else 0.0)
+        if half == 0.0:  # the interval ends at the value
+            return False
+        deviations.append(away / half)
         rows.append(row)
     if not rows:
         return True
