@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.constancy import worst_split
+from tsas_cli.diagnosis.constancy import absorbed_by, worst_split
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
@@ -108,3 +108,24 @@ def test_the_friction_of_each_run_is_no_other_law_of_a_drift():
     late = replace(solution, residual=solution.residual - 0.05 * within * (TIME_S > 20.0))
     fit = replace(fit, solution=late)
     assert worst_split(fit, "friction_drift", FOLDS, SIGNALS, tuple("abcd"), none).by == "time_s"
+
+
+@pytest.mark.parametrize("other", [False, True])
+def test_a_gain_that_another_law_of_an_effect_has_too_is_absorbed_by_it(other):
+    """What is left follows the place of the drive, as its friction may, or nothing of it."""
+    rng = np.random.default_rng(5)
+    friction = 5.0 * (1.0 + rng.random(RUN.size))
+    place = SIGNALS["x_in_mm"]
+    more = np.sin(9.0 * TIME_S) if other else friction * (place > np.quantile(place, 2.0 / 3.0))
+    data = friction + 0.8 * more + 0.3 * rng.standard_normal(RUN.size)
+    fits = []
+    for columns in ((friction,), (friction, more)):
+        J = np.column_stack(columns)
+        values = np.linalg.lstsq(J, data, rcond=None)[0]
+        names = (NAME, "force_sensor_offset.f_in_offset_N")[: len(columns)]
+        unknowns = tuple(Unknown(name, None, 0.0, -1e6, 1e6, 1.0) for name in names)
+        at_bound = np.zeros(len(columns), bool)
+        solution = Solution(values, at_bound, J @ values - data, J, True, "", 1)
+        fits.append(HypothesisFit((EFFECT,), unknowns, solution, (ROWS,) * RUNS, on_mesh=False))
+    by = absorbed_by(*fits, EFFECT, FOLDS, SIGNALS, np.zeros((RUN.size, 0)))
+    assert by == (None if other else "x_in_mm")

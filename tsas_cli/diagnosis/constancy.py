@@ -63,19 +63,9 @@ def worst_split(
     each residual, shape (n,) each; `tolerated` is what one standard deviation of each tolerance
     changes there, shape (n, m).
     """
-    columns = [
-        j
-        for j, u in enumerate(trial.unknowns)
-        if u.name.split(".")[0] == effect and not trial.solution.at_bound[j]
-    ]
+    trial, columns = _with_tolerances(trial, effect, folds, tolerated)
     if not columns:
         return None
-    J = trial.solution.jacobian
-    residual = without_tolerances(trial, tolerated)
-    trial = replace(trial, solution=replace(trial.solution, residual=residual))
-    within_runs = [j for j in columns if not is_scatter(trial, J[:, j], folds.run)]
-    if within_runs:  # what differs from run to run alone is the friction of each
-        columns, trial = within_runs, with_friction_of_runs(trial, folds.run)
     stretches = in_stretches(folds)
     before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
     worst: Split | None = None
@@ -88,6 +78,47 @@ def worst_split(
             pairs = tuple(zip(labels, values, strict=True))
             worst = Split(name, by, found, pairs)
     return worst
+
+
+def absorbed_by(
+    fewer: HypothesisFit,
+    whole: HypothesisFit,
+    effect: str,
+    folds: Folds,
+    signals: dict[str, Floats],
+    tolerated: Floats,
+) -> str | None:
+    """Return the signal over which another law of an effect does what one more effect does.
+
+    `whole` is the fit with one effect more than `fewer`: what it gains has to be a gain too where
+    the `effect` of both has values of its own for the parts of a signal. None where it is.
+    """
+    trials = [_with_tolerances(trial, effect, folds, tolerated) for trial in (fewer, whole)]
+    if not all(columns for _, columns in trials):
+        return None
+    for by, (labels, part) in _parts(signals, folds.run, ()).items():
+        split = (_split(trial, columns, part, len(labels))[0] for trial, columns in trials)
+        if not gain(*(held_out_squares(trial, folds) for trial in split)).convincing:
+            return by
+    return None
+
+
+def _with_tolerances(
+    trial: HypothesisFit, effect: str, folds: Folds, tolerated: Floats
+) -> tuple[HypothesisFit, list[int]]:
+    """Return a fit with tolerances, and the columns of an effect that are to be split."""
+    columns = [
+        j
+        for j, u in enumerate(trial.unknowns)
+        if u.name.split(".")[0] == effect and not trial.solution.at_bound[j]
+    ]
+    J = trial.solution.jacobian
+    residual = without_tolerances(trial, tolerated)
+    trial = replace(trial, solution=replace(trial.solution, residual=residual))
+    within_runs = [j for j in columns if not is_scatter(trial, J[:, j], folds.run)]
+    if within_runs:  # what differs from run to run alone is the friction of each
+        return with_friction_of_runs(trial, folds.run), within_runs
+    return trial, columns
 
 
 def _parts(

@@ -1,20 +1,27 @@
 """The effects of a search that prove to be causes: tested, dropped one by one, fitted again."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
-from tsas_cli.diagnosis.constancy import worst_split
+from tsas_cli.diagnosis.constancy import absorbed_by, worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
-from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, may_be_zero, split_in_words
+from tsas_cli.diagnosis.proof import (
+    ANOTHER_LAW,
+    BY_NAME,
+    FoundCause,
+    failures,
+    may_be_zero,
+    split_in_words,
+)
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
     covariance_of_tolerances,
@@ -136,6 +143,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         stroke_mm=stroke_mm,
         correlation=related,
     )
+    failed = (*failed, *_of_another_law(last, name))
     law = "" if split is None else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
     if split is not None and last.structure > ANOTHER_LAW * excess:
@@ -152,6 +160,17 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         convincing=again.convincing,
         negligible=negligible,
     )
+
+
+def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:
+    """Yield the other effects of the set whose law may do, over some signal, what this one does."""
+    judged, mesh = last.judged, last.judged.bench.on_mesh(last.judged.named)
+    fewer, whole = (judged.trial(n, on_mesh=mesh) for n in (judged.named - {name}, judged.named))
+    for other in sorted(judged.named - {name}):
+        by = absorbed_by(fewer, whole, other, judged.folds, last.signals, last.tolerated)
+        if by is not None:
+            title = BY_NAME[other].title.lower()
+            yield f"gains too little where {title} may differ over {signal_in_words(by)}"
 
 
 def estimates_with_tolerances(
