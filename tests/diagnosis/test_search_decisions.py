@@ -7,6 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.rivals import rivals_of
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
@@ -167,12 +168,12 @@ def test_it_starts_again_four_times_at_the_most(made):
 def test_rivals_convince_too_and_are_not_surely_worse(made):
     search = made({names(B): 1.001, names(C): 1.001, names(A): 1.0, names(): 4.0})
     search.add = lambda *_: [(A, CONVINCES), (B, CONVINCES), (C, DOES_NOT)]
-    assert search.rivals(names(A), A) == (B,)  # itself is none, and C convinces nobody
+    assert rivals_of(search, names(A), A) == (B,)  # itself is none, and C convinces nobody
     worse = made({names(B): 1.02, names(A): 1.0, names(): 4.0})
     worse.add = lambda *_: [(B, CONVINCES)]
-    assert worse.rivals(names(A), A) == ()
+    assert rivals_of(worse, names(A), A) == ()
     search.trial(names(B)).solution.converged = False
-    assert search.rivals(names(A), A) == ()
+    assert rivals_of(search, names(A), A) == ()
 
 
 @pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (B,))])
@@ -180,7 +181,7 @@ def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
     """Of 4.0 the named one takes 3.0 away; 0.4 of that is 0.3 of the squares."""
     search = made({names(): 4.0, names(A): 1.0, names(B): 1.0})
     seen(search, names(), (A, 0.75), (B, part))
-    assert search.rivals(names(A), A) == rivals
+    assert rivals_of(search, names(A), A) == rivals
 
 
 def test_the_simplest_that_is_not_surely_beaten(made):

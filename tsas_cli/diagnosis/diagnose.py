@@ -14,7 +14,8 @@ from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, estimates_with_tolerances, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import Search, find_effects, tried
+from tsas_cli.diagnosis.rivals import find_effects
+from tsas_cli.diagnosis.search import Search, tried
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of

@@ -4,27 +4,25 @@ Stepwise selection: one effect after the other is added while the best one is si
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other.
 
-`find_effects` returns the result of a `Search`. A running one caches its fits: a set of effects
-is fitted once, from the initial values of the path that reaches it first. `tried` returns what it
-has fitted so far.
+A running search caches its fits: a set of effects is fitted once, from the initial values of the
+path that reaches it first. `tried` returns what it has fitted so far.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
 
 from tsas_cli.diagnosis.evidence import (
-    LEAST_DIFFERENCE,
     LEAST_REDUCTION,
     LEAST_REDUCTION_PER_COMPLEXITY,
     Reduction,
     gain,
 )
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
-from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
+from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
 from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances
@@ -42,16 +40,6 @@ EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete mod
 LINEAR = 0.4  # share of its reduction that a signature explains; a fit takes up to 2.5 times it
 ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
 PAIRS = 4  # of effects that are fitted, of those that explain most together
-
-
-def find_effects(search: "Search") -> Hypotheses:
-    """Return the effects that are significant together, and all other fits."""
-    named = search.run()
-    rivals = {e.name: search.rivals(named, e.name) for e in EFFECTS if e.name in named}
-    screened = tuple(search.screen(frozenset()))
-    for names in judged_sets(named):
-        search.trial(names, on_mesh=search.bench.on_mesh(named))
-    return replace(tried(search), named=named, rivals=rivals, screened=screened)
 
 
 def tried(search: "Search") -> Hypotheses:
@@ -98,20 +86,6 @@ class Search:
             return named
         simple, best = ends[0], ends[-1]
         return best if self.gain(simple, best).beyond(LEAST_REDUCTION_PER_COMPLEXITY) else simple
-
-    def rivals(self, named: Names, name: str) -> tuple[str, ...]:
-        """Return the effects that are indistinguishable from a named one."""
-        fewer = named - {name}
-        out = []
-        for other, found in self.add(fewer, self.reduction(fewer, named)):
-            instead = fewer | {other}
-            if other in named or not found.convincing:
-                continue
-            if self.trial(instead).solution.converged and not self.gain(instead, named).beyond(
-                LEAST_DIFFERENCE
-            ):
-                out.append(other)
-        return tuple(out)
 
     def trial(self, names: Names, *, on_mesh: bool = False) -> HypothesisFit:
         """Return the fit of a set of effects, made on the mesh if any of it needs one."""

@@ -1,0 +1,56 @@
+"""The effects that a search finds, exchanged for better or simpler ones, with their rivals."""
+
+from dataclasses import replace
+
+from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE
+from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
+from tsas_cli.diagnosis.search import Search, tried
+from tsas_cli.effects import EFFECTS
+
+
+def find_effects(search: Search) -> Hypotheses:
+    """Return the effects that are significant together, their rivals, and all other fits."""
+    named = exchanged(search, search.run())
+    rivals = {e.name: rivals_of(search, named, e.name) for e in EFFECTS if e.name in named}
+    screened = tuple(search.screen(frozenset()))
+    for names in judged_sets(named):
+        search.trial(names, on_mesh=search.bench.on_mesh(named))
+    return replace(tried(search), named=named, rivals=rivals, screened=screened)
+
+
+def exchanged(search: Search, named: Names, before: frozenset[Names] = frozenset()) -> Names:
+    """Return the set with effects exchanged for rivals that are better, or simpler.
+
+    Beside those that were found later, another effect may be the better one. `before` are the sets
+    on the path.
+    """
+    for name in sorted(named):
+        for other in rivals_of(search, named, name):
+            instead = named - {name} | {other}
+            better = search.gain(named, instead).beyond(LEAST_DIFFERENCE)
+            simpler = _complexity(search, instead, other) < _complexity(search, named, name)
+            if instead not in before and (better or simpler):
+                return exchanged(search, instead, before | {named})
+    return named
+
+
+def rivals_of(search: Search, named: Names, name: str) -> tuple[str, ...]:
+    """Return the effects that do as well as a named one in its place, or better."""
+    fewer = named - {name}
+    out = []
+    for other, found in search.add(fewer, search.reduction(fewer, named)):
+        instead = fewer | {other}
+        if other in named or not found.convincing:
+            continue
+        converged = search.trial(instead).solution.converged
+        if converged and not search.gain(instead, named).beyond(LEAST_DIFFERENCE):
+            out.append(other)
+    return tuple(out)
+
+
+def _complexity(search: Search, names: Names, name: str) -> tuple[int, int]:
+    """Return the number of an effect's free parameters in a fit, and its place in the catalogue."""
+    trial = search.trial(names)
+    free = zip(trial.unknowns, trial.solution.at_bound, strict=True)
+    count = sum(u.name.split(".")[0] == name and not at_bound for u, at_bound in free)
+    return count, [effect.name for effect in search.effects].index(name)
