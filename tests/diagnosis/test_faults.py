@@ -11,7 +11,7 @@ from tsas_cli.stages.diagnose import diagnose
 from tsas_studies.challenge.cases import Case, Hidden
 from tsas_studies.challenge.make import make
 
-RATE_HZ = 50.0
+RATE_HZ = 30.0
 
 
 def made(folder, kind, *hidden):
