@@ -32,18 +32,19 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Begun first: at the end a module of minutes would keep one process busy and the others waiting.
 LONGEST = (
-    *("whole_job/test_whole_job", "hostile/test_hostile_files", "commands/test_live"),
-    *("sweeping/test_cluster", "identification/test_odd_recordings", "commands/test_calibrate"),
-    *("reporting/test_in_browser", "metamorphic/test_relations", "studies/challenge/test_found"),
-    *("studies/commands/test_challenge", "studies/commands/test_close_loop"),
-    *("diagnosis/test_counted_once", "identification/test_long_runs", "fuzz/test_replay"),
-    *("studies/challenge/test_run", "project/test_names", "commands/test_view"),
-    *("studies/challenge/rig/test_hidden", "stages/test_python_page", "diagnosis/test_plan"),
-    *("stages/test_identify_harmonic_drive", "numerics/test_compiled", "stages/test_api"),
-    *("identification/test_calibration", "studies/challenge/test_make", "docs/test_examples"),
-    *("studies/challenge/test_same_numbers", "reporting/test_prediction"),
-    *("numerics/test_conditioning_pieces", "commands/test_sweep", "fuzz/test_search"),
-    *("pipelines/test_pipelines", "storage/test_wrong"),
+    *("studies/commands/test_close_loop", "whole_job/test_whole_job"),
+    *("hostile/test_hostile_files", "commands/test_streams", "commands/test_live"),
+    *("studies/challenge/test_found", "sweeping/test_cluster", "diagnosis/test_faults"),
+    *("reporting/test_in_browser", "studies/challenge/test_names_hold", "commands/test_calibrate"),
+    *("identification/test_odd_recordings", "metamorphic/test_relations"),
+    *("identification/test_long_runs", "diagnosis/test_counted_once", "studies/challenge/test_run"),
+    *("diagnosis/test_plan", "fuzz/test_replay", "studies/commands/test_challenge"),
+    *("commands/test_view", "reporting/stream/test_tendon", "stages/test_identify_harmonic_drive"),
+    *("stages/test_python_page", "project/test_names", "studies/challenge/test_same_numbers"),
+    *("stages/test_api", "commands/test_sweep", "studies/challenge/rig/test_hidden"),
+    *("numerics/test_compiled", "identification/test_calibration", "studies/challenge/test_make"),
+    *("docs/test_examples", "reporting/test_prediction", "numerics/test_conditioning_pieces"),
+    *("fuzz/test_search", "pipelines/test_pipelines", "storage/test_wrong"),
 )
 
 

@@ -16,8 +16,11 @@ import tsas_studies
 from tests.test_app import CALLS
 from tsas_cli.records.result import Result
 from tsas_cli.support.stopping import EXIT_CODE
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
-GROUPS = Path(tsas_cli.__file__).parents[1] / "datasets" / "paper-groups"
 SUMMARY = {"format": 1, "stage": "any", "value": 1.5}
 VERBS = {  # of commands whose function has another name
     "effects": "tsas_cli.catalogue",
@@ -171,16 +174,33 @@ def stopped(self, *rest):
     for _ in range({times}):
         signal.raise_signal(signal.SIGINT)
 search.Search._fit = stopped
-sys.argv = ["tsas", "diagnose", {dataset!r}, "--out", {out!r}, "--runs", "a,b"]
+sys.argv = ["tsas", "diagnose", {dataset!r}, "--out", {out!r}]
 run()
 """
 
 
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory):
+    """Two short recordings of a rig with tendon outside the sheath, which a search finds."""
+    rig = Rig(proximal_length_mm=150.0, cells=30)
+    folder = tmp_path_factory.mktemp("searched") / "dataset"
+    sensors = Sensors(rate_Hz=50.0)
+    return write_dataset(
+        folder,
+        [
+            Run(name, record(rig, sine(rate_Hz=100.0), sensors=sensors, seed=k), conditions(rig))
+            for k, name in enumerate("ab")
+        ],
+    )
+
+
 @pytest.mark.parametrize("times", [1, 2])
-def test_the_first_stop_ends_a_search_and_the_second_stops_it(times, tmp_path, monkeypatch):
+def test_the_first_stop_ends_a_search_and_the_second_stops_it(
+    times, searched, tmp_path, monkeypatch
+):
     monkeypatch.delenv("MAKELEVEL", raising=False)
     out = tmp_path / "out"
-    program = ENDED.format(times=times, dataset=str(GROUPS), out=str(out))
+    program = ENDED.format(times=times, dataset=str(searched), out=str(out))
     said, printed = on_terminal([sys.executable, "-c", program], code=EXIT_CODE)
     assert "Ctrl-C again stops at once" in said
     assert "leads so far" in said
@@ -196,9 +216,9 @@ def test_the_first_stop_ends_a_search_and_the_second_stops_it(times, tmp_path, m
     assert found["reason"] in printed
 
 
-def test_under_make_the_first_stop_stops_a_search(tmp_path):
+def test_under_make_the_first_stop_stops_a_search(searched, tmp_path):
     out = tmp_path / "out"
-    program = ENDED.format(times=1, dataset=str(GROUPS), out=str(out))
+    program = ENDED.format(times=1, dataset=str(searched), out=str(out))
     on_terminal([sys.executable, "-c", program], code=EXIT_CODE, MAKELEVEL="1")
     assert not out.exists()
 

@@ -81,13 +81,6 @@ def test_every_proposal_is_within_the_limits_and_varies_one_thing():
         assert 0.0 < c.run.speed <= 24.0
         assert c.run.preload_N in (25.0, 20.0)
         assert c.run.periods >= 2
-    runs = {c.title: c.run for c in found}
-    assert runs["a slow sine"].speed == pytest.approx(2.4)
-    assert runs["a fast sine"].speed == runs["a chirp"].speed == 24.0
-    assert runs["nested loops"].speed == pytest.approx(8.0)
-    assert runs["short strokes"].amplitude_mm == pytest.approx(3.0)
-    assert runs["a staircase with rests"].dwell_s == 2.0
-    assert runs["a long run"].periods == 12
     assert [c.title for c in found if c.run.dwell_s] == ["a staircase with rests"]
 
 

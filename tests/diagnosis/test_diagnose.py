@@ -63,44 +63,32 @@ def test_why_nothing_can_be_diagnosed():
 
 
 def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
-    """Blocks are counted from 0 in each run; 3 and 4 make 5."""
+    """Noise leaves each of two unknowns by 1, a tolerance both together by 3.
+
+    They are known by their difference. Blocks are counted from 0 in each run.
+    """
     given = {}
-    fitted = Fitted(*(np.full(1, v) for v in (7.0, 3.0, 2.0)), np.zeros(1, bool), True, "", 1)
+    fitted = Fitted(*(np.full(2, v) for v in (7.0, 1.0, 2.0)), np.zeros(2, bool), True, "", 1)
 
     def with_errors(unknowns, solution, blocks, *, by_run):
         given.update(blocks=[b.tolist() for b in blocks], by_run=by_run)
         return fitted
 
     monkeypatch.setattr(p, "with_errors", with_errors)
-    monkeypatch.setattr(p, "covariance_of_tolerances", lambda *_: np.full((1, 1), 16.0))
+    monkeypatch.setattr(p, "covariance_of_tolerances", lambda *_: np.full((2, 2), 9.0))
     monkeypatch.setattr(
-        p, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
+        p,
+        "estimates_of",
+        lambda unknowns, fit, ids: [Estimate("a", e, "1", "fitted") for e in fit.stderr],
     )
     folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
     bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
-    trial = SimpleNamespace(
-        unknowns=[], solution=None, effects=(), correlation=lambda: np.ones((1, 1))
-    )
-    search = SimpleNamespace(folds=folds, bench=bench)
-    (told,), _ = p.estimates_with_tolerances(search, trial, np.zeros((6, 7)))
-    assert told.value == 5.0
-    assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
-
-
-def test_two_offsets_that_a_tolerance_moves_together_are_known_by_their_difference(monkeypatch):
-    """Noise leaves each unknown by 1, a tolerance both together by 3."""
-    fitted = Fitted(*(np.full(2, v) for v in (7.0, 1.0, 2.0)), np.zeros(2, bool), True, "", 1)
-    monkeypatch.setattr(p, "with_errors", lambda *_, **__: fitted)
-    monkeypatch.setattr(p, "covariance_of_tolerances", lambda *_: np.full((2, 2), 9.0))
-    monkeypatch.setattr(
-        p, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", 0.0, "1", "fitted")] * 2
-    )
-    folds = Folds(np.zeros(6, int), np.arange(6), np.zeros(6, int), True)
-    bench = SimpleNamespace(rigs=[0], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
     trial = SimpleNamespace(unknowns=[], solution=None, effects=(), correlation=lambda: np.eye(2))
     search = SimpleNamespace(folds=folds, bench=bench)
-    _, correlation = p.estimates_with_tolerances(search, trial, np.zeros((6, 7)))
+    told, correlation = p.estimates_with_tolerances(search, trial, np.zeros((6, 7)))
+    assert [e.value for e in told] == pytest.approx([np.sqrt(10.0)] * 2)
     assert correlation == pytest.approx(np.array([[1.0, 0.9], [0.9, 1.0]]))
+    assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
 
 
 def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():

@@ -5,54 +5,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.diagnosis.made_up import BLOCKS, OF, SIZE, Bench, evenly, names, screened, search_over
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.rivals import rivals_of
-from tsas_cli.diagnosis.search import Search
-from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.screening import Screened
+from tsas_cli.diagnosis.rivals import exchanged, rivals_of
 
-BLOCKS, SIZE = 20, 200
 A, B, C = "backlash", "free_tendon", "load_friction"
-KNOWN = tuple(e for e in EFFECTS if e.name in (A, B, C))
-OF = {e.name: e for e in KNOWN}
 CONVINCES, DOES_NOT = Reduction(0.5, 4.0), Reduction(0.5, 1.0)
-
-
-def names(*found):
-    return frozenset(found)
-
-
-class Bench:
-    """Fits whose squares are given by the set of effects; nothing needs a mesh."""
-
-    def __init__(self, mean_squares):
-        self.mean_squares, self.fits = mean_squares, []
-
-    def on_mesh(self, effects):
-        return False
-
-    def fit(self, effects, start=None, *, near=None, on_mesh=False):
-        self.fits.append((frozenset(effects), start))
-        value = self.mean_squares[frozenset(effects)]
-        value = value.pop(0) if isinstance(value, list) else value
-        rng = np.random.default_rng(len(effects))
-        solution = SimpleNamespace(converged=True, residual=rng.standard_normal(SIZE))
-        return SimpleNamespace(mean_square=value, solution=solution, on_mesh=on_mesh)
 
 
 @pytest.fixture
 def made(monkeypatch):
     """A search over given mean squares; a trial's held-out squares are spread evenly."""
-    monkeypatch.setattr(
-        s, "held_out_squares", lambda trial, _: np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
-    )
-
-    def make(mean_squares):
-        folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS)
-        return Search(Bench(mean_squares), folds, effects=KNOWN)
-
-    return make
+    monkeypatch.setattr(s, "held_out_squares", evenly)
+    return lambda mean_squares: search_over(Bench(mean_squares), (A, B, C))
 
 
 @pytest.mark.parametrize(("left", "quiet"), [(1.149, True), (1.151, False)])
@@ -107,12 +73,7 @@ def test_a_trial_is_fitted_once(made):
 
 def seen(search, at, *parts, signatures=None):
     search.screened[at] = [
-        Screened(
-            OF[name],
-            part,
-            {f"{name}.{OF[name].parameters[0].name}": 1.0},
-            np.zeros((SIZE, 1)) if signatures is None else signatures[name],
-        )
+        screened(name, part, None if signatures is None else signatures[name])
         for name, part in parts
     ]
 
@@ -121,7 +82,7 @@ def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
     search = made({names(): 4.0, names(A): 3.0, names(B): 2.0, names(C): 1.0})
     seen(search, names(), (A, 0.5), (B, 0.11), (C, 0.09))  # a fifth of the best is 0.1
     assert [name for name, _ in search.add(names())] == [B, A]
-    assert names(C) not in {fitted for fitted, _ in search.bench.fits}
+    assert names(C) not in search.bench.fitted
 
 
 @pytest.mark.parametrize(("least", "found"), [(0.99, [B, A]), (1.01, [A])])
@@ -137,7 +98,7 @@ def test_a_further_cause_is_fitted_where_it_could_matter(made):
     search = made({names(): 9.0, names(A): 4.0, names(A, B): 2.0, names(A, C): 1.0})
     seen(search, names(A), (B, 0.061), (C, 0.059))
     assert search._better(names(A)) == [names(A, B)]
-    assert names(A, C) not in {fitted for fitted, _ in search.bench.fits}
+    assert names(A, C) not in search.bench.fitted
 
 
 def test_what_explains_next_to_nothing_is_not_fitted(made):
@@ -151,7 +112,7 @@ def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
     start = {f"{B}.{parameter.name}": parameter.neutral + 1.0}
     search = made({names(): 4.0, names(B): [9.0, 5.0, 3.0]})
     search._fit(names(), names(B), start)
-    starts = [at for fitted, at in search.bench.fits if fitted == names(B)]
+    starts = [fit.start for fit in search.bench.fits if fit.fitted == names(B)]
     away = [next(iter(at.values())) - parameter.neutral for at in starts]
     assert away == pytest.approx([1.0, 0.2, 0.04])
     assert search.trial(names(B)).mean_square == 3.0
@@ -217,7 +178,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
     search.trial(names()).solution.residual = sign * apart
     seen(search, names(), (A, 0.0), (B, 0.01), (C, 0.0), signatures=signatures)
     assert search._best_pair(names()) == names(A, B)
-    assert {fitted for fitted, _ in search.bench.fits} == {names(), names(A, B)}
+    assert set(search.bench.fitted) == {names(), names(A, B)}
     assert search._better(names()) == [names(A, B)]
 
 
@@ -231,3 +192,24 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     seen(search, names(), (A, 0.0), (B, 0.01), signatures=signatures)
     assert search._best_pair(names()) is None
     assert search._better(names()) == []
+
+
+def test_a_rival_that_is_better_beside_the_others_takes_the_place_of_a_named_effect(made):
+    """Found first, B is worse than C once A is there; alone, it is better."""
+    alone = {names(): 9.0, names(A): 5.0, names(B): 3.0, names(C): 4.0}
+    search = made(alone | {names(A, B): 1.2, names(A, C): 1.0, names(B, C): 2.9})
+    search.add = lambda *_: [(A, CONVINCES), (B, CONVINCES), (C, CONVINCES)]
+    assert exchanged(search, names(A, B)) == names(A, C)
+    assert exchanged(search, names(A, C)) == names(A, C)
+
+
+def test_of_two_that_are_alike_the_simpler_one_is_named(made):
+    """As many free parameters: the one that stands first in the catalogue."""
+    search = made({names(): 9.0, names(A): 1.0, names(B): 1.0, names(C): 1.5})
+    search.add = lambda *_: [(A, CONVINCES), (B, CONVINCES), (C, CONVINCES)]
+    first, second = sorted((A, B), key=list(OF).index)
+    assert exchanged(search, names(second)) == names(first)
+    assert exchanged(search, names(first)) == names(first)
+    search.trial(names(first)).unknowns = [SimpleNamespace(name=f"{first}.size")]
+    search.trial(names(first)).solution.at_bound = [False]
+    assert exchanged(search, names(first)) == names(second)

@@ -1,56 +1,25 @@
 """How a search grows, goes back and ends, on fits and squares that are made up."""
 
+from collections import defaultdict
 from itertools import combinations
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.counted import Counted
+from tests.diagnosis.made_up import OF, SIZE, Bench, evenly, names, screened, search_over
 from tsas_cli.diagnosis import hypotheses, search
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.hypotheses import Hypotheses
-from tsas_cli.diagnosis.search import Search
-from tsas_cli.effects import EFFECTS
 from tsas_cli.identification import screening
-from tsas_cli.identification.screening import Screened
 
-BLOCKS, SIZE = 20, 200
 A, B, C, D, E = "backlash", "drive_friction", "free_tendon", "load_friction", "load_inertia"
-OF = {e.name: e for e in EFFECTS}
-KNOWN = tuple(e for e in EFFECTS if e.name in (A, B, C, D, E))
-
-
-def names(*found):
-    return frozenset(found)
-
-
-class Bench:
-    """Fits whose mean square is given by the set of effects; `mesh` are those that need it."""
-
-    def __init__(self, mean_squares, mesh=(), weighed=0):
-        self.mean_squares, self.mesh, self.weighed = mean_squares, mesh, weighed
-        self.fits = []
-
-    def on_mesh(self, effects):
-        return bool(set(effects) & set(self.mesh))
-
-    def fit(self, effects, start=None, *, near=None, on_mesh=False, values_only=False):
-        self.fits.append((frozenset(effects), near, on_mesh))
-        solution = SimpleNamespace(converged=True, residual=np.ones(SIZE))
-        value = self.mean_squares.get(frozenset(effects), 8.0)
-        found = SimpleNamespace(mean_square=value, solution=solution, on_mesh=on_mesh)
-        found.weighed = self.weighed
-        return found
+KNOWN = (A, B, C, D, E)
 
 
 def reweighed(bench, trial):
     assert trial.weighed == bench.weighed
     return Bench(bench.mean_squares, bench.mesh, bench.weighed + 1)
-
-
-def evenly(trial, folds):
-    return np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
 
 
 @pytest.fixture
@@ -61,19 +30,13 @@ def made(monkeypatch):
         monkeypatch.setattr(module, "held_out_squares", evenly)
 
     def make(mean_squares, *, step=None, **of_bench):
-        folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS)
-        bench = Bench(mean_squares, **of_bench)
-        search = Search(bench, folds, *([step] if step else []), effects=KNOWN)
-        everything = [screened(e.name) for e in KNOWN]
+        bench = Bench(defaultdict(lambda: 8.0, mean_squares), **of_bench)
+        search = search_over(bench, KNOWN, *([step] if step else []))
+        everything = [screened(name) for name in KNOWN]
         search.screen = lambda at: [x for x in everything if x.effect.name not in at]
         return search
 
     return make
-
-
-def screened(name, part=0.5, signatures=None):
-    signatures = np.zeros((SIZE, 1)) if signatures is None else signatures
-    return Screened(OF[name], part, {f"{name}.{OF[name].parameters[0].name}": 1.0}, signatures)
 
 
 def test_one_after_the_other_is_added_while_it_convinces(made):
@@ -91,7 +54,7 @@ def test_it_ends_where_it_is_quiet(made):
     """With A the model is at the noise: that B would take away more is not asked for."""
     search = made({names(): 8.0, names(A): 1.1, names(A, B): 0.5})
     assert search.run() == names(A)
-    assert names(A, B) not in {fitted for fitted, *_ in search.bench.fits}
+    assert names(A, B) not in search.bench.fitted
 
 
 def test_nothing_is_named_where_nothing_convinces(made):
@@ -157,18 +120,18 @@ def test_a_single_effect_has_to_matter(made):
 def test_a_mesh_is_used_for_both_where_one_needs_it(made):
     search = made({names(): 4.0, names(A): 2.0}, mesh=(A,))
     search.gain(names(), names(A))
-    assert [(fitted, mesh) for fitted, _, mesh in search.bench.fits] == [
+    assert [(fit.fitted, fit.on_mesh) for fit in search.bench.fits] == [
         (names(), True),
         (names(A), True),
     ]
     search.gain(names(), names(B))
-    assert search.bench.fits[-2][2] is False
+    assert search.bench.fits[-2].on_mesh is False
     # The fit on the mesh gives the other one its initial values.
-    assert search.bench.fits[-2][1] is search.trials[names(), True]
+    assert search.bench.fits[-2].near is search.trials[names(), True]
     assert search.held_out(names(), on_mesh=True) is search.squares[names(), True]
     search.matters(names(), {A})
     search.matters(names(B), {A})
-    assert all(mesh for *_, mesh in search.bench.fits[4:])
+    assert all(fit.on_mesh for fit in search.bench.fits[4:])
 
 
 def test_what_is_new_lies_ahead_and_is_done(made):
@@ -194,7 +157,7 @@ def test_all_further_effects_are_screened_once(made, monkeypatch):
     monkeypatch.setattr(screening, "projector", lambda trial: ("basis", trial.on_mesh))
     monkeypatch.setattr(screening, "screen", screen)
     found = search.screen(names(A))
-    assert [x.effect.name for x in found] == [e.name for e in KNOWN if e.name != A][::-1]
+    assert [x.effect.name for x in found] == [name for name in KNOWN if name != A][::-1]
     assert {(n, mesh, basis) for n, mesh, basis in looked} == {
         (n, n == E, ("basis", n == E)) for n in (B, C, D, E)
     }
@@ -216,7 +179,7 @@ def test_errors_are_weighed_three_times_by_what_was_found(made):
     assert {trial.weighed for trial in other.trials.values()} == {3}
     assert set(other.squares) == set(other.trials)
     assert counted.total == counted.done == 3 + 4
-    near = {fitted: near for fitted, near, _ in other.bench.fits}
+    near = {fit.fitted: fit.near for fit in other.bench.fits}
     assert all(near[n] is search.trial(n, on_mesh=True) for n in sets - {names(A, B)})
 
 
@@ -242,7 +205,7 @@ def paired(made, squares, surplus, needed=None):
 def test_a_pair_has_to_explain_a_telling_part_more_than_both_alone(made, surplus, looked):
     search = paired(made, {names(): 1.3, names(A, B): 1.0}, surplus)
     assert (search._best_pair(names()) == names(A, B)) == looked
-    assert (names(A, B) in {fitted for fitted, *_ in search.bench.fits}) == looked
+    assert (names(A, B) in search.bench.fitted) == looked
 
 
 @pytest.mark.parametrize(("part", "looked"), [(0.067, False), (0.07, True)])
@@ -281,7 +244,7 @@ def test_four_pairs_are_fitted_at_the_most_the_most_promising_first(made):
     ]
     search.screen = lambda at: found
     assert search._best_pair(names()) is None
-    fitted = [f for f, *_ in search.bench.fits if len(f) == 2]
+    fitted = [found for found in search.bench.fitted if len(found) == 2]
     # Of (k a_k − l a_l)/√2 the largest: 5 and 1 of opposite direction are 4²/2, then 3²/2.
     assert len(fitted) == 4
     assert fitted[0] == names(A, E)
@@ -290,13 +253,5 @@ def test_four_pairs_are_fitted_at_the_most_the_most_promising_first(made):
 
 def test_a_start_is_that_of_both(made):
     search = paired(made, {names(A, B): 1.0}, 0.5)
-    starts = []
-    fit = search.bench.fit
-
-    def noted(effects, start=None, **how):
-        starts.append(start)
-        return fit(effects, start, **how)
-
-    search.bench.fit = noted
     search._best_pair(names())
-    assert set(starts[-1]) == {f"{n}.{OF[n].parameters[0].name}" for n in (A, B)}
+    assert set(search.bench.fits[-1].start) == {f"{n}.{OF[n].parameters[0].name}" for n in (A, B)}

@@ -91,11 +91,6 @@ def test_with_the_gear_the_structure_is_chosen_again(folded):
     assert folded == [NOTHING, terms("lag", "play")]
 
 
-def test_the_gear_is_tried_from_the_blur_on():
-    assert ds._with_gear(MadeUp({NOTHING: 1.149}, 0.5), NOTHING) == NOTHING
-    assert ds._with_gear(MadeUp({NOTHING: 1.15}, 0.5), NOTHING) != NOTHING
-
-
 def test_the_best_of_single_gears_is_not_beaten_by_the_first_one():
     """Both convince; play is better by far, both together are no better than play."""
     squares = {NOTHING: 4.0, terms("ripple"): 3.0, terms("play"): 1.0}
@@ -198,9 +193,10 @@ def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():
 
 
 def test_the_gear_is_looked_at_where_something_is_left():
-    quiet = MadeUp({NOTHING: 1.14}, default=0.5)
+    quiet = MadeUp({NOTHING: 1.149}, default=0.5)
     assert ds._with_gear(quiet, NOTHING) == NOTHING
     assert quiet.fitted == []
+    assert ds._with_gear(MadeUp({NOTHING: 1.15}, 0.5), NOTHING) != NOTHING
     play = MadeUp({NOTHING: 4.0, terms("play"): 1.0, terms("ripple", "play"): 1.0}, default=4.0)
     assert ds._with_gear(play, NOTHING) == terms("play")
     ripple = MadeUp({NOTHING: 4.0, terms("ripple"): 1.0, terms("ripple", "play"): 0.98}, 4.0)

@@ -102,7 +102,7 @@ def test_what_a_tendon_of_mujoco_cannot_hold_is_said(tmp_path):
 
 
 def test_a_condition_that_the_recordings_do_not_agree_on_is_asked_for(tmp_path):
-    groups = tsas.calibrate("datasets/paper-groups", out=tmp_path / "model")
+    groups = tsas.calibrate("datasets/paper-groups", runs=["a", "d"], out=tmp_path / "model")
     with pytest.raises(InputError, match=r"--sheath-length-mm: the model holds for .* 314.*785"):
         tsas.export(groups.out, to="mujoco", out=tmp_path / "a.xml")
     assert not (tmp_path / "a.xml").exists()

@@ -61,7 +61,7 @@ def answer(recording, one, samples=None):
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("tendon")
-    dataset = make_dataset(folder / "dataset", ids=("a",), samples=6000)
+    dataset = make_dataset(folder / "dataset", ids=("a",), samples=3000)
     out = make_diagnosis(dataset, folder / "diagnose", "named")
     for name, one in (("model-nominal.toml", NOMINAL), ("model-extended.toml", EXTENDED)):
         write_model(out / name, MODELS[one], version="0.1.0", dataset=source(dataset, out))

@@ -20,7 +20,7 @@ def rmse(row, model):
 def slow(tmp_path):
     """Settings of a loop that is quickly simulated."""
     path = tmp_path / "slow.toml"
-    path.write_text("[sensor]\nrate_Hz = 500.0\n[loop]\nnodes = 10\n")
+    path.write_text("[sensor]\nrate_Hz = 320.0\n[loop]\nnodes = 10\n")
     return path
 
 
