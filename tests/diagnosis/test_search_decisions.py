@@ -203,13 +203,16 @@ def test_a_rival_that_is_better_beside_the_others_takes_the_place_of_a_named_eff
     assert exchanged(search, names(A, C)) == names(A, C)
 
 
-def test_of_two_that_are_alike_the_simpler_one_is_named(made):
-    """As many free parameters: the one that stands first in the catalogue."""
+def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made):
+    """A size at its bound does not count, a shape does."""
     search = made({names(): 9.0, names(A): 1.0, names(B): 1.0, names(C): 1.5})
     search.add = lambda *_: [(A, CONVINCES), (B, CONVINCES), (C, CONVINCES)]
-    first, second = sorted((A, B), key=list(OF).index)
-    assert exchanged(search, names(second)) == names(first)
-    assert exchanged(search, names(first)) == names(first)
-    search.trial(names(first)).unknowns = [SimpleNamespace(name=f"{first}.size")]
-    search.trial(names(first)).solution.at_bound = [False]
-    assert exchanged(search, names(first)) == names(second)
+    assert exchanged(search, names(A)) == names(A)
+    assert exchanged(search, names(B)) == names(B)
+    for name, at_bound in ((A, [False]), (B, [True, False])):
+        fit = search.trial(names(name))
+        fit.unknowns = [SimpleNamespace(name=f"{name}.{p.name}") for p in OF[name].parameters]
+        fit.solution.at_bound = at_bound
+    assert exchanged(search, names(B)) == names(B)
+    search.trial(names(B)).solution.at_bound = [False, False]
+    assert exchanged(search, names(B)) == names(A)

@@ -6,6 +6,7 @@ from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
 from tsas_cli.diagnosis.search import Search, tried
 from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.quantities import QUANTITIES
 
 
 def find_effects(search: Search) -> Hypotheses:
@@ -21,15 +22,15 @@ def find_effects(search: Search) -> Hypotheses:
 def exchanged(search: Search, named: Names, before: frozenset[Names] = frozenset()) -> Names:
     """Return the set with effects exchanged for rivals that are better, or simpler.
 
-    Beside those that were found later, another effect may be the better one. `before` are the sets
-    on the path.
+    Beside those that were found later, another effect may be the better one; of two that do as
+    well, the one with fewer parameters is. `before` are the sets on the path.
     """
     for name in sorted(named):
         for other in rivals_of(search, named, name):
             instead = named - {name} | {other}
             better = search.gain(named, instead).beyond(LEAST_DIFFERENCE)
-            simpler = _complexity(search, instead, other) < _complexity(search, named, name)
-            if instead not in before and (better or simpler):
+            simpler = _parameters(search, instead, other) < _parameters(search, named, name)
+            if (better or simpler) and instead not in before:
                 return exchanged(search, instead, before | {named})
     return named
 
@@ -48,9 +49,12 @@ def rivals_of(search: Search, named: Names, name: str) -> tuple[str, ...]:
     return tuple(out)
 
 
-def _complexity(search: Search, names: Names, name: str) -> tuple[int, int]:
-    """Return the number of an effect's free parameters in a fit, and its place in the catalogue."""
+def _parameters(search: Search, names: Names, name: str) -> int:
+    """Return the number of an effect's parameters in a fit, without sizes that are at a bound."""
     trial = search.trial(names)
-    free = zip(trial.unknowns, trial.solution.at_bound, strict=True)
-    count = sum(u.name.split(".")[0] == name and not at_bound for u, at_bound in free)
-    return count, [effect.name for effect in search.effects].index(name)
+    own = (
+        (QUANTITIES[u.name], at_bound)
+        for u, at_bound in zip(trial.unknowns, trial.solution.at_bound, strict=True)
+        if u.name.split(".")[0] == name
+    )
+    return sum(bool(quantity.shape or not at_bound) for quantity, at_bound in own)
