@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
-from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
+from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility, amplitudes_of
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun
 from tsas_cli.stages import plan as plan_stage
 
@@ -45,6 +45,15 @@ def test_a_plan_as_json():
     assert proposal.better[0].named_from_with_it == 0.1
     assert proposal.better[-1].named_from is None
     assert found.cannot_tell == ("nobody knows.",)
+
+
+def test_a_size_that_is_found_however_small_is_any():
+    """The preload of a second tendon: it pulls when the drive goes back, however slack it was."""
+    (cause,) = (c for c in amplitudes_of(OF["antagonist"]) if c.shape["antagonist.f_in_share"])
+    record = plan_stage.record_of(ExperimentPlan((Visibility(cause, 1e-5, {}),), (), (), ()))
+    assert (record.effects[0].found_from, record.effects[0].named_from) == (0.0, 0.0)
+    (sizes,) = plan_stage._tables(record)
+    assert sizes[2][0][3:5] == ("any", "any")
 
 
 def test_shapes_are_named_within_their_effect():

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.diagnosis.amplitudes import Visibility
+from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
+from tsas_cli.diagnosis.visibility import TINY
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
@@ -110,11 +111,16 @@ def _size_of(seen: Visibility) -> EffectSize:
         parameter=seen.cause.parameter.name,
         unit=seen.cause.parameter.unit,
         shape={name.split(".")[1]: value for name, value in seen.cause.shape.items()},
-        found_from=seen.found,
-        named_from=seen.named,
+        found_from=_or_any(seen.cause, seen.found),
+        named_from=_or_any(seen.cause, seen.named),
         nearest=seen.nearest,
         hidden_in=seen.hidden_in,
     )
+
+
+def _or_any(cause: Amplitude, size: float) -> float:
+    """Return a size, 0 where any is enough: a second tendon pulls without a preload too."""
+    return 0.0 if size < 2.0 * TINY * abs(cause.start) else size
 
 
 def _proposal(proposal: FurtherRun) -> RunProposal:
@@ -127,8 +133,8 @@ def _proposal(proposal: FurtherRun) -> RunProposal:
                 effect=better.cause.effect.name,
                 parameter=better.cause.parameter.name,
                 unit=better.cause.parameter.unit,
-                named_from=better.before,
-                named_from_with_it=better.after,
+                named_from=_or_any(better.cause, better.before),
+                named_from_with_it=_or_any(better.cause, better.after),
             )
             for better in proposal.better
         ],
@@ -171,4 +177,6 @@ def _proposal_table(proposal: RunProposal) -> Table:
 
 
 def _size(value: float | None, otherwise: str) -> str:
-    return otherwise if value is None else f"{value:.2g}"
+    if value is None:
+        return otherwise
+    return f"{value:.2g}" if value > 0.0 else "any"
