@@ -324,6 +324,9 @@ def test_check_is_told_by_run(folder, tmp_path):
         (lambda folder: tsas.read(300 * "a"), "no file can have this name"),
         (lambda folder: tsas.check(folder, out="a\0b"), "no file can have this name"),
         (lambda folder: tsas.track(settings=5000 * "a/"), "no file can have this name"),
+        (lambda folder: tsas.upload(300 * "a", "s3://b/c"), "no file can have this name"),
+        (lambda folder: tsas.upload("a\0b", "s3://b/c"), "no file can have this name"),
+        (lambda folder: tsas.calibrate(folder, dynamics=np.zeros(2)), "expected slip or lugre"),
     ],
 )
 def test_a_wrong_call_is_an_input_error(folder, wrong, says):

@@ -48,9 +48,12 @@ def places_of(given: Named | Iterable[Named]) -> list[Location]:
     InputError
         One is of another kind, or there is none.
     """
-    return [
-        _nameable(location_of(of_kind((str, Path, Address), each))) for each in several_of(given)
-    ]
+    return [place_of(each) for each in several_of(given)]
+
+
+def place_of(given: Named | Address) -> Location:
+    """Return a local path or an address; InputError where it is of another kind, or no name."""
+    return _nameable(location_of(of_kind((str, Path, Address), given)))
 
 
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -78,7 +81,7 @@ def one_of(words: Sequence[Word], given: str, name: str) -> Word:
         It is not.
     """
     for word in words:
-        if word == given:
+        if isinstance(given, str) and word == given:  # an array is equal one by one
             return word
     raise InputError(
         f"{name} is {given!r}", expected=" or ".join(words), remedy=nearest(given, words)

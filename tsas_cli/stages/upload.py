@@ -6,9 +6,9 @@ from pathlib import Path
 from tsas_cli.recordings.checked import changed, local_file
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Run
-from tsas_cli.recordings.storage import Address, location_of
+from tsas_cli.recordings.storage import Address
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.given import Named
+from tsas_cli.stages.given import Named, place_of
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
@@ -57,7 +57,7 @@ def upload(
         The dataset is wrong, one is there and `force` is not set, a recording would replace an
         object of no dataset, or the storage refuses.
     """
-    source, target = location_of(folder), location_of(address)
+    source, target = place_of(folder), place_of(address)
     if not isinstance(source, Path):
         raise InputError("is no local folder", where=source, expected="a dataset's folder")
     if not isinstance(target, Address):
