@@ -65,10 +65,10 @@ def test_a_fault_of_one_run_is_said_with_its_size(fault, values, code, column, w
     assert "leave its run out" in result.next_experiment
 
 
-def test_the_sign_of_a_gain():
-    """A positive one is found above."""
-    found = record_of([Candidate("run-gain", 1, ("f_in_N",), -0.03, 9.0)], ["a", "b"])
-    assert found.sentence == "run b: f_in_N reads 3 % less than in the other runs"
+def test_the_sign_of_a_gain(tmp_path):
+    dataset = made(tmp_path, "recording", of_a_run("gain_of_a_run", channel="f_in_N", gain=0.97))
+    (found,) = diagnose(dataset).record.faults
+    assert " % less than in the other runs" in found.sentence
 
 
 @pytest.mark.parametrize("effect", ["direction_dependent_friction", None])

@@ -78,8 +78,11 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
         failing = [cause for cause in proven.causes if cause.failed]
         if not failing:
             if proven.after.complete:
-                kept = (c for c in stand_ins if c.convincing)
-                kept = (c for c in kept if not may_be_zero(c.effect, c.parameters))
+                kept = [
+                    cause
+                    for cause in stand_ins
+                    if cause.convincing and not may_be_zero(cause.effect, cause.parameters)
+                ]
                 proven = replace(proven, stand_ins=tuple(kept))
             return replace(proven, with_stand_ins=first)
         weakest = min(failing, key=lambda cause: cause.gain_percent)

@@ -80,12 +80,15 @@ def _clock(c: Candidate) -> str:
 
 
 def _friction(c: Candidate) -> str:
-    alone = (
-        "; no other run has its bend: friction that does not grow with it, as of pulleys, fits too"
-    )
-    return (
+    said = (
         f"its friction is {math.exp(c.amount):.3g} times that of the other runs, as if its "
-        f"total_bend_rad were that many times what the manifest says{alone * c.alone}"
+        "total_bend_rad were that many times what the manifest says"
+    )
+    if not c.alone:
+        return said
+    return (
+        f"{said}; no other run has its bend: friction that does not grow with it, as of pulleys, "
+        "fits too"
     )
 
 
