@@ -63,7 +63,7 @@ def worst_split(
     each residual, shape (n,) each; `tolerated` is what one standard deviation of each tolerance
     changes there, shape (n, m).
     """
-    trial, columns = _with_tolerances(trial, effect, folds, tolerated)
+    trial, columns = _with_frictions(beside_tolerances(trial, tolerated), effect, folds)
     if not columns:
         return None
     stretches = in_stretches(folds)
@@ -86,14 +86,14 @@ def absorbed_by(
     effect: str,
     folds: Folds,
     signals: dict[str, Floats],
-    tolerated: Floats,
 ) -> str | None:
     """Return the signal over which another law of an effect does what one more effect does.
 
-    `whole` is the fit with one effect more than `fewer`: what it gains has to be a gain too where
-    the `effect` of both has values of its own for the parts of a signal. None where it is.
+    `whole` is the fit with one effect more than `fewer`, both `beside_tolerances`: what it gains
+    has to be a gain too where the `effect` of both has values of its own for the parts of a
+    signal. None where it is.
     """
-    trials = [_with_tolerances(trial, effect, folds, tolerated) for trial in (fewer, whole)]
+    trials = [_with_frictions(trial, effect, folds) for trial in (fewer, whole)]
     if not all(columns for _, columns in trials):
         return None
     for by, (labels, part) in _parts(signals, folds.run, ()).items():
@@ -103,18 +103,22 @@ def absorbed_by(
     return None
 
 
-def _with_tolerances(
-    trial: HypothesisFit, effect: str, folds: Folds, tolerated: Floats
+def beside_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
+    """Return a fit with the residual that plausible tolerances do not explain."""
+    residual = without_tolerances(trial, tolerated)
+    return replace(trial, solution=replace(trial.solution, residual=residual))
+
+
+def _with_frictions(
+    trial: HypothesisFit, effect: str, folds: Folds
 ) -> tuple[HypothesisFit, list[int]]:
-    """Return a fit with tolerances, and the columns of an effect that are to be split."""
+    """Return a fit with the friction of each run, and the columns of an effect that are split."""
+    J = trial.solution.jacobian
     columns = [
         j
         for j, u in enumerate(trial.unknowns)
         if u.name.split(".")[0] == effect and not trial.solution.at_bound[j]
     ]
-    J = trial.solution.jacobian
-    residual = without_tolerances(trial, tolerated)
-    trial = replace(trial, solution=replace(trial.solution, residual=residual))
     within_runs = [j for j in columns if not is_scatter(trial, J[:, j], folds.run)]
     if within_runs:  # what differs from run to run alone is the friction of each
         return with_friction_of_runs(trial, folds.run), within_runs

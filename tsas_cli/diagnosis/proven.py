@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
-from tsas_cli.diagnosis.constancy import absorbed_by, worst_split
+from tsas_cli.diagnosis.constancy import absorbed_by, beside_tolerances, worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
@@ -167,10 +167,16 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
 
 def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:
     """Yield the other effects of the set whose law may do, over some signal, what this one does."""
-    judged, mesh = last.judged, last.judged.bench.on_mesh(last.judged.named)
-    fewer, whole = (judged.trial(n, on_mesh=mesh) for n in (judged.named - {name}, judged.named))
-    for other in sorted(judged.named - {name}):
-        by = absorbed_by(fewer, whole, other, judged.folds, last.signals, last.tolerated)
+    judged, others = last.judged, last.judged.named - {name}
+    if not others:
+        return
+    mesh = judged.bench.on_mesh(judged.named)
+    fewer, whole = (
+        beside_tolerances(judged.trial(names, on_mesh=mesh), last.tolerated)
+        for names in (others, judged.named)
+    )
+    for other in sorted(others):
+        by = absorbed_by(fewer, whole, other, judged.folds, last.signals)
         if by is not None:
             title = BY_NAME[other].title.lower()
             yield f"gains too little where {title} may differ over {signal_in_words(by)}"
