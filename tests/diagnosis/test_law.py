@@ -8,6 +8,13 @@ import pytest
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
 from tsas_cli.diagnosis.law import describe
 from tsas_cli.diagnosis.law_words import records_of
+from tsas_cli.diagnosis.remainder import LATE, remainder
+from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.tolerances import (
+    rigs_with_tolerances,
+    tolerances,
+    without_tolerances,
+)
 from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model_file import stated_model
@@ -23,8 +30,8 @@ PLAY_MM, NOISE_MM = 0.15, 0.01
 RIG = Rig(cells=60)
 
 
-def described(folder, sensors):
-    """Return the law that describes three runs of other amplitudes."""
+def bench_for(folder, sensors):
+    """Return the bench of three runs of other amplitudes."""
     runs = [
         Run(
             name,
@@ -35,8 +42,14 @@ def described(folder, sensors):
     ]
     data = read_dataset(write_dataset(folder, runs))
     prepared = [prepare(recording) for recording in data]
-    base = solve_fit(nominal_fit(data.manifest, stated_model(data.manifest, None), prepared))
-    bench = bench_of(base)
+    return bench_of(
+        solve_fit(nominal_fit(data.manifest, stated_model(data.manifest, None), prepared))
+    )
+
+
+def described(folder, sensors):
+    """Return the law that describes the runs."""
+    bench = bench_for(folder, sensors)
     return describe(bench, bench.fit(), bench_folds(bench))
 
 
@@ -61,3 +74,23 @@ def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
 
 def test_a_sound_rig_has_no_law(tmp_path):
     assert described(tmp_path / "dataset", Sensors(rate_Hz=50.0)) is None
+
+
+def mean_delay(bench, rigs):
+    delays = [run.delays(rig)["f_out_N"] for run, rig in zip(bench.meshed, rigs, strict=True)]
+    return float(np.concatenate(delays).mean())
+
+
+def test_a_load_cell_that_feels_the_other_a_little_explains_what_lags_at_reversals(tmp_path):
+    """Where strokes turn, residuals have no weight: the tolerances are known from the others."""
+    bench = bench_for(tmp_path / "dataset", Sensors(rate_Hz=50.0, f_out_of_f_in=0.003))
+    trial, folds = bench.fit(), bench_folds(bench)
+    tolerated = tolerances(bench, trial)
+    fitted = [bench.rig(trial, k) for k in range(3)]
+    rigs = rigs_with_tolerances(bench, trial, tolerated, folds.run)
+    residual = [run.residuals(rig) for run, rig in zip(bench.meshed, rigs, strict=True)]
+    linear = without_tolerances(trial, tolerated, folds.run)
+    assert np.mean(np.concatenate(residual) ** 2) == pytest.approx(np.mean(linear**2), rel=0.02)
+    assert mean_delay(bench, fitted) < -LATE
+    assert abs(mean_delay(bench, rigs)) < 0.1 * LATE
+    assert remainder(bench, trial, folds, signals_at_residuals(bench, trial), tolerated).late == ()

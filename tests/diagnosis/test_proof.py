@@ -110,6 +110,14 @@ def test_an_offset_that_is_the_same_for_both_sensors_may_be_friction(f_out, refu
     assert of(f_in) == ()
 
 
+@pytest.mark.parametrize(("effect", "refused"), [("tilt", True), ("curvature", False)])
+def test_a_tilt_that_is_the_same_for_both_sensors_may_be_a_force_along_the_way(effect, refused):
+    unit = {"tilt": "mm", "curvature": "N"}[effect]
+    name = f"force_sensor_{effect}"
+    both = [estimate(f"{name}.{f}_per_{unit}", 0.01, 0.009, 0.011) for f in ("f_in", "f_out")]
+    assert bool(failures(name, both, CLEAR, SAME, SAME, NOISE)) == refused
+
+
 @pytest.mark.parametrize("effect", ["drive_ripple", "load_ripple", "position_sensor_ripple"])
 def test_a_wave_whose_period_is_longer_than_the_strokes_is_refused(effect):
     sine = estimate(f"{effect}.sine_mm", 0.1, 0.09, 0.11, unit="mm")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.remainder import _is_brief, remainder
+from tsas_cli.diagnosis.remainder import Remainder, _is_brief, _is_late, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
 SIZE = 800
@@ -19,26 +19,26 @@ REVERSALS = np.array([0, *range(100, SIZE, 100), SIZE - 1])
 class Run:
     """A run whose errors are given; a residual is the error of one sample."""
 
-    def __init__(self, errors, f_in, delays):
+    def __init__(self, errors, f_in):
         conditioned = SimpleNamespace(values=X, reversals=REVERSALS)
         self.run = SimpleNamespace(
             time_s=TIME_S, drive_column="x_in_mm", conditioned={"x_in_mm": conditioned}
         )
         self.samples = {name: np.arange(SIZE) for name in errors}
-        self._errors, self._f_in, self._delays = errors, f_in, delays
+        self._errors, self._f_in = errors, f_in
 
     def errors(self, rig):
         return self._errors
 
     def delays(self, rig):
-        return dict.fromkeys(self._errors, self._delays)
+        return dict.fromkeys(self._errors, np.array([0.1, -0.2, 0.1, 0.0]))
 
     def predict(self, rig):
         return {"f_in_N": self._f_in}
 
 
-def left_of(*errors, delays=(0.1, -0.2, 0.1, 0.0)):
-    runs = [Run(e, np.zeros(SIZE), np.array(delays)) for e in errors]
+def left_of(*errors):
+    runs = [Run(e, np.zeros(SIZE)) for e in errors]
     bench = SimpleNamespace(
         rigs=[None] * len(runs),
         rig=lambda trial, k: None,
@@ -121,10 +121,9 @@ def test_an_error_far_above_the_noise_is_no_slow_noise():
         ((1.0, 1.1, 0.9, 1.0), False),
     ],
 )
-def test_strokes_that_all_lag_are_not_complete(delays, late):
-    found = left_of(*({"f_in_N": noise(k)} for k in range(3)), delays=delays)
-    assert (found.late == ("f_in_N",)) == late
-    assert found.complete != late
+def test_strokes_that_all_lag_are_late(delays, late):
+    assert _is_late(np.array(delays)) == late
+    assert not Remainder(1.0, {}, (), late=("f_in_N",)).complete
 
 
 def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():

@@ -25,10 +25,14 @@ ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves a
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 MOST_PARTS = 4  # of a split that a sentence lists
-ALIKE = 0.1  # relative difference of two offsets within which they are alike
+ALIKE = 0.1  # relative difference of two sensors' errors within which they are alike
 
-# A law of friction μ(T + c) is the capstan's with c added to both forces.
-OFFSET, OFFSETS = "force_sensor_offset", ("f_in_offset_N", "f_out_offset_N")
+# What adds to both forces alike is something else: a law of friction μ(T + c) is the capstan's with
+# c added to both, and a force along the way that the tendon passes on is a tilt of both.
+BOTH_SENSORS = {
+    "force_sensor_offset": "friction that does not vanish with the tension",
+    "force_sensor_tilt": "a force along the way of the tendon",
+}
 
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
@@ -92,11 +96,12 @@ def failures(
         for name, e in own.items()
         if parameters[name].period and e.value > stroke_mm
     ]
-    offsets = [own[name].value for name in OFFSETS if effect == OFFSET and name in own]
-    if len(offsets) == len(OFFSETS) and abs(np.ptp(offsets)) < ALIKE * abs(np.mean(offsets)):
+    sensors = [e for name, e in sizes.items() if effect in BOTH_SENSORS and not e.at_bound]
+    alike = [e.value for e in sensors]
+    if len(alike) == 2 and abs(np.ptp(alike)) < ALIKE * abs(np.mean(alike)):
         out.append(
-            f"is the same for both sensors ({offsets[0]:.3g} and {offsets[1]:.3g} N), "
-            "which friction that does not vanish with the tension does too"
+            f"is the same for both sensors ({alike[0]:.3g} and {alike[1]:.3g} "
+            f"{sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
         )
     changes = {
         name: (after**2 - without[name] ** 2) / noise[name] ** 2 for name, after in with_it.items()

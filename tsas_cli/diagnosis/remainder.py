@@ -7,6 +7,7 @@ with no signal: slow noise.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,8 +16,10 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
-from tsas_cli.diagnosis.tolerances import without_tolerances
+from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, without_tolerances
 from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
 HATS = 10  # hat functions of each signal and direction
@@ -133,7 +136,9 @@ def remainder(
     oscillates = _oscillation(bench, trial)
     depends_on = (*([oscillates] if oscillates else []), *found[:3])
     mean_square = sum(squares.values()) / count
-    late = tuple(name for name in bench.channels if _is_late(bench, trial, name))
+    late = _late(bench, bench.errors_for(trial), [bench.rig(trial, k) for k in range(len(runs))])
+    if late:  # what tolerances do at reversals has no weight in the fit
+        late = _late(bench, bench.meshed, rigs_with_tolerances(bench, trial, tolerated, folds.run))
     brief = tuple(name for name in bench.channels if any(map(_is_brief, errors[name])))
     return Remainder(
         mean_square=mean_square,
@@ -161,15 +166,18 @@ def _is_brief(errors: Floats) -> bool:
     return bool(brief) and float(np.mean(errors**2)) > 1.0 + LEAST_SLOW
 
 
-def _is_late(bench: Bench, trial: HypothesisFit, name: str) -> bool:
-    """Return whether the strokes of a channel lag behind the model, or lead it, on average."""
-    delays = np.concatenate(
-        [
-            run.delays(bench.rig(trial, k))[name]
-            for k, run in enumerate(bench.errors_for(trial))
-            if name in run.samples
-        ]
+def _late(bench: Bench, errors: Sequence[RunErrors], rigs: Sequence[Rig]) -> tuple[str, ...]:
+    """Return the channels whose strokes lag behind the model, or lead it, on average."""
+    delays = [run.delays(rig) for run, rig in zip(errors, rigs, strict=True)]
+    by_channel = (
+        (name, np.concatenate([run[name] for run in delays if name in run]))
+        for name in bench.channels
     )
+    return tuple(name for name, strokes in by_channel if _is_late(strokes))
+
+
+def _is_late(delays: Floats) -> bool:
+    """Return whether strokes with these delays lag behind the model, or lead it, on average."""
     if delays.size < FEWEST_STROKES:
         return False
     scatter = float(delays.std(ddof=1)) / math.sqrt(delays.size)

@@ -9,16 +9,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsas_cli.identification.extension import FAR, Bench, HypothesisFit
+from tsas_cli.identification.extension import FAR, UNEVEN, Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
+from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import projector
+from tsas_cli.identification.unknowns import unknown_of
+from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats, Indices
 
 FRICTION = "friction_coefficient"
 PLAUSIBLE = 2.0  # standard deviations of it
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
 COINCIDENCE = 1e-3  # probability below which frictions in line are no coincidence
+BEND = "bend_slope", "bend_bow"  # the modes of an uneven bend
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.
@@ -43,14 +47,21 @@ def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
 
 def tolerances(bench: Bench, trial: HypothesisFit) -> Floats:
     """Return the residuals' change by one standard deviation of load cells and bend, (n, m)."""
-    largest = largest_forces(bench)
     fitted, without = trial.values(), bench.errors_at(trial, {})
-    changes = []
-    for name, channel in LOAD_CELLS.items():
-        size = LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
-        value = fitted.get(name, QUANTITIES[name].default)
-        changes.append(bench.errors_at(trial, {name: value + size}) - without)
+    changes = [
+        bench.errors_at(trial, {name: fitted.get(name, QUANTITIES[name].default) + size}) - without
+        for name, size in _sizes(bench).items()
+    ]
     return np.column_stack([*changes, bench.unevenness(trial)])
+
+
+def _sizes(bench: Bench) -> dict[str, float]:
+    """Return one standard deviation of each error of a load cell."""
+    largest = largest_forces(bench)
+    return {
+        name: LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
+        for name, channel in LOAD_CELLS.items()
+    }
 
 
 def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
@@ -82,17 +93,57 @@ def without_tolerances(
     `tolerated` are the residuals' changes by one standard deviation of each, shape (n, m). With
     `run`, the run of each residual, each run has a friction of its own beside them.
     """
+    columns, amounts = _explained_by(trial, tolerated, run)
+    if not amounts.size:
+        return trial.solution.residual
+    return np.asarray(trial.solution.residual - _beside(projector(trial), columns) @ amounts)
+
+
+def rigs_with_tolerances(
+    bench: Bench, trial: HypothesisFit, tolerated: Floats, run: Indices
+) -> list[Rig]:
+    """Return the rig of each run with the plausible tolerances that its residuals show.
+
+    Linear: by the columns of `without_tolerances`, the other parameters moved by them.
+    """
+    columns, amounts = _explained_by(trial, tolerated, run)
+    values = trial.solution.values - trial.moved_by(columns) @ amounts
+    frictions, cells, bends = np.split(
+        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(LOAD_CELLS)))
+    )
+    fitted = trial.values()
+    set_to = {
+        name: QUANTITIES[name].scaled(QUANTITIES[name].default + size * float(part))
+        for (name, size), part in zip(_sizes(bench).items(), cells, strict=True)
+        if name not in fitted
+    }
+    unknowns = [*trial.unknowns, *map(unknown_of, set_to)]
+    uneven = dict(zip(BEND, UNEVEN * bends, strict=True))
+    friction = np.array([u.name == FRICTION for u in trial.unknowns])
+    rigs = []
+    for k, rig in enumerate(bench.rigs):
+        moved = values + friction * (SCATTER * frictions[k] if frictions.size else 0.0)
+        at = rig_at(rig, k, unknowns, np.append(moved, list(set_to.values())))
+        rigs.append(with_values(at, uneven))
+    return rigs
+
+
+def _explained_by(
+    trial: HypothesisFit, tolerated: Floats, run: Indices | None
+) -> tuple[Floats, Floats]:
+    """Return the columns of all tolerances, and how much of each explains the residual, bounded."""
     from scipy.optimize import lsq_linear
 
     residual = trial.solution.residual
     own = np.zeros((residual.size, 0)) if run is None else friction_of_runs(trial, run)
+    columns = np.column_stack((own, tolerated))
     most = np.repeat((np.inf, PLAUSIBLE), (own.shape[1], tolerated.shape[1]))
     if not most.size:
-        return residual
-    own = _beside(projector(trial), np.column_stack((own, tolerated)))
-    root = np.linalg.cholesky(own.T @ own + np.eye(most.size))
-    amounts = lsq_linear(root.T, np.linalg.solve(root, own.T @ residual), (-most, most)).x
-    return np.asarray(residual - own @ amounts)
+        return columns, most
+    beside = _beside(projector(trial), columns)
+    root = np.linalg.cholesky(beside.T @ beside + np.eye(most.size))
+    amounts = lsq_linear(root.T, np.linalg.solve(root, beside.T @ residual), (-most, most)).x
+    return columns, np.asarray(amounts)
 
 
 def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduction: float) -> bool:
