@@ -95,7 +95,8 @@ def remainder(
     What is plausible on every rig is left out: friction of each run's own, and `tolerated`, changes
     of the residuals by one standard deviation of tolerances, shape (n, m).
     """
-    runs = [e.errors(bench.rig(trial, k)) for k, e in enumerate(bench.errors_for(trial))]
+    fitted = [bench.rig(trial, k) for k in range(len(bench.rigs))]
+    runs = [e.errors(rig) for e, rig in zip(bench.errors_for(trial), fitted, strict=True)]
     errors = {n: [run[n] for run in runs if n in run] for n in bench.channels}
     count = sum(part.size for parts in errors.values() for part in parts)
     squares = {n: sum(float(part @ part) for part in parts) for n, parts in errors.items()}
@@ -136,10 +137,10 @@ def remainder(
     oscillates = _oscillation(bench, trial)
     depends_on = (*([oscillates] if oscillates else []), *found[:3])
     mean_square = sum(squares.values()) / count
-    late = _late(bench, bench.errors_for(trial), [bench.rig(trial, k) for k in range(len(runs))])
-    if late:  # what tolerances do at reversals has no weight in the fit
-        late = _late(bench, bench.meshed, rigs_with_tolerances(bench, trial, tolerated, folds.run))
-    brief = tuple(name for name in bench.channels if any(map(_is_brief, errors[name])))
+    late, brief = _at_moments(bench, bench.errors_for(trial), fitted)
+    if late or brief:  # what tolerances do at reversals has no weight in the fit
+        rigs = rigs_with_tolerances(bench, trial, tolerated, folds.run)
+        late, brief = _at_moments(bench, bench.meshed, rigs)
     return Remainder(
         mean_square=mean_square,
         explained=explained,
@@ -166,14 +167,19 @@ def _is_brief(errors: Floats) -> bool:
     return bool(brief) and float(np.mean(errors**2)) > 1.0 + LEAST_SLOW
 
 
-def _late(bench: Bench, errors: Sequence[RunErrors], rigs: Sequence[Rig]) -> tuple[str, ...]:
-    """Return the channels whose strokes lag behind the model, or lead it, on average."""
-    delays = [run.delays(rig) for run, rig in zip(errors, rigs, strict=True)]
-    by_channel = (
-        (name, np.concatenate([run[name] for run in delays if name in run]))
-        for name in bench.channels
-    )
-    return tuple(name for name, strokes in by_channel if _is_late(strokes))
+def _at_moments(
+    bench: Bench, errors: Sequence[RunErrors], rigs: Sequence[Rig]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the channels whose strokes lag or lead, and those with errors at a few moments."""
+    pairs = list(zip(errors, rigs, strict=True))
+    delays, parts = [run.delays(rig) for run, rig in pairs], [run.errors(rig) for run, rig in pairs]
+    late, brief = [], []
+    for name in bench.channels:
+        if _is_late(np.concatenate([run[name] for run in delays if name in run])):
+            late.append(name)
+        if any(_is_brief(run[name]) for run in parts if name in run):
+            brief.append(name)
+    return tuple(late), tuple(brief)
 
 
 def _is_late(delays: Floats) -> bool:
