@@ -71,6 +71,14 @@ def test_the_sign_of_a_gain(tmp_path):
     assert " % less than in the other runs" in found.sentence
 
 
+def test_hum_is_said_with_its_frequency(tmp_path):
+    values = {"channels": ("f_out_N",), "amplitude": 0.7, "frequency_Hz": 1.4}
+    result = diagnose(made(tmp_path, "recording", Hidden("hum_in_the_band", values)))
+    (found,) = result.record.faults
+    assert (found.code, found.run, found.column) == ("hum", None, "f_out_N")
+    assert found.sentence == "f_out_N swings at 1.4 Hz in all runs, whatever the motion"
+
+
 @pytest.mark.parametrize("effect", ["direction_dependent_friction", None])
 def test_a_mechanism_and_a_sound_rig_are_not_accused(effect, tmp_path):
     hidden = (Hidden(effect, {"asymmetry": 0.08}),) if effect else ()

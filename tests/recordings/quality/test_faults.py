@@ -62,6 +62,13 @@ def test_jitter_tells_its_size():
     assert 13.0 < float(remark.sentence.split("by ")[1].split(" %")[0]) < 15.5  # 10 % · √2
 
 
+def test_late_stamps_that_a_logger_makes_increase_scatter():
+    """Half the stamps then follow the one before at once: the median interval says nothing."""
+    late = TIME + 0.03 * np.random.default_rng(1).standard_normal(N)
+    stamps = np.maximum.accumulate(late) + 1e-6 * np.arange(N)
+    found(changed(time_s=stamps), "time-jitter")
+
+
 def arrived(sizes, within_s, late_s=0.0, seed=0):
     """Return the times at which batches of rows arrive, their rows `within_s` apart."""
     rng = np.random.default_rng(seed)

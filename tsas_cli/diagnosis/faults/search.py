@@ -2,7 +2,7 @@
 
 Every fault is one linear unknown beside the nominal parameters and the tolerances of a rig: the
 zero or the gain of a channel over a part of a run, its delay, the pace of its clock, and the
-friction or the stiffness of one run.
+friction or the stiffness of one run; or a swing of a channel, by the phase in each run.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -11,8 +11,10 @@ from itertools import combinations
 
 import numpy as np
 
+from tsas_cli.diagnosis.faults.hum import swings
 from tsas_cli.diagnosis.faults.shapes import CONSTANTS_S, RATES, WINDOWS, RunShapes, shapes_of
 from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import SCATTER, friction_of_runs, tolerances
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -89,6 +91,7 @@ def candidates(bench: Bench, trial: HypothesisFit, left: Beside, run: Indices) -
         *_of_clocks(shapes, left),
         *_of_amplifiers(shapes, left),
         *_of_manifest(trial, left, run),
+        *_of_hum(bench, trial, left, run),
     ]
     return sorted(found, key=lambda c: -c.reduction)
 
@@ -244,6 +247,15 @@ def _of_manifest(trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[C
             for k in range(int(run.max()) + 1):
                 column = -trial.solution.jacobian[:, j] * (run == k)
                 yield from _one("run-length", k, (), left.project(column[:, None])[:, 0], left)
+
+
+def _of_hum(bench: Bench, trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[Candidate]:
+    """Yield a swing of a channel at one frequency in all runs."""
+    at = signals_at_residuals(bench, trial)
+    for name, frequency, columns in swings(bench, trial, at, left.residual[: run.size], run):
+        basis = np.linalg.qr(left.project(columns))[0]
+        along = basis.T @ left.residual
+        yield Candidate("hum", None, (name,), frequency, float(along @ along))
 
 
 def _one(

@@ -8,7 +8,8 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.diagnosis import RecordingFault
 from tsas_cli.support.wording import listed
 
-REMEDY = "Correct it, or leave the run out with --runs, and diagnose again"
+REMEDY = "Correct it{} and diagnose again"
+LEFT_OUT = ", or leave the run out with --runs,"
 
 
 def record_of(found: Sequence[Candidate], runs: Sequence[str]) -> RecordingFault:
@@ -28,9 +29,10 @@ def record_of(found: Sequence[Candidate], runs: Sequence[str]) -> RecordingFault
 
 def reason_of_fault(fault: RecordingFault, share: float) -> str:
     """Return the verdict where a fault explains a share of what the nominal model leaves."""
+    remedy = REMEDY.format("" if fault.run is None else LEFT_OUT)
     return (
         f"A fault of the recordings explains {100.0 * min(share, 1.0):.0f} % of what the nominal "
-        f"model leaves beyond the noise: {fault.sentence}. {REMEDY}, or accept it with --despite "
+        f"model leaves beyond the noise: {fault.sentence}. {remedy}, or accept it with --despite "
         f"{fault.code}; no mechanism is sought before."
     )
 
@@ -107,6 +109,11 @@ def _coupled(c: Candidate) -> str:
     )
 
 
+def _hum(c: Candidate) -> str:
+    (name,) = c.channels
+    return f"{name} swings at {c.amount:.3g} Hz in all runs, whatever the motion"
+
+
 _SAID: Mapping[str, Callable[[Candidate], str]] = {
     "run-offset": _offset,
     "run-gain": _gain,
@@ -115,5 +122,6 @@ _SAID: Mapping[str, Callable[[Candidate], str]] = {
     "ac-coupled": _coupled,
     "run-friction": _friction,
     "run-length": _length,
+    "hum": _hum,
 }
 CODES = tuple(_SAID)
