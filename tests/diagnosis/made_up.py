@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from tsas_cli.diagnosis import search
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
@@ -53,9 +54,16 @@ def evenly(trial, folds):
     return np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
 
 
+def without_tolerances(monkeypatch):
+    """Let rigs be without tolerances."""
+    monkeypatch.setattr(search, "tolerances", lambda bench, trial: None)
+    monkeypatch.setattr(search, "with_tolerances", lambda trial, tolerated: trial)
+
+
 def search_over(bench, known, *step):
     folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS)
-    return Search(bench, folds, *step, effects=tuple(OF[name] for name in sorted(known)))
+    effects = tuple(OF[name] for name in sorted(known))
+    return Search(bench, folds, *step, effects=effects, tolerated={False: None, True: None})
 
 
 def screened(name, part=0.5, signatures=None):

@@ -5,7 +5,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.diagnosis.made_up import BLOCKS, OF, SIZE, Bench, evenly, names, screened, search_over
+from tests.diagnosis.made_up import (
+    BLOCKS,
+    OF,
+    SIZE,
+    Bench,
+    evenly,
+    names,
+    screened,
+    search_over,
+    without_tolerances,
+)
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.rivals import exchanged, rivals_of
@@ -18,6 +28,7 @@ CONVINCES, DOES_NOT = Reduction(0.5, 4.0), Reduction(0.5, 1.0)
 def made(monkeypatch):
     """A search over given mean squares; a trial's held-out squares are spread evenly."""
     monkeypatch.setattr(s, "held_out_squares", evenly)
+    without_tolerances(monkeypatch)
     return lambda mean_squares: search_over(Bench(mean_squares), (A, B, C))
 
 

@@ -5,10 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis.held_out import folds_of, held_out_squares
 from tsas_cli.diagnosis.tolerances import (
     is_scatter,
     of_others,
     tolerances,
+    with_tolerances,
     within_scatter,
     within_tolerances,
     without_tolerances,
@@ -45,6 +47,17 @@ def test_a_plausible_scatter_is_left_out_of_the_residual_and_a_large_one_less(sc
     after = float(np.mean(without_tolerances(trial, NONE, RUN) ** 2)) - 1.0
     assert before == pytest.approx((50.0 * scatter) ** 2, rel=0.2)
     assert abs(after) < left * max(before, 1.0)
+
+
+@pytest.mark.parametrize(("size", "left"), [(1.5, 0.02), (6.0, 16.0)])
+def test_a_hypothesis_predicts_with_tolerances_beside_it_up_to_two_deviations(size, left):
+    """One deviation of the tolerance is one of the noise: (6 − 2)² stay of six deviations."""
+    folds = folds_of([np.arange(ROWS) // 25] * RUNS)
+    trial = fit(size * OTHER)
+    squares = held_out_squares(with_tolerances(trial, -OTHER[:, None]), folds).sum() / RUN.size
+    alone = held_out_squares(trial, folds).sum() / RUN.size
+    assert alone == pytest.approx(1.0 + size**2, rel=0.05)
+    assert squares == pytest.approx(1.0 + left, rel=0.05)
 
 
 def test_what_no_friction_explains_stays():

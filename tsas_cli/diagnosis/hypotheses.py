@@ -7,7 +7,7 @@ from tsas_cli.diagnosis.evidence import (
     Reduction,
     gain,
 )
-from tsas_cli.diagnosis.held_out import Folds, held_out_squares
+from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.identification.extension import Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.screening import Screened
 from tsas_cli.support.arrays import Floats
@@ -50,7 +50,8 @@ class Hypotheses:
 def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypotheses:
     """Return the fits of the named effects, of none, and of all but one, with new weights.
 
-    The weights are those at the named effects' fit. Rivals and signatures are unchanged.
+    The weights are those at the named effects' fit. Rivals and signatures are unchanged; there are
+    no squares.
     """
     named, bench = found.named, found.bench
     mesh = bench.on_mesh(named)
@@ -68,8 +69,7 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
         near = known.get((names, mesh), trial)
         trials[names, mesh] = bench.fit(sorted(names), near=near, on_mesh=mesh)
         step()
-    squares = {key: held_out_squares(trial, found.folds) for key, trial in trials.items()}
-    return replace(found, bench=bench, trials=trials, squares=squares)
+    return replace(found, bench=bench, trials=trials, squares={})
 
 
 def judged_sets(named: Names) -> set[Names]:

@@ -4,6 +4,9 @@ Stepwise selection: one effect after the other is added while the best one is si
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other.
 
+What tolerances do is free beside every hypothesis, by its prior: of two effects the one is better
+that leaves what every rig has.
+
 A running search caches its fits: a set of effects is fitted once, from the initial values of the
 path that reaches it first. `tried` returns what it has fitted so far.
 """
@@ -25,7 +28,7 @@ from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
 from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerances import tolerances
+from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
@@ -62,6 +65,7 @@ class Search:
     trials: dict[tuple[Names, bool], HypothesisFit] = field(default_factory=dict)
     squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
+    tolerated: dict[bool, Floats] = field(default_factory=dict)  # at the nominal model, by mesh
     leads: Names = frozenset()
     least: float = math.inf  # held-out squares of what leads
 
@@ -265,5 +269,11 @@ class Search:
             self.step.say(f"{effects} leads so far: reduction about {reduction:.0f} %")
 
     def _store(self, names: Names, trial: HypothesisFit) -> None:
-        self.trials[names, trial.on_mesh] = trial
-        self.squares[names, trial.on_mesh] = held_out_squares(trial, self.folds)
+        mesh = trial.on_mesh
+        self.trials[names, mesh] = trial
+        if not names:
+            self.tolerated[mesh] = tolerances(self.bench, trial)
+        elif mesh not in self.tolerated:
+            self.trial(frozenset(), on_mesh=mesh)
+        beside = with_tolerances(trial, self.tolerated[mesh])
+        self.squares[names, mesh] = held_out_squares(beside, self.folds)

@@ -175,6 +175,15 @@ def _beside(basis: Floats, columns: Floats) -> Floats:
     return np.asarray(columns - basis @ (basis.T @ columns))
 
 
+def with_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
+    """Return a fit with plausible tolerances free beside its unknowns.
+
+    `tolerated` are the residuals' changes by one standard deviation of each, shape (n, m).
+    """
+    names = [(f"tolerance {k}", None, 1.0) for k in range(tolerated.shape[1])]
+    return trial.with_columns(names, tolerated, PLAUSIBLE)
+
+
 def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
     """Return a fit with a friction of its own for each run."""
     columns = friction_of_runs(trial, run)

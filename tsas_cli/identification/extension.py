@@ -63,13 +63,18 @@ class HypothesisFit:
         covariance[np.ix_(free, free)] = inverse
         return correlation_of(covariance)
 
-    def with_columns(self, names: Sequence[tuple[str, int | None, float]], columns: Floats) -> Self:
+    def with_columns(
+        self,
+        names: Sequence[tuple[str, int | None, float]],
+        columns: Floats,
+        most: float = FAR,
+    ) -> Self:
         """Return the fit with further free unknowns at zero, by their columns, shape (n, m).
 
-        `names` has the name, the run and the plausible size of each.
+        `names` has the name, the run and the plausible size of each, which is at most `most`.
         """
         solution = self.solution
-        further = (Unknown(name, run, 0.0, -FAR, FAR, size) for name, run, size in names)
+        further = (Unknown(name, run, 0.0, -most, most, size) for name, run, size in names)
         extended = replace(
             solution,
             values=np.append(solution.values, np.zeros(len(names))),
