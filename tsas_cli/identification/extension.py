@@ -56,12 +56,9 @@ class HypothesisFit:
         return moves
 
     def correlation(self) -> Floats:
-        """Return the correlation of the unknowns by noise alone, shape (p, p)."""
-        J, free = self.solution.jacobian, ~self.solution.at_bound
-        covariance = np.zeros((free.size, free.size))
-        inverse = np.linalg.pinv(J[:, free].T @ J[:, free], hermitian=True)
-        covariance[np.ix_(free, free)] = inverse
-        return correlation_of(covariance)
+        """Return the correlation of the unknowns by noise alone, shape (p, p), without bounds."""
+        J = self.solution.jacobian
+        return correlation_of(np.linalg.pinv(J.T @ J, hermitian=True))
 
     def with_columns(
         self,
