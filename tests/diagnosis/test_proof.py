@@ -24,7 +24,8 @@ OFFSETS = (
 
 
 def of(*offsets, gain=CLEAR, after=SAME):
-    return failures("force_sensor_offset", offsets, gain, SAME, after, NOISE)
+    zero = may_be_zero("force_sensor_offset", offsets)
+    return failures("force_sensor_offset", offsets, gain, SAME, after, NOISE, zero=zero)
 
 
 def test_one_size_that_is_not_neutral_and_a_gain_are_enough():
@@ -39,9 +40,9 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
 
 def test_an_interval_that_is_cut_at_the_neutral_value_holds_it():
     cut = estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)
-    assert failures("drive_friction", (cut,), CLEAR, SAME, SAME, NOISE)
+    assert may_be_zero("drive_friction", (cut,))
     clear = estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)
-    assert not failures("drive_friction", (clear,), CLEAR, SAME, SAME, NOISE)
+    assert not may_be_zero("drive_friction", (clear,))
 
 
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
@@ -50,16 +51,17 @@ def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
         estimate("force_sensor_offset.f_in_offset_N", 0.85, -0.15, 1.85),
         estimate("force_sensor_offset.f_out_offset_N", 0.75, -0.25, 1.75),
     )
-    assert of(*two)
-    assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, correlation=sum_known)
+    assert may_be_zero("force_sensor_offset", two)
+    assert not may_be_zero("force_sensor_offset", two, sum_known)
     unknown = -sum_known + 2.0 * np.eye(2)
-    assert failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, correlation=unknown)
+    assert may_be_zero("force_sensor_offset", two, unknown)
 
 
 def test_a_gain_has_its_neutral_value_at_one():
     def gain(low, high):
         value = estimate("force_sensor_gain.f_out_gain", 1.02, low, high, unit="1")
-        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME, NOISE)
+        zero = may_be_zero("force_sensor_gain", (value,))
+        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME, NOISE, zero=zero)
 
     assert gain(1.01, 1.03) == ()
     assert gain(0.99, 1.05)

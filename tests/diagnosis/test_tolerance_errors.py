@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import tolerances
-from tsas_cli.diagnosis.tolerances import covariance_of_tolerances
+from tsas_cli.diagnosis.tolerances import moved_by_tolerances
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -26,26 +26,28 @@ def unsure(signature, truly=0.0):
         (), (Unknown("slope", None, 0.0, -9.0, 9.0, 1.0),), solution, (ROWS,) * RUNS, on_mesh=False
     )
     ways = np.column_stack((signature, np.zeros(X.size)))
-    ((found,),) = covariance_of_tolerances(trial, -ways, BLOCKS)
-    return float(np.sqrt(found)), abs(float(slope[0]))
+    (moved,), ((unsure,),) = moved_by_tolerances(trial, -ways, BLOCKS)
+    return float(slope[0]), float(moved), float(np.sqrt(unsure))
 
 
 def test_what_looks_like_a_parameter_leaves_it_as_unsure_as_is_plausible():
-    found, _ = unsure(0.3 * X)
+    _, moved, found = unsure(0.3 * X)
+    assert moved == pytest.approx(0.0, abs=0.02)
     assert found == pytest.approx(0.3, rel=0.05)
 
 
 def test_what_the_recordings_rule_out_leaves_nothing_unsure():
-    found, _ = unsure(0.3 * X + 5.0 * OTHER)
+    _, moved, found = unsure(0.3 * X + 5.0 * OTHER)
+    assert abs(moved) < 0.02
     assert found < 0.02
 
 
 @pytest.mark.parametrize("truly", [-2.0, 1.0, 2.0])
-def test_what_the_recordings_ask_for_is_counted(truly):
-    """The slope is off by as much as it is said to be."""
-    found, off = unsure(0.3 * X + 5.0 * OTHER, truly)
-    assert found == pytest.approx(0.3 * abs(truly), rel=0.1)
-    assert off == pytest.approx(0.3 * abs(truly), abs=0.1)
+def test_what_the_recordings_ask_for_is_taken_back(truly):
+    slope, moved, found = unsure(0.3 * X + 5.0 * OTHER, truly)
+    assert abs(slope) > 0.9 * abs(0.3 * truly)
+    assert slope + moved == pytest.approx(0.0, abs=0.05)
+    assert found < 0.02
 
 
 def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
@@ -69,9 +71,10 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
     solution = Solution(np.array([5.0, 6.0]), np.array([False, True]), residual, J, True, "", 1)
     unknowns = tuple(Unknown(n, None, 0.0, -9.0, 9.0, 1.0) for n in ("a", "b"))
     trial = HypothesisFit((), unknowns, solution, (6,), on_mesh=False)
-    found = np.sqrt(np.diag(covariance_of_tolerances(trial, ways, [np.arange(6)])))
-    first = (0.8 * -2.0) ** 2 + 0.8 * 0.25
-    assert found == pytest.approx([np.sqrt(0.2**2 * first + 0.3**2 * 1.0), 0.0], rel=1e-6)
+    moved, covariance = moved_by_tolerances(trial, ways, [np.arange(6)])
+    unsure = np.sqrt(np.diag(covariance))
+    assert moved == pytest.approx([0.2 * 0.8 * 2.0, 0.0], abs=1e-6)
+    assert unsure == pytest.approx([np.sqrt(0.2**2 * 0.8 * 0.25 + 0.3**2 * 1.0), 0.0], rel=1e-6)
     assert len(given["names"]) == 4
     assert given["by_run"]
     beside = given["solution"]
@@ -83,6 +86,6 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
 
 def test_no_tolerance_counts_for_more_than_is_plausible():
     """The slope is off by ten times what two standard deviations do."""
-    found, off = unsure(0.3 * X + 5.0 * OTHER, 20.0)
-    assert off == pytest.approx(6.0, abs=0.1)
-    assert found == pytest.approx(0.3 * 2.0, rel=0.05)
+    slope, moved, _ = unsure(0.3 * X + 5.0 * OTHER, 20.0)
+    assert abs(slope) == pytest.approx(6.0, abs=0.1)
+    assert abs(moved) == pytest.approx(0.3 * 2.0, rel=0.05)

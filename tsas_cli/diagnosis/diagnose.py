@@ -9,9 +9,10 @@ from tsas_cli.diagnosis.faults.search import fault_of_recording
 from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
+from tsas_cli.diagnosis.intervals import estimates_with_tolerances
 from tsas_cli.diagnosis.law import Law, describe
 from tsas_cli.diagnosis.proof import FoundCause
-from tsas_cli.diagnosis.proven import Proven, estimates_with_tolerances, proven_effects
+from tsas_cli.diagnosis.proven import Proven, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.rivals import find_effects
@@ -187,7 +188,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     nominal = list(proven.estimates)
     if named:
         tolerated = tolerances(bench, before)
-        nominal, _ = estimates_with_tolerances(judged, before, tolerated)
+        nominal = estimates_with_tolerances(judged, before, tolerated).estimates
         start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
     law = None

@@ -68,14 +68,14 @@ def failures(
     *,
     tolerance_N: Mapping[str, float] | None = None,
     stroke_mm: float = math.inf,
-    correlation: Floats | None = None,
+    zero: bool = False,
 ) -> tuple[str, ...]:
     """Return what an effect fails to prove, in sentences without their subject.
 
     `refitted_gain` is its reduction of the squares on held-out data by new fits, `without` and
     `with_it` are the RMS of each channel there. `tolerance_N` is by how much a force sensor of a
     sound rig may be wrong, `stroke_mm` the longest way of the drive, infinite where it is not
-    known, and `correlation` that of the parameters, shape (p, p), None where it is not known.
+    known, and `zero` whether the effect `may_be_zero`.
     """
     own = {e.name.partition(".")[2]: e for e in estimates}
     parameters = {p.name: p for p in BY_NAME[effect].parameters}
@@ -88,7 +88,7 @@ def failures(
         for name, e in sizes.items()
         if e.at_bound and not _is_near_neutral(e.value, parameters[name])
     ]
-    if may_be_zero(effect, estimates, correlation):
+    if zero:
         values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
         out.append(f"may be zero: {', '.join(values)}")
     out += [

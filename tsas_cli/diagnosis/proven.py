@@ -1,7 +1,7 @@
 """The effects of a search that prove to be causes: tested, dropped one by one, fitted again."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from tsas_cli.diagnosis.constancy import absorbed_by, beside_tolerances, worst_s
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
+from tsas_cli.diagnosis.intervals import Tolerated, estimates_with_tolerances
 from tsas_cli.diagnosis.proof import (
     ANOTHER_LAW,
     BY_NAME,
@@ -24,23 +25,16 @@ from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
-    covariance_of_tolerances,
     largest_forces,
-    of_others,
     tolerances,
     within_scatter,
     within_tolerances,
 )
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import HypothesisFit, correlation_of
-from tsas_cli.identification.fit import with_errors
-from tsas_cli.identification.joint_fit import estimates_of
-from tsas_cli.records.base import TWO_SIDED
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
 
 SEED = 1  # of the resampling of blocks
-SHEATH = "sheath_compression.compliance_ratio"
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,13 +98,11 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     }
     at_residuals = signals_at_residuals(bench, final)
     tolerated = tolerances(bench, final)
-    estimates, correlation = estimates_with_tolerances(judged, final, tolerated)
+    found = estimates_with_tolerances(judged, final, tolerated)
     after = remainder(bench, final, judged.folds, at_residuals, tolerated)
-    last = _LastFit(
-        judged, estimates, correlation, held_out, at_residuals.signals, after.structure, tolerated
-    )
+    last = _LastFit(judged, found, held_out, at_residuals.signals, after.structure, tolerated)
     causes = tuple(_cause(last, name) for name in judged.rivals)
-    return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, after)
+    return Proven(search, judged, causes, stand_ins, tuple(found.estimates), held_out, after)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +110,7 @@ class _LastFit:
     """The fit of the final set, by which each of its effects is judged."""
 
     judged: Hypotheses
-    estimates: Sequence[Estimate]
-    correlation: Floats  # of all estimates, shape (p, p)
+    found: Tolerated
     held_out: Mapping[frozenset[str], HeldOutFit]
     signals: dict[str, Floats]
     structure: float  # squares that the set leaves and a regression explains
@@ -128,23 +119,23 @@ class _LastFit:
 
 def _cause(last: _LastFit, name: str) -> FoundCause:
     """Return an effect of the final set, with what it does not prove."""
-    judged, estimates, held_out, signals = last.judged, last.estimates, last.held_out, last.signals
-    named = judged.named
+    judged, found, held_out, signals = last.judged, last.found, last.held_out, last.signals
+    named, estimates = judged.named, found.estimates
     fewer, all_of_them = held_out[named - {name}], held_out[named]
     gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
     at = [k for k, e in enumerate(estimates) if e.name.startswith(f"{name}.")]
-    own = tuple(estimates[k] for k in at)
+    own, moved = ([of_all[k] for k in at] for of_all in (estimates, found.moved))
     ids = tuple(run.run.run.id for run in judged.bench.closed)
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, last.tolerated)
     again = gain(fewer.squares, all_of_them.squares)
-    related = last.correlation[np.ix_(at, at)]
+    zero = may_be_zero(name, moved, found.correlation[np.ix_(at, at)])
     noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
     stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
         *(name, own, again, fewer.rmse, all_of_them.rmse, noise),
         tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
         stroke_mm=stroke_mm,
-        correlation=related,
+        zero=zero,
     )
     failed = (*failed, *_of_another_law(last, name))
     law = "" if split is None else split_in_words(split)
@@ -152,14 +143,14 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     if split is not None and last.structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
-    negligible = not again.convincing and may_be_zero(name, own, related)
+    negligible = not again.convincing and zero
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
     if within_tolerances(judged.trial(named), name, last.tolerated, reduction):
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True
     return FoundCause(
-        *(name, judged.rivals[name], own, gains[0], interval, failed, law),
+        *(name, judged.rivals[name], tuple(own), gains[0], interval, failed, law),
         convincing=again.convincing,
         negligible=negligible,
     )
@@ -180,35 +171,3 @@ def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:
         if by is not None:
             title = BY_NAME[other].title.lower()
             yield f"gains too little where {title} may differ over {signal_in_words(by)}"
-
-
-def estimates_with_tolerances(
-    search: Hypotheses, trial: HypothesisFit, tolerated: Floats
-) -> tuple[list[Estimate], Floats]:
-    """Return the estimates of a trial and their correlation, with what tolerances change."""
-    solution = trial.solution
-    counted = search.folds.blocks_of_runs(len(search.bench.rigs))
-    fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
-    by_tolerances = covariance_of_tolerances(trial, of_others(trial, tolerated), counted)
-    known = np.where(np.isfinite(fitted.stderr), fitted.stderr, 0.0)
-    by_noise = trial.correlation() * np.outer(known, known)
-    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, np.sqrt(np.diag(by_tolerances))))
-    estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
-    estimates = [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
-    return estimates, correlation_of(by_noise + by_tolerances)
-
-
-def _with_data_sheet_interval(ratio: Estimate, trial: HypothesisFit) -> Estimate:
-    """Return the sheath's compliance with the interval that follows from the tendon's data sheet.
-
-    The recordings determine (1 + ratio)/EA only, so the ratio is as uncertain as EA is.
-    """
-    EA = next((j for j, u in enumerate(trial.unknowns) if u.name == "tendon_stiffness_N"), None)
-    if EA is None:
-        return ratio
-    unknown, fitted = trial.unknowns[EA], float(trial.solution.values[EA])
-    whole = 1.0 + ratio.value
-    low = max(whole * math.exp(unknown.lower - fitted) - 1.0, 0.0)
-    high = whole * math.exp(unknown.upper - fitted) - 1.0
-    stderr = max(high - ratio.value, ratio.value - low) / TWO_SIDED
-    return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)

@@ -226,19 +226,20 @@ def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
     return float(left @ left) < 0.1 * float(column @ column)
 
 
-def covariance_of_tolerances(
+def moved_by_tolerances(
     trial: HypothesisFit, tolerated: Floats, blocks: Sequence[Indices]
-) -> Floats:
-    """Return the covariance of a trial's scaled values by tolerances, shape (p, p).
+) -> tuple[Floats, Floats]:
+    """Return how far a trial's scaled values move with the likely tolerances, (p,), and covariance.
 
     `tolerated` are the residuals' changes by one standard deviation of each tolerance, shape (n,
-    m); `blocks` has for each run the block of each residual.
+    m); `blocks` has for each run the block of each residual. The covariance, (p, p), is what the
+    tolerances leave unsure where the values are moved.
     """
     estimate, stderr = _estimated(trial, tolerated, blocks)
     trusted = 1.0 / (1.0 + stderr**2)  # weight against the prior, of standard deviation 1
     likely = np.clip(trusted * estimate, -PLAUSIBLE, PLAUSIBLE)
     moves = trial.moved_by(tolerated)
-    return np.asarray((moves * (likely**2 + trusted * stderr**2)) @ moves.T)
+    return moves @ likely, np.asarray((moves * (trusted * stderr**2)) @ moves.T)
 
 
 def _estimated(

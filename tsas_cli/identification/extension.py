@@ -58,7 +58,7 @@ class HypothesisFit:
     def correlation(self) -> Floats:
         """Return the correlation of the unknowns by noise alone, shape (p, p), without bounds."""
         J = self.solution.jacobian
-        return correlation_of(np.linalg.pinv(J.T @ J, hermitian=True))
+        return correlation_of(np.asarray(np.linalg.pinv(J.T @ J, hermitian=True)))
 
     def with_columns(
         self,
