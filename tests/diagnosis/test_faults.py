@@ -79,6 +79,15 @@ def test_hum_is_said_with_its_frequency(tmp_path):
     assert found.sentence == "f_out_N swings at 1.4 Hz in all runs, whatever the motion"
 
 
+def test_what_wanders_without_any_motion_is_no_mechanism(tmp_path):
+    values = {"channels": ("f_out_N",), "per_root_s": 0.6}
+    result = diagnose(made(tmp_path, "recording", Hidden("random_walk", values)))
+    (found,) = result.record.faults
+    assert (result.verdict, found.code, found.column) == ("unexplained", "wanders", "f_out_N")
+    assert "follows no signal of the motion" in result.reason
+    assert result.next_experiment.startswith("Repeat one run")
+
+
 @pytest.mark.parametrize("effect", ["direction_dependent_friction", None])
 def test_a_mechanism_and_a_sound_rig_are_not_accused(effect, tmp_path):
     hidden = (Hidden(effect, {"asymmetry": 0.08}),) if effect else ()

@@ -1,13 +1,14 @@
 """What is left, on errors that are made of known signals."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.remainder import Remainder, _is_brief, _is_late, remainder
+from tsas_cli.diagnosis.remainder import Remainder, SlowPart, _is_brief, _is_late, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
 SIZE = 800
@@ -144,3 +145,19 @@ def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not
     some[300:330] += 9.0
     assert _is_brief(some)
     assert not any(map(_is_brief, (noise, 2.0 * noise, noise + slow, few)))
+
+
+@pytest.mark.parametrize(
+    ("changed", "wanders"),
+    [
+        ({}, "f_in_N"),
+        ({"slow": {"f_in_N": SlowPart(1.4, 1.0)}}, None),  # slow noise
+        ({"explained": {"f_out_N": 0.06}}, None),
+        ({"late": ("x_out_mm",)}, None),
+        ({"oscillates": "time_s"}, None),
+    ],
+)
+def test_a_channel_wanders_where_nothing_follows_a_signal(changed, wanders):
+    slow = {"f_in_N": SlowPart(3.0, 1.0), "f_out_N": SlowPart(2.0, 1.0)}
+    left = Remainder(9.0, {"f_in_N": 0.0}, (), slow=slow)
+    assert replace(left, **changed).wanders == wanders

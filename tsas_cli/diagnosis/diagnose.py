@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.faults.rivals import effects_as_good
 from tsas_cli.diagnosis.faults.search import fault_of_recording
-from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of
+from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of, wandering
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.intervals import estimates_with_tolerances
@@ -204,12 +204,16 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     )
     errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
     by_causes = channel_errors(bench, *errors, start, after)
+    fault = wandering(after) if verdict == "unexplained" else None
+    reason = reason_of(verdict, causes, stand_ins, by_causes, after, law)
+    if fault is not None:
+        reason += f" {fault.sentence}."
     channels = by_causes
     if law is not None:
         channels = channel_errors(bench, errors[0], law.after.rmse, start, after)
     return Diagnosis(
         verdict,
-        reason_of(verdict, causes, stand_ins, by_causes, after, law),
+        reason,
         Model(proven.estimates if law is None else law.estimates).over(base.model),
         Model(tuple(nominal)).over(base.model),
         causes,
@@ -224,6 +228,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         base.not_identifiable,
         Model(proven.with_stand_ins).over(base.model) if stand_ins and law is None else None,
         law,
+        fault,
     )
 
 

@@ -82,6 +82,15 @@ class Remainder:
             or any(slow.ratio**2 > MOST_SLOW for slow in self.slow.values())
         )
 
+    @property
+    def wanders(self) -> str | None:
+        """The channel with a slow error that is too large for noise, and that follows no signal."""
+        follows = any(part > STRUCTURE for part in self.explained.values())
+        if self.oscillates or self.late or follows or not self.slow:
+            return None
+        name = max(self.slow, key=lambda n: self.slow[n].ratio)
+        return name if self.slow[name].ratio ** 2 > MOST_SLOW else None
+
 
 def remainder(
     bench: Bench,

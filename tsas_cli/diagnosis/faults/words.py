@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from tsas_cli.diagnosis.faults.search import Candidate
+from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.diagnosis import RecordingFault
 from tsas_cli.support.wording import listed
@@ -35,6 +36,19 @@ def reason_of_fault(fault: RecordingFault, share: float) -> str:
         f"model leaves beyond the noise: {fault.sentence}. {remedy}, or accept it with --despite "
         f"{fault.code}; no mechanism is sought before."
     )
+
+
+def wandering(left: Remainder) -> RecordingFault | None:
+    """Return that a channel wanders, where what is left follows no signal of the motion."""
+    name = left.wanders
+    if name is None:
+        return None
+    slow = left.slow[name]
+    sentence = (
+        f"{name} wanders by {slow.ratio:.2g} times its noise within {slow.time_s:.2g} s and "
+        "follows no signal of the motion, as of an amplifier or a mounting that drifts"
+    )
+    return RecordingFault(code="wanders", column=name, sentence=sentence)
 
 
 def _sentence(c: Candidate, runs: Sequence[str]) -> str:
