@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
+from tests.physics.lugre.lumps import run
 from tests.physics.references import (
     DRIVEN_BY_FORCE,
     GROUP_A,
@@ -30,11 +31,7 @@ SINE = 10.0 - 10.0 * np.cos(TIME_S)
 
 
 def follow(x, times=TIME_S, *, rig=TABLE_1, n=50, tolerance=5e-5, step_ends_s=OWN_STEPS):
-    start = np.zeros((2, n + 2))
-    start[0], start[1] = x[0], rig.preload_N
-    course = course_of(x, rig, time_s=times)
-    control = StepControl(tolerance, step_ends_s)
-    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, n, control, None)
+    output, progress = run(x, times, rig=rig, n=n, tolerance=tolerance, steps=step_ends_s)
     return np.array(output[:4]), output.phase, progress
 
 
