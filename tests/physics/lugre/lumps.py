@@ -26,9 +26,20 @@ def cleared(rig):
     return s, lugre_laws(rig, N, LOADED_BY_SPRING)
 
 
-def run(drive, time_s, *, rig=GROUP_A, tolerance=1e-3, steps=OWN_STEPS, frames=None, n=N):
-    """Follow a drive from rest at the preload, with a spring at the load."""
+def run(
+    drive,
+    time_s,
+    *,
+    rig=GROUP_A,
+    boundary=LOADED_BY_SPRING,
+    load=0.0,
+    n=N,
+    tolerance=1e-3,
+    steps=OWN_STEPS,
+    frames=None,
+):
+    """Follow a drive from rest at the preload, where all places are zero."""
     start = np.zeros((2, n + 2))
-    start[0], start[1] = drive[0], rig.preload_N
-    course, control = course_of(drive, rig, time_s=time_s), StepControl(tolerance, steps)
-    return lugre_chain(course, start, rig, LOADED_BY_SPRING, n, control, frames)
+    start[1] = rig.preload_N
+    course = course_of(drive, rig, load=load, time_s=time_s)
+    return lugre_chain(course, start, rig, boundary, n, StepControl(tolerance, steps), frames)

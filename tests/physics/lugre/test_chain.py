@@ -18,7 +18,7 @@ from tests.physics.references import (
 )
 from tsas_cli.effects import Effects, StribeckFriction
 from tsas_cli.physics.course import LOAD
-from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS
 from tsas_cli.physics.lugre.input import DRIVE, next_reversal, value_at
 from tsas_cli.physics.lugre.start import lugre_laws
 from tsas_cli.physics.lugre.state import DIAGONAL, INCREMENT, LOWER, RESIDUAL, ROWS, UPPER
@@ -30,12 +30,12 @@ TIME_S = np.arange(0.0, 4.8, 1e-3)
 SINE = 10.0 - 10.0 * np.cos(TIME_S)
 
 
-def follow(x, times=TIME_S, *, rig=TABLE_1, n=50, tolerance=5e-5, step_ends_s=OWN_STEPS):
-    output, progress = run(x, times, rig=rig, n=n, tolerance=tolerance, steps=step_ends_s)
+def follow(x, times=TIME_S, *, rig=TABLE_1, n=50, tolerance=5e-5, steps=OWN_STEPS):
+    output, progress = run(x, times, rig=rig, n=n, tolerance=tolerance, steps=steps)
     return np.array(output[:4]), output.phase, progress
 
 
-@pytest.mark.parametrize("n", [2, 3, 50, 51, 400, MOST_NODES])
+@pytest.mark.parametrize("n", [2, 3, 50, 51, MOST_NODES])
 def test_newtons_equations_are_solved(n):
     rng = np.random.default_rng(n)
     lower, upper = -rng.uniform(0.5, 1.5, (2, n + 2))
@@ -82,7 +82,7 @@ def test_the_integrator_is_of_second_order():
     exact = follow(SINE, tolerance=TIGHT)[0][2, dead_band]
 
     def off(h):
-        found = follow(SINE, step_ends_s=np.arange(h, TIME_S[-1], h))[0][2, dead_band]
+        found = follow(SINE, steps=np.arange(h, TIME_S[-1], h))[0][2, dead_band]
         return np.sqrt(np.mean((found - exact) ** 2))
 
     assert off(8e-3) < 0.05
@@ -171,12 +171,7 @@ def test_a_sliding_tendon_that_friction_pushes_on_is_given_up_with_a_reason():
 @pytest.mark.parametrize("boundary", [LOADED_BY_DISPLACEMENT, DRIVEN_BY_FORCE])
 def test_a_tendon_at_rest_stays_at_rest(boundary):
     x = np.full(200, 25.0 if boundary is DRIVEN_BY_FORCE else 0.0)
-    start = np.zeros((2, 52))
-    start[1] = 25.0
-    course = course_of(x, TABLE_1, time_s=TIME_S[:200])
-    control = StepControl(5e-5, OWN_STEPS)
-    output, _ = lugre_chain(course, start, TABLE_1, boundary, 50, control, None)
-    columns = np.array(output[:4])
+    columns = np.array(run(x, TIME_S[:200], rig=TABLE_1, boundary=boundary, n=50)[0][:4])
     assert columns[:2] == pytest.approx(np.zeros((2, 200)), abs=1e-9)
     assert columns[2:] == pytest.approx(np.full((2, 200), 25.0), abs=1e-6)
 
@@ -186,15 +181,13 @@ def test_a_bump_of_what_is_given_is_not_stepped_over(boundary, row):
     """At either end, in full slip and without a turn: it runs ahead and is back after 40 ms."""
     times = np.arange(0.0, 3.0, 1e-3)
     smooth = 5.0 - 5.0 * np.cos(times)
-    course = course_of(smooth, TABLE_1, load=25.0 + 1.5 * smooth, time_s=times)
-    course[row] += 0.04 * np.exp(-(((times - 1.503) / 0.014) ** 2))
-    assert np.all(np.diff(course[row]) > 0.0)
-    start = np.zeros((2, 52))
-    start[1] = TABLE_1.preload_N
+    given = {DRIVE: smooth, LOAD: 25.0 + 1.5 * smooth}
+    given[row] = given[row] + 0.04 * np.exp(-(((times - 1.503) / 0.014) ** 2))
+    assert np.all(np.diff(given[row]) > 0.0)
 
-    def f_in(step_ends_s):
-        control = StepControl(2e-5, step_ends_s)
-        return lugre_chain(course, start, TABLE_1, boundary, 50, control, None)[0].f_in
+    def f_in(steps):
+        call = {"boundary": boundary, "load": given[LOAD], "n": 50, "tolerance": 2e-5}
+        return run(given[DRIVE], times, rig=TABLE_1, steps=steps, **call)[0].f_in
 
     fine = f_in(np.arange(2e-4, 3.0, 2e-4))
     assert np.max(np.abs(fine - f_in(OWN_STEPS))[1000:2000]) < 2e-4 * np.max(fine)
