@@ -235,15 +235,3 @@ def test_a_load_cell_in_the_first_tendon_reads_the_second_one_on_top():
     assert (runs[0].f_in_N[0], runs[2].f_in_N[0]) == pytest.approx((43.0, 25.0))
     for channel in ("x_out_mm", "f_out_N"):
         np.testing.assert_array_equal(getattr(runs[0], channel), getattr(runs[2], channel))
-
-
-def test_a_run_in_parts_is_the_whole():
-    rig = with_values(SPRINGY, PAIR)
-    course = course_of(MOTIONS["either slack"], rig)
-    whole = slip_chain(course, rig, LOADED_BY_SPRING, N)
-    state, parts = initial_state(course, rig, LOADED_BY_SPRING, N), []
-    for part in (course[:, :5].copy(), course[:, 5:].copy()):
-        output, state = follow(part, state, rig, LOADED_BY_SPRING, N, None)
-        parts.append(output)
-    for k, column in enumerate(whole):
-        np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)
