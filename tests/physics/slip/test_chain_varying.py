@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
+from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, wrap_of
+from tests.physics.slip.test_small_chains import SPRINGY, gives
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_studies.challenge.rig import tendon
@@ -11,18 +12,7 @@ from tsas_studies.challenge.rig.motions import Motion
 
 A = wrap_of(GROUP_A)
 BRUTE_NODES = 6
-SPRINGY = FREE._replace(
-    tendon_stiffness_N=5e3, load_stiffness_N_per_mm=30.0, sheath_length_mm=300.0
-)
-
-
-def compliances(rig, spring_compliance):
-    """Half segments at both ends, with free tendon and spring in series."""
-    whole = rig.sheath_length_mm / rig.tendon_stiffness_N / BRUTE_NODES
-    free = rig.effects.free_tendon
-    first = 0.5 * whole + free.proximal_length_mm / rig.tendon_stiffness_N
-    last = 0.5 * whole + free.distal_length_mm / rig.tendon_stiffness_N + spring_compliance
-    return np.array([first, *[whole] * (BRUTE_NODES - 1), last])
+LIGHT = SPRINGY._replace(effects=FREE.effects)
 
 
 def wandering(rng, scale, samples=80):
@@ -64,26 +54,28 @@ def test_everything_that_varies_at_once_is_that_of_the_relaxed_chain(drive, load
     x_in, x_out, f_in, f_out, phase = follow(
         at_drive,
         load=at_load,
-        rig=SPRINGY,
+        rig=LIGHT,
         boundary=boundary,
         n=BRUTE_NODES,
         pulled=pulled,
         released=released,
         lost=lost,
     )
+    compliances = gives(LIGHT, BRUTE_NODES)
+    compliances[-1] += compliance  # of the spring, in series
     history = relaxed_chain(
         at_drive,
         at_load,
         pulled,
         released,
-        SPRINGY.preload_N,
-        compliances(SPRINGY, compliance),
+        LIGHT.preload_N,
+        compliances,
         drive_by_force=drive == "force",
         load_by_force=boundary.load == FORCE,
     )
     assert set(phase) == {0, 1, -1}
     assert (f_in.min() < -10.0) == (load == "push-pull")
-    stretched = (f_out - SPRINGY.preload_N) * compliance
+    stretched = (f_out - LIGHT.preload_N) * compliance
     for answer, reference, tolerance in (
         (f_in, [T[0] for _, T in history], 1e-6),
         (f_out, [T[-1] for _, T in history], 1e-6),
@@ -101,11 +93,11 @@ def test_friction_that_vanishes_lets_both_ends_of_a_stretched_tendon_move_apart(
     friction = np.interp(np.arange(120.0), [0, 30, 60, 90, 119], [A, 0.0, 0.0, A, A])
     tension = 20.0 + 5.0 * np.sin(0.3 * np.arange(120.0))
     # A third of what the tendon is longer by is given at the drive, the rest moves the load.
-    length = compliances(SPRINGY, 0.0).sum() * (tension - SPRINGY.preload_N)
+    length = gives(LIGHT).sum() * (tension - LIGHT.preload_N)
     x_in, x_out, f_in, _, phase = follow(
         length / 3.0,
         load=tension,
-        rig=SPRINGY,
+        rig=LIGHT,
         boundary=Boundary(DISPLACEMENT, FORCE),
         n=60,
         pulled=friction,
@@ -115,13 +107,6 @@ def test_friction_that_vanishes_lets_both_ends_of_a_stretched_tendon_move_apart(
     free = slice(30, 61)
     np.testing.assert_allclose(f_in[free], tension[free], rtol=1e-9)
     np.testing.assert_allclose((x_in - x_out)[free], length[free], rtol=1e-2)
-
-
-def test_constant_arrays_are_scalars_to_the_last_bit():
-    motion = through(20.0, 5.0, 15.0, 14.9, 14.95, 14.8, -30.0)
-    constant = follow(motion, pulled=np.full(motion.size, A), released=np.full(motion.size, A))
-    for array, scalar in zip(constant, follow(motion), strict=True):
-        np.testing.assert_array_equal(array, scalar)
 
 
 def test_friction_that_fades_while_nothing_moves_is_that_of_the_rig():

@@ -20,7 +20,16 @@ from tests.physics.references import (
     through,
     wrap_of,
 )
-from tests.physics.slip.test_small_chains import ROUNDING, SPRINGY, Nodes, gives, moments, rubs
+from tests.physics.slip.test_small_chains import (
+    EFFECTS,
+    ROUNDING,
+    SPRINGY,
+    Nodes,
+    gives,
+    moments,
+    rubs,
+    varying,
+)
 from tsas_cli.effects import Effects
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
@@ -35,17 +44,12 @@ MOTIONS = {
     "both taut": np.array([0.3, 0.5, 0.7, 0.68, 0.6, 0.62, 0.6, 0.3, -0.1, -0.3, -0.2, 0.1]),
     "either slack": np.array([0.4, 2.5, 4.6, 4.5, 2.0, 1.9, -1.5, -7.5, -9.5, -9.4, -3.0, 0.6]),
 }
-EFFECTS = {
-    "friction alone": {},
-    "free tendon": {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0},
-    "friction rises with tension": {"load_dependent_friction.exponent": 0.25},
-    "presliding": {"presliding.length_mm": 0.02},
-    "uneven friction": {"uneven_friction.slope": 1.5},
-    "a guide at the load": {
-        "load_friction.after_sensor_N": 3.0,
-        "load_friction.before_sensor_N": 1.5,
-    },
-}
+NAMES = (
+    *("friction alone", "free tendon", "friction rises with tension", "presliding"),
+    *("friction rises along the sheath", "a guide at the load"),
+)
+CASES = [(name, motion) for name in NAMES for motion in MOTIONS]
+CASES.remove(("presliding", "either slack"))  # then its nodes' shares are not known
 
 
 def states(course, rig, boundary):
@@ -114,21 +118,10 @@ def hold_everywhere(course, rig, boundary):
     return np.array(slack)
 
 
-@pytest.mark.parametrize("motion", MOTIONS)
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize(("name", "motion"), CASES)
 def test_every_law_holds_at_a_spring(name, motion):
-    if (name, motion) == ("presliding", "either slack"):
-        pytest.skip("where a tendon was slack its nodes' shares are not known")
     rig = with_values(SPRINGY, EFFECTS[name] | PAIR)
-    a = wrap_of(rig)
-    course = course_of(
-        MOTIONS[motion],
-        rig,
-        pulled=np.linspace(0.9, 1.3, 12) * a,
-        released=np.linspace(0.8, 0.6, 12) * a,
-        lost=np.linspace(0.0, 2.0, 12),
-        step=0.05,
-    )
+    course = varying(MOTIONS[motion], rig)
     slack = hold_everywhere(course, rig, LOADED_BY_SPRING)
     assert slack.any(axis=0).tolist() == [motion == "either slack"] * 2
     assert UNCONVERGED not in slip_chain(course, rig, LOADED_BY_SPRING, N)[4]
