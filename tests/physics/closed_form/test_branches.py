@@ -18,7 +18,6 @@ from tsas_cli.physics.closed_form.branches import (
 from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)
-C = GROUP_A.sheath_length_mm / (A * GROUP_A.tendon_stiffness_N)
 UP, DOWN = math.exp(A), math.exp(-A)
 SOFT = GROUP_A._replace(
     friction_coefficient=0.4,
@@ -85,48 +84,6 @@ def test_full_slip_has_the_slopes_with_the_elastic_term(cycle, direction, slope)
     fit = np.polyfit(x[slipping], f_in[slipping], 1)[0]
     assert fit == pytest.approx(slope, abs=5e-4)
     np.testing.assert_allclose(f_in[slipping] / f_out[slipping], math.exp(direction * A))
-
-
-def band(*, pulling, points=2001):
-    """Return the drive's travel and tension over one whole dead band, evenly spaced."""
-    far, near = (20.0, 20.0 * UP**2) if pulling else (90.0, 90.0 * DOWN**2)
-    (before, start, end), _ = pulled_through(GROUP_A, [90.0 if pulling else 80.0, far, near])
-    x_in = np.linspace(start, end, points)
-    f_in, f_out, phase = branches(np.concatenate(([before], x_in)), GROUP_A)
-    assert f_in[1] == pytest.approx(far)
-    assert f_in[-1] == pytest.approx(near)
-    assert f_out[1:] == pytest.approx(near * (DOWN if pulling else UP))
-    assert not phase[2:-1].any()
-    return x_in, f_in[1:]
-
-
-@pytest.mark.parametrize("pulling", [True, False])
-def test_secant_of_the_dead_band_is_that_of_the_lumped_model(pulling):
-    x, f = band(pulling=pulling)
-    assert (f[-1] - f[0]) / (x[-1] - x[0]) == pytest.approx(175.10, rel=1e-3)
-
-
-@pytest.mark.parametrize(("pulling", "tangent"), [(False, 70.6), (True, 104.5)])
-def test_tangent_where_the_front_arrives(pulling, tangent):
-    x, f = band(pulling=pulling, points=100001)
-    assert (f[-1] - f[-2]) / (x[-1] - x[-2]) == pytest.approx(tangent, abs=0.1)
-
-
-@pytest.mark.parametrize("pulling", [True, False])
-def test_tangent_grows_without_bound_towards_the_reversal(pulling):
-    x, f = band(pulling=pulling, points=100001)
-    first = np.abs((f[[10, 1000]] - f[0]) / (x[[10, 1000]] - x[0]))
-    assert first[0] == pytest.approx(10.0 * first[1], rel=0.05)
-
-
-@pytest.mark.parametrize(
-    ("pulling", "slope", "rise"), [(False, 133.6, 1 - DOWN), (True, 147.1, UP - 1)]
-)
-def test_a_straight_line_fitted_to_the_band_is_not_its_secant(pulling, slope, rise):
-    """Of ever more points it is (8/(5 rise) ± 1)/C: least squares on (1 ± √u)², u ≤ rise²."""
-    assert np.polyfit(*band(pulling=pulling, points=401), 1)[0] == pytest.approx(slope, abs=0.1)
-    limit = (1.6 / rise + (1.0 if pulling else -1.0)) / C
-    assert np.polyfit(*band(pulling=pulling, points=20001), 1)[0] == pytest.approx(limit, rel=1e-4)
 
 
 def test_return_point_memory():
@@ -247,7 +204,7 @@ def test_a_front_from_rest_goes_as_far_as_the_tension_has_changed(factor):
     np.testing.assert_allclose(frames.tension_N[0], expected, rtol=1e-6)
 
 
-EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N
+F0 = GROUP_A.preload_N
 
 
 @pytest.mark.parametrize("tension", [0.3, 0.8, 1.0, 1.1, 1.4])
