@@ -67,13 +67,6 @@ def test_a_turn_is_a_jump_over_the_dead_band(rig):
     assert path[5] > path[4]
 
 
-def test_a_force_that_is_held_keeps_the_drive_where_it_is():
-    wanted = np.repeat([25.0, 40.0, 33.0], 50)
-    path, _ = path_to(wanted)
-    assert path[0] == 0.0
-    np.testing.assert_array_equal(path[1:][np.diff(wanted) == 0.0], path[:-1][np.diff(wanted) == 0])
-
-
 def test_a_force_below_the_preload_lets_the_tendon_out():
     path, _ = path_to(np.linspace(25.0, 5.0, 100))
     assert (np.diff(path) < 0.0).all()
