@@ -30,17 +30,6 @@ def test_a_release_forgets_when_the_widest_dead_band_is_crossed():
     assert x[0] - x[first] == pytest.approx(dead_band(10.0), abs=1.5e-3)
 
 
-def test_the_chain_forgets_where_the_closed_form_does():
-    """A load whose displacement is held where the spring holds it."""
-    x = 10.0 - np.arange(0.0, 1.0, 2e-3)
-    spring = simulate(RIG, DriveInput(np.concatenate(([10.0], x))))
-    by_spring = first_determined_sample(RIG, DriveInput(x))
-    by_load = first_determined_sample(
-        RIG, DriveInput(x, load="displacement", load_values=spring.x_out_mm[1:])
-    )
-    assert abs(by_load - by_spring) <= 6
-
-
 def test_a_move_inside_the_dead_band_is_never_forgotten():
     x = 10.0 + 0.4 * dead_band(10.0) * np.sin(np.linspace(0.0, 20.0, 500))
     assert first_determined_sample(RIG, DriveInput(x)) is None

@@ -10,7 +10,6 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
-    Profile,
     course_of,
     through,
     wrap_of,
@@ -117,17 +116,6 @@ def test_the_front_runs_inwards_as_its_travel_says(follow, x, direction):
     assert (slip[nearer] == direction).all()
     far = (np.arange(N) - 0.5) / N > front[:, None]
     assert (slip[far] == 0).all()
-
-
-@pytest.mark.parametrize("rig", [GROUP_A, FREE])
-def test_profiles_are_those_of_a_grid_that_knows_no_fronts(rig):
-    _, frames = closed(NESTED, rig, elements=40)
-    grid = Profile(rig, points=41)
-    for at, tension in enumerate(frames.tension_N):
-        grid.pull_drive_to(tension[0])
-        np.testing.assert_allclose(tension, grid.tension, rtol=1e-9, err_msg=f"sample {at}")
-    within = (frames.slip != 0).any(axis=1) & (frames.slip == 0).any(axis=1)
-    assert within.sum() > 200  # partial reversals, nested
 
 
 def test_chain_and_closed_form_agree_along_the_tendon():

@@ -123,25 +123,20 @@ def test_room_for_strokes_is_that_of_turns_and_rests(motion, count):
 
 def test_what_is_along_the_tendon_after_a_few_strokes():
     """Each lays its exponential over what was before, up to where both meet: its front."""
-    tensions = 25.0 * np.array([1.2, 2.0, 1.5, 1.7, 0.9])
+    tensions = 25.0 * np.array([1.2, 2.0, 1.5, 1.7, 1.55, 1.65, 0.9])
     x_in, _ = pulled_through(GROUP_A, tensions)
-    frames = empty_frames(np.arange(5), 8)
+    frames = empty_frames(np.arange(7), 8)
     branches(x_in, GROUP_A, frames)
-    s = np.linspace(0.0, 1.0, 9)
-    up, down = np.exp(-A * s), np.exp(A * s)
-    profile, fronts = np.full(9, 25.0), []
-    for T0, before, way in zip(tensions, (25.0, *tensions[:-1]), (1, 1, -1, 1, -1), strict=True):
-        now = np.maximum(profile, T0 * up) if way > 0 else np.minimum(profile, T0 * down)
-        fronts.append((now, abs(math.log(T0 / before)), way))
-        profile = now
-    for k, (now, _, _) in enumerate(fronts):
-        np.testing.assert_allclose(frames.tension_N[k], now, rtol=1e-6)
     # From rest it runs against a level profile, then against one as steep as its own.
-    expected = [math.log(1.2) / A, 1.0, *(fronts[k][1] / (2.0 * A) for k in (2, 3)), 1.0]
-    np.testing.assert_allclose(frames.front, expected, rtol=1e-6)
-    middles = np.arange(0.5, 8.0) / 8.0
-    for k, (_, _, way) in enumerate(fronts):
-        assert frames.slip[k].tolist() == [way if m < expected[k] else 0 for m in middles]
+    changes = np.abs(np.diff(np.log(tensions)))
+    fronts = [math.log(1.2) / A, 1.0, *changes[1:-1] / (2.0 * A), 1.0]
+    np.testing.assert_allclose(frames.front, fronts, rtol=1e-6)
+    s, middles, profile = np.linspace(0.0, 1.0, 9), np.arange(0.5, 8.0) / 8.0, np.full(9, 25.0)
+    for k, way in enumerate((1, 1, -1, 1, -1, 1, -1)):
+        lifted_or_lowered = np.maximum if way > 0 else np.minimum
+        profile = lifted_or_lowered(profile, tensions[k] * np.exp(-way * A * s))
+        np.testing.assert_allclose(frames.tension_N[k], profile, rtol=1e-6)
+        assert frames.slip[k].tolist() == [way if m < fronts[k] else 0 for m in middles]
 
 
 @pytest.mark.parametrize("factor", [1.3, 0.8])

@@ -128,13 +128,14 @@ def test_segments_share_the_compliance_of_the_sheath_by_their_bend():
             "free_tendon.proximal_length_mm": 40.0,
             "free_tendon.distal_length_mm": 15.0,
             "drive_compliance.compliance_mm_per_N": 0.004,
+            "sheath_compression.compliance_ratio": 0.5,
         },
     )
     EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
     middles = np.array([-0.875, -0.5, 0.0, 0.5, 0.875])  # from −1 at the drive to 1 at the load
     shares = np.array([1, 2, 2, 2, 1]) / 8
     per_angle = 1.0 + 0.3 * middles - 0.2 * (1.5 * middles**2 - 0.5)
-    expected = L / EA * shares * per_angle
+    expected = 1.5 * L / EA * shares * per_angle
     expected[0] += 40.0 / EA + 0.004
     expected[-1] += 15.0 / EA
     np.testing.assert_allclose(segment_compliances(rig, 4), expected)
