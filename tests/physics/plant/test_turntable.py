@@ -180,18 +180,6 @@ def test_the_tendon_rests_while_the_drive_crosses_its_play():
     assert np.abs(np.diff(run.x))[crossing].max() > 1e-3
 
 
-def test_ripple_has_its_amplitude_and_period():
-    ripple = {"drive_ripple.sine_mm": 0.04, "drive_ripple.cosine_mm": 0.02}
-    rig = with_values(GROUP_A, ripple | {"drive_ripple.period_mm": 0.9})
-    motion = there_and_back(600.0, -600.0, each_s=0.2, h=2.5e-4)
-    plain, run = Run(motion, h=2.5e-4), Run(motion, rig, h=2.5e-4)
-    assert run.x.max() > 2.0 * 0.9
-    angle = 2.0 * np.pi * run.x / 0.9
-    wave = 0.04 * np.sin(angle) + 0.02 * (np.cos(angle) - 1.0)
-    np.testing.assert_allclose(run.end - run.x, wave, atol=2e-5)
-    np.testing.assert_array_equal(plain.end, plain.x)
-
-
 def test_friction_at_the_drive_sticks_until_the_gear_is_wound_up():
     rig = with_values(GROUP_A, {"drive_friction.friction_N": 6.0})
     slow = Run(np.full(800, 30.0), rig)
