@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 
 from tests.physics.references import (
-    DRIVEN_BY_FORCE,
     FREE,
     GROUP_A,
-    LOADED_BY_DISPLACEMENT,
-    LOADED_BY_FORCE,
     LOADED_BY_SPRING,
     course_of,
     through,
@@ -38,9 +35,9 @@ def closed(x, rig=GROUP_A, *, elements=N, every=1):
     return branches(x, rig, frames), frames
 
 
-def chain(x, rig=GROUP_A, *, n=N, every=1, boundary=LOADED_BY_SPRING, load=0.0):
+def chain(x, rig=GROUP_A, *, n=N, every=1):
     frames = empty_frames(np.arange(0, len(x), every), n)
-    return slip_chain(course_of(x, rig, load=load), rig, boundary, n, frames), frames
+    return slip_chain(course_of(x, rig), rig, LOADED_BY_SPRING, n, frames), frames
 
 
 @pytest.mark.parametrize(
@@ -65,33 +62,6 @@ def test_ends_of_the_profile_are_those_of_the_same_simulation(solver, call):
     np.testing.assert_array_equal(plain.f_in_N, answer.f_in_N)  # looking changes nothing
     np.testing.assert_array_equal(plain.phase, answer.phase)
     assert plain.frames is None
-
-
-@pytest.mark.parametrize(
-    ("boundary", "given", "load"),
-    [
-        (LOADED_BY_FORCE, NESTED, 25.0 - 0.5 * NESTED),
-        (LOADED_BY_DISPLACEMENT, NESTED, 0.9 * NESTED),
-        (DRIVEN_BY_FORCE, 25.0 + NESTED, 0.0),
-    ],
-)
-def test_ends_of_the_chain_at_every_boundary(boundary, given, load):
-    (_, _, f_in, f_out, _), frames = chain(given, boundary=boundary, load=load)
-    np.testing.assert_allclose(frames.tension_N[:, 0], f_in, rtol=1e-8)
-    np.testing.assert_allclose(frames.tension_N[:, -1], f_out, rtol=1e-8)
-
-
-@pytest.mark.parametrize("follow", [closed, chain])
-@pytest.mark.parametrize("direction", [1, -1])
-def test_full_slip_is_the_capstan_exponential(follow, direction):
-    """Yang 2025, Eqs. (4) and (7): F(s) = F(0) e^(∓a s/L)."""
-    (*_, phase), frames = follow(through(20.0, 0.0))
-    whole = frames.tension_N[phase == direction]
-    expected = whole[:, :1] * np.exp(-direction * WRAP * frames.places)
-    assert len(whole) > 300
-    np.testing.assert_allclose(whole, expected, rtol=1e-9)
-    assert (frames.slip[phase == direction] == direction).all()
-    assert (frames.front[phase == direction] == 1.0).all()
 
 
 @pytest.mark.parametrize(("x", "direction"), [(LETTING_GO, -1), (PULLING, 1)])

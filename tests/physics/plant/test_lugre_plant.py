@@ -40,16 +40,6 @@ def test_a_tendon_that_hangs_slack_at_the_start_and_the_end_or_begins_under_tens
     assert (500 < np.count_nonzero(slack) < 1500) == (start_mm < 0.0)
 
 
-def test_a_slack_tendon_leaves_the_drive_to_its_friction_and_spring():
-    values = {"drive_friction.friction_N": 2.0, "proximal_spring.stiffness_N_per_mm": 3.0}
-    rig, away = with_values(STIFF, values), np.linspace(0.0, -25.0, 500)
-    lugre, _, unsettled = run(rig, away, STEP_S, lumped=True, actuator=DAMPED)
-    assert unsettled == 0
-    last = {name: values[-2] for name, values in lugre.items()}
-    assert last["f_out_N"] == 0.0
-    assert last["f_in_N"] == pytest.approx(3.0 * last["x_in_mm"] - 2.0, abs=1e-3)
-
-
 def test_a_rig_that_changes_during_the_run():
     values = {"friction_coefficient": 0.16, "proximal_spring.stiffness_N_per_mm": 2.0}
     change = {"later": with_values(STIFF, values), "at": 1500}
@@ -126,25 +116,6 @@ def test_shorter_steps_come_closer_with_friction():
     assert off[0] < 1e-2
     assert off[1] < off[0] / 2.0
     assert off[2] < off[1] / 2.0
-
-
-def work(channels, motor_speed, samples):
-    """Return what the motor puts in over some samples that end as they begin [N mm]."""
-    motor = np.cumsum(0.5 * (motor_speed[1:] + motor_speed[:-1])) * STEP_S
-    pull = ACTUATOR.stiffness_N_per_mm * (motor - channels["x_in_mm"][1:])
-    part, way = pull[samples], motor[samples]
-    return float(np.sum(0.5 * (part[1:] + part[:-1]) * np.diff(way)))
-
-
-@pytest.mark.parametrize("bristles", [Bristles(5e3), Bristles(5e5)], ids=["soft", "stiff"])
-def test_friction_takes_as_much_work_as_in_the_slip_chain(bristles):
-    rig, turns = GROUP_A._replace(bristles=bristles), np.concatenate((NESTED, NESTED))
-    period = slice(NESTED.size - 1, 2 * NESTED.size - 1)
-    lugre, motor_speed, _ = run(rig, turns, STEP_S, lumped=True)
-    slip, _, _ = run(rig, turns, STEP_S, lumped=False)
-    taken = work(slip, motor_speed, period)
-    assert taken > 100.0
-    assert work(lugre, motor_speed, period) == pytest.approx(taken, rel=0.01)
 
 
 def test_a_rig_left_alone_rings_down_and_rests():
