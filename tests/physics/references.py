@@ -72,10 +72,10 @@ def at(laws, boundary=LOADED_BY_SPRING, scale=None):
 
 
 class Profile:
-    """The tension along the sheath, from rest at the preload, changed from either end.
+    """The tension along the sheath, from rest at the preload, changed from the drive.
 
-    Tension cannot change faster along the sheath than e^(±a s/L). A pull at an end therefore lifts
-    the profile to at least the steepest one from there, a release lowers it likewise; no front is
+    Tension cannot change faster along the sheath than e^(±a s/L). A pull therefore lifts the
+    profile to at least the steepest one from the drive, a release lowers it likewise; no front is
     followed and nothing is remembered but the profile.
     """
 
@@ -87,27 +87,11 @@ class Profile:
 
     def pull_drive_to(self, f_in):
         """Change the tension at the drive, with a spring at the load."""
-        self._change(f_in, self.tension[0], self.s)
-        self.x_out = (self.tension[-1] - self.rig.preload_N) / self.rig.load_stiffness_N_per_mm
-
-    def pull_drive_with_held_load(self, f_in):
-        """Change the tension at the drive by so little that the load does not feel it."""
-        before = self.tension[-1]
-        self._change(f_in, self.tension[0], self.s)
-        assert self.tension[-1] == before
-
-    def pull_load_with_held_drive(self, f_out):
-        """Change the tension at the load by so little that the drive does not feel it."""
-        x_in, before = self.x_in, self.tension[0]
-        self._change(f_out, self.tension[-1], 1.0 - self.s)
-        assert self.tension[0] == before
-        self.x_out += x_in - self.x_in
-
-    def _change(self, to, before, distance):
-        if to > before:
-            self.tension = np.maximum(self.tension, to * np.exp(-self.wrap * distance))
+        if f_in > self.tension[0]:
+            self.tension = np.maximum(self.tension, f_in * np.exp(-self.wrap * self.s))
         else:
-            self.tension = np.minimum(self.tension, to * np.exp(self.wrap * distance))
+            self.tension = np.minimum(self.tension, f_in * np.exp(self.wrap * self.s))
+        self.x_out = (self.tension[-1] - self.rig.preload_N) / self.rig.load_stiffness_N_per_mm
 
     @property
     def x_in(self):

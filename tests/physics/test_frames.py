@@ -1,4 +1,4 @@
-"""What is along the tendon: against the solver's own ends, formulas, and a profile on a grid."""
+"""What is along the tendon: every solver against its own ends, the chain by the closed form."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,6 @@ from tests.physics.references import (
     LOADED_BY_SPRING,
     course_of,
     through,
-    wrap_of,
 )
 from tsas_cli.effects import Effects, Presliding
 from tsas_cli.physics.closed_form.branches import branches
@@ -19,25 +18,13 @@ from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.slip.chain import slip_chain
 
-N = 60
-WRAP = wrap_of(GROUP_A)
-GIVE = GROUP_A.sheath_length_mm / (WRAP * GROUP_A.tendon_stiffness_N)  # C = L/(a EA)
 NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
 TIME_S = np.arange(0.0, 6.3, 1e-3)
 SINE = 10.0 - 10.0 * np.cos(TIME_S)
-BEHIND = through(20.0, samples=2000)  # a long pull, then a dead band
-LETTING_GO = np.concatenate((BEHIND, np.linspace(20.0, 19.75, 501)[1:]))
-PULLING = np.concatenate((through(20.0, 5.0), np.linspace(5.0, 5.12, 501)[1:]))
 
 
-def closed(x, rig=GROUP_A, *, elements=N, every=1):
-    frames = empty_frames(np.arange(0, len(x), every), elements)
-    return branches(x, rig, frames), frames
-
-
-def chain(x, rig=GROUP_A, *, n=N, every=1):
-    frames = empty_frames(np.arange(0, len(x), every), n)
-    return slip_chain(course_of(x, rig), rig, LOADED_BY_SPRING, n, frames), frames
+def chain(x, rig, frames):
+    return slip_chain(course_of(x, rig), rig, LOADED_BY_SPRING, frames.slip.shape[1], frames)
 
 
 @pytest.mark.parametrize(
@@ -64,38 +51,15 @@ def test_ends_of_the_profile_are_those_of_the_same_simulation(solver, call):
     assert plain.frames is None
 
 
-@pytest.mark.parametrize(("x", "direction"), [(LETTING_GO, -1), (PULLING, 1)])
-@pytest.mark.parametrize("follow", [closed, chain])
-def test_the_front_runs_inwards_as_its_travel_says(follow, x, direction):
-    """The drive's travel D from tension A lays the front at u: D = C A (1 − e^(∓a u))²."""
-    answer, frames = follow(x)
-    turn = x.size - 501
-    at_turn = frames.tension_N[turn, 0]
-    assert answer[-1][turn] != 0
-    travel = np.abs(x[turn + 1 :] - x[turn])
-    root = np.sqrt(travel / (GIVE * at_turn))
-    expected = np.minimum(np.log1p(direction * root) / (direction * WRAP), 1.0)
-    front = frames.front[turn + 1 :]
-    assert expected[0] < 0.1
-    assert expected[-1] > 0.9
-    assert (np.diff(front) >= 0.0).all()
-    assert np.abs(front - expected).max() < (1e-9 if follow is closed else 1.5 / N)
-    slip = frames.slip[turn + 1 :]
-    assert (slip[:, 0] == direction).all()
-    nearer = (np.arange(N) + 0.5) / N < front[:, None]
-    assert (slip[nearer] == direction).all()
-    far = (np.arange(N) - 0.5) / N > front[:, None]
-    assert (slip[far] == 0).all()
-
-
-def test_chain_and_closed_form_agree_along_the_tendon():
-    for rig in (GROUP_A, FREE):
-        _, exact = closed(NESTED, rig, elements=100, every=3)
-        _, found = chain(NESTED, rig, n=100, every=3)
-        assert np.abs(found.tension_N - exact.tension_N).max() < 0.5
-        assert np.sqrt(np.mean((found.tension_N - exact.tension_N) ** 2)) < 0.02
-        assert (found.slip != exact.slip).mean() < 0.01
-        assert np.abs(found.front - exact.front).max() < 0.03
+@pytest.mark.parametrize("rig", [GROUP_A, FREE])
+def test_chain_and_closed_form_agree_along_the_tendon(rig):
+    exact, found = (empty_frames(np.arange(0, NESTED.size, 3), 100) for _ in range(2))
+    branches(NESTED, rig, exact)
+    chain(NESTED, rig, found)
+    assert np.abs(found.tension_N - exact.tension_N).max() < 0.5
+    assert np.sqrt(np.mean((found.tension_N - exact.tension_N) ** 2)) < 0.02
+    assert (found.slip != exact.slip).mean() < 0.01
+    assert np.abs(found.front - exact.front).max() < 0.03
 
 
 @pytest.mark.parametrize("dynamics", ["slip", "lugre"])
@@ -113,7 +77,9 @@ def test_a_slack_tendon_carries_nothing(dynamics, on_mesh):
 
 def test_presliding_slips_where_its_bristles_are_at_their_limit():
     rig = GROUP_A._replace(effects=Effects(presliding=Presliding(0.02)))
-    (*_, phase), frames = chain(LETTING_GO, rig)
+    pull, dead_band = through(20.0, samples=2000), np.linspace(20.0, 19.75, 501)[1:]
+    frames = empty_frames(np.arange(2500), 60)
+    phase = chain(np.concatenate((pull, dead_band)), rig, frames).phase
     assert (frames.slip[phase == 1] == 1).all()
     turned, front = frames.slip[-500:], frames.front[-500:]
     assert (turned[:5] != -1).all()  # the bristles turn round first

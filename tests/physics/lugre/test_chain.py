@@ -13,7 +13,6 @@ from tests.physics.references import (
     LOADED_BY_SPRING,
     TABLE_1,
     course_of,
-    wrap_of,
 )
 from tsas_cli.effects import Effects, StribeckFriction
 from tsas_cli.physics.course import LOAD
@@ -123,17 +122,6 @@ def test_friction_takes_energy_from_every_closed_cycle(seed):
     scale = np.max(f_in) * np.ptp(x)
     assert abs(given) < 1e-4 * scale  # a spring gives back what it takes
     assert drawn > 1e-3 * scale
-
-
-def test_full_slip_is_the_capstan_with_the_lubricants_loss():
-    columns, phase, _ = follow(SINE)
-    speed, wrap = np.gradient(SINE, TIME_S), wrap_of(TABLE_1)
-    pulled = (phase == 1) & (speed > 5.0)
-    lost = 0.02 * np.abs(speed) * (math.exp(wrap) - 1.0) / wrap  # its share of e^(a s) on the way
-    off = columns[2] - columns[3] * math.exp(wrap) - lost
-    assert np.count_nonzero(pulled) > 1500
-    assert np.max(np.abs(off[pulled])) < 0.03
-    assert np.min(lost[pulled & (speed > 9.0)]) > 0.2
 
 
 def test_a_sliding_tendon_that_friction_pushes_on_is_given_up_with_a_reason():

@@ -63,18 +63,6 @@ def there_and_back(*rpm, hold=0.0, each_s=0.2, h=1e-3):
     return np.concatenate(legs)
 
 
-@pytest.mark.parametrize("lag", [0.002, 0.05])
-def test_the_motor_is_exact_for_a_speed_that_is_held(lag):
-    start = Motor(1.0, 2.0)
-    h, asked = 0.03, -700.0
-    now = advance_motor(start, asked, DRIVE._replace(motor_lag_s=lag), h)
-    exact = solve_ivp(
-        lambda _, y: [(asked - y[0]) / lag, K * y[0]], (0, h), start[:2], rtol=1e-11, atol=1e-11
-    )
-    assert now[:2] == pytest.approx(exact.y[:, -1], rel=1e-8)
-    assert now[2:] == start[2:]
-
-
 def test_a_motor_without_lag_has_its_speed_at_once():
     now = advance_motor(Motor(5.0, 1.0), 300.0, DRIVE._replace(motor_lag_s=0.0), 0.01)
     assert now[:2] == pytest.approx((300.0, 1.0 + 300.0 * K * 0.01))

@@ -7,12 +7,8 @@ import numpy as np
 import pytest
 
 from tests.physics.references import (
-    DRIVEN_BY_FORCE,
     FREE,
     GROUP_A,
-    LOADED_BY_DISPLACEMENT,
-    LOADED_BY_FORCE,
-    Profile,
     follow,
     through,
 )
@@ -42,37 +38,6 @@ def test_full_slip_is_second_order():
     assert errors[0] < 1e-3
     for coarse, fine in pairwise(errors):
         assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
-
-
-def test_a_drive_by_force_moves_as_the_profile_says():
-    turns = 25.0 * np.array([2.0, 0.9, 1.7, 1.1, 0.4, 3.0])
-    profile, exact = Profile(FREE), []
-    for f_in in turns:
-        profile.pull_drive_to(f_in)
-        exact.append((profile.x_in, profile.x_out))
-    x_in, x_out, f_in, _, _ = follow(turns, rig=FREE, boundary=DRIVEN_BY_FORCE, n=200)
-    np.testing.assert_array_equal(f_in, turns)
-    np.testing.assert_allclose(np.transpose(exact), [x_in, x_out], atol=1e-3)
-
-
-PUSHED = [("drive", 1.3), ("load", 1.15), ("drive", 1.05), ("load", 0.9), ("drive", 1.2)]
-
-
-@pytest.mark.parametrize("boundary", [LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT])
-def test_fronts_from_both_ends_are_those_of_the_profile(boundary):
-    profile, drive, load, exact = Profile(FREE), [], [], []
-    pull = {
-        "drive": profile.pull_drive_with_held_load,
-        "load": profile.pull_load_with_held_drive,
-    }
-    for end, factor in PUSHED:
-        pull[end](25.0 * factor)
-        drive.append(profile.x_in)
-        load.append(profile.tension[-1] if boundary == LOADED_BY_FORCE else profile.x_out)
-        exact.append((profile.x_in, profile.x_out, profile.tension[0], profile.tension[-1]))
-    answer = follow(drive, load=load, rig=FREE, boundary=boundary, n=400)
-    np.testing.assert_allclose(np.transpose(exact)[:2], answer[:2], atol=1e-4)
-    np.testing.assert_allclose(np.transpose(exact)[2:], answer[2:4], atol=0.03)
 
 
 @pytest.mark.parametrize("n", [1, 2, 30])
