@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tests.fuzz.rules import Watch
 
 PACKAGE = Path(__file__).parents[2] / "tsas_cli"
-COMPILED = ("challenge/rig", "controllers", "effects", "numerics", "physics")  # by numba: not seen
+COMPILED = ("controllers", "effects", "numerics", "physics")  # by numba: not seen
 MEMORY = 1 << 31  # bytes beyond those that the libraries take
 
 

@@ -1,12 +1,12 @@
 """A reader whose library may crash: asked in its own process first, and then here as well."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
-from tests.fuzz.rules import Broken, answer
+from tests.fuzz.rules import PLAIN, Broken, Scratch, answer
 from tsas_cli.recordings.readers import names, offered, read, tables
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
@@ -54,6 +54,12 @@ def ask(reader: Reader, path: Path, options: ReadOptions) -> None:
         here = answer(reader.read, path, said, wanted) if here_too and there is not None else there
         if there is not None and (here is None or not _same(there, here)):
             raise Broken(f"{there} is {here} when it is read in this process")
+
+
+def whole_file(reader: Reader, name: str) -> Callable[[bytes], None]:
+    """Return the target whose input is a file of one format."""
+    scratch = Scratch()
+    return lambda data: ask(reader, scratch.file(name, data), PLAIN)
 
 
 def _raise(error: InputError) -> None:

@@ -4,15 +4,19 @@ import atexit
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import gettempdir, mkdtemp
-from typing import Any
+from typing import Any, TypeVar
 
+from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support import worker_process
 from tsas_cli.support.errors import InputError
 
+Kind = TypeVar("Kind")
+PLAIN = ReadOptions()
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _CHANGES = {  # and which of its arguments is the folder that its path is relative to
     "os.mkdir": 2,
@@ -55,6 +59,18 @@ class Scratch:
         path = self.folder / name
         path.write_bytes(content)
         return path
+
+
+def read_all(path: Path, options: ReadOptions = PLAIN) -> None:
+    """Ask for the names of the columns, and for up to 20 of them at once."""
+    listed = answer(names, path, options)
+    if listed is not None:
+        answer(read, path, options, list(range(1, len(listed) + 1))[:20])
+
+
+def chosen(data: bytes, kinds: Sequence[Kind]) -> tuple[Kind, bytes]:
+    """Return the kind that the first byte chooses, and what stands behind it."""
+    return kinds[data[0] % len(kinds) if data else 0], data[1:]
 
 
 class Watch:

@@ -2,8 +2,6 @@
 
 from functools import cached_property
 
-import numpy as np
-
 import tsas_cli as tsas
 
 FORCES = ("preload_N", "preload_correction_N", "load_stiffness_N_per_mm", "tendon_stiffness_N")
@@ -13,7 +11,7 @@ class Answers:
     """The whole way from files to a verdict; each stage runs when it is first asked for."""
 
     def __init__(self, raw, folder):
-        """Ingest the files into a folder."""
+        self.raw = raw
         sources, path = raw.write(folder)
         self.dataset = tsas.ingest(sources, map=path, out=folder / "dataset").dataset
 
@@ -23,7 +21,6 @@ class Answers:
 
     @cached_property
     def calibrate(self):
-        """What calibrate says."""
         return tsas.calibrate(self.dataset, despite=("filtered",))
 
     @cached_property
@@ -44,20 +41,10 @@ def fitted(result):
 
 
 def apart(ours, theirs, *, names=None, times=1.0, moved=None, shared_only=False):
-    """Return by how many standard errors each parameter of two results differs.
+    """Return by how many standard errors a parameter of two results of a stage differs at most.
 
-    Parameters
-    ----------
-    ours, theirs
-        Results of one stage.
-    names
-        What the second calls the runs of the first.
-    times
-        By what the second's forces are to be larger.
-    moved
-        By what parameters of the second are to be larger, by name.
-    shared_only
-        Leave out what belongs to one run.
+    `names` is what the second calls the runs of the first, `times` by what its forces are larger,
+    `moved` by what other parameters are. With `shared_only` those of one run do not count.
     """
     found, other = {}, fitted(theirs)
     for (name, run), one in fitted(ours).items():
@@ -68,9 +55,4 @@ def apart(ours, theirs, *, names=None, times=1.0, moved=None, shared_only=False)
         off = same.value / scale - one.value - (moved or {}).get(name, 0.0)
         found[name, run] = abs(off) / max(one.stderr, same.stderr / scale)
     assert len(found) > 1
-    return found
-
-
-def largest(differences):
-    """Return the largest difference."""
-    return float(np.max(list(differences.values())))
+    return float(max(found.values()))

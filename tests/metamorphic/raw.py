@@ -86,12 +86,10 @@ def recorded(effect=None, *, seed=1):
 
 
 def later(raw, seconds):
-    """Shift the clock."""
     return raw.each(lambda c: c | {CLOCK: c[CLOCK] + seconds})
 
 
 def called(raw, names):
-    """Give the runs other names, and with them another order."""
     runs, conditions = (
         {new: of[old] for old, new in names.items()} for of in (raw.runs, raw.conditions)
     )
@@ -99,7 +97,6 @@ def called(raw, names):
 
 
 def in_units(raw, units):
-    """Write the same in other units."""
     return raw.each(
         lambda c: {name: c[name] / PER_UNIT[unit] for name, unit in units.items()}, units=units
     )
@@ -123,7 +120,6 @@ def with_strangers(raw):
 
 
 def every_second(raw):
-    """Keep every second sample."""
     return raw.each(lambda c: {name: values[::2] for name, values in c.items()})
 
 
@@ -170,7 +166,6 @@ def cut(raw):
 
 
 def moved(raw, column, by):
-    """Count a displacement from another zero."""
     return raw.each(lambda c: c | {column: c[column] + by})
 
 

@@ -23,79 +23,55 @@ print(json.dumps([len(compilations.buffer), numba.config.CACHE_DIR, turns.tolist
 """
 
 
-def run(program: str, folder: Path, **environment: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", program],
+def use_a_kernel(folder, cache, *, changes=""):
+    """Return how often numba compiled, the folder of the machine code, the result, messages."""
+    done = subprocess.run(
+        [sys.executable, "-c", changes + USE_A_KERNEL],
         cwd=folder,
-        env=os.environ | {name: str(value) for name, value in environment.items()},
+        env=os.environ | {"TSAS_CACHE_DIR": str(cache)},
         capture_output=True,
         text=True,
         check=True,
     )
-
-
-def use_a_kernel(folder: Path, cache: Path) -> tuple[int, str, list[int]]:
-    """Return how often numba compiled, the folder of the machine code, and the result."""
-    compilations, place, turns = json.loads(run(USE_A_KERNEL, folder, TSAS_CACHE_DIR=cache).stdout)
-    return compilations, place, turns
-
-
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    """Copy the package, so that a test may edit it; imported from this folder."""
-    shutil.copytree(PACKAGE, tmp_path / "copy" / "tsas_cli")
-    return tmp_path / "copy"
+    return (*json.loads(done.stdout), done.stderr)
 
 
 @pytest.fixture(scope="module")
-def first(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, tuple[int, str, list[int]]]:
+def first(tmp_path_factory):
     """Return a cache that was empty, and the first use of a kernel with it."""
     cache = tmp_path_factory.mktemp("first") / "cache"
     return cache, use_a_kernel(cache.parent, cache)
 
 
-def test_the_second_process_compiles_nothing(first, tmp_path: Path) -> None:
+def test_the_second_process_compiles_nothing(first, tmp_path):
     cache, (compilations, *found) = first
     assert compilations > 0
     assert use_a_kernel(tmp_path, cache) == (0, *found)
     assert Path(found[0]).is_relative_to(cache)
 
 
-def test_an_edit_of_any_kernel_file_is_compiled_anew_and_no_other(copy: Path, tmp_path: Path):
-    _, before, _ = use_a_kernel(copy, tmp_path / "cache")
+def test_an_edit_of_any_kernel_file_is_compiled_anew_and_no_other(tmp_path):
+    shutil.copytree(PACKAGE, tmp_path / "tsas_cli")  # which the process imports
+    _, before, *_ = use_a_kernel(tmp_path, tmp_path / "cache")
     for edited, anew in (("commands/common.py", False), ("physics/__init__.py", True)):
-        with (copy / "tsas_cli" / edited).open("a") as source:
+        with (tmp_path / "tsas_cli" / edited).open("a") as source:
             source.write("# edited\n")
-        compilations, after, _ = use_a_kernel(copy, tmp_path / "cache")
+        compilations, after, *_ = use_a_kernel(tmp_path, tmp_path / "cache")
         assert (after != before, compilations > 0) == (anew, anew)
 
 
-def test_kernels_live_only_where_edits_are_seen() -> None:
+def test_kernels_live_only_where_edits_are_seen():
     users = {p for p in PACKAGE.rglob("*.py") if "compiled import kernel" in p.read_text()}
     assert users
     assert {path.relative_to(PACKAGE).parts[0] for path in users} <= set(PARTS)
 
 
-def test_without_a_cache_kernels_still_run(first, tmp_path: Path) -> None:
+def test_without_a_cache_kernels_still_run(first, tmp_path):
     (tmp_path / "file").write_text("")
-    compilations, none, turns = use_a_kernel(tmp_path, tmp_path / "file")
+    compilations, none, turns, _ = use_a_kernel(tmp_path, tmp_path / "file")
     assert (first[1][1] != "", none) == (True, "")
     assert compilations > 0
     assert turns == first[1][2]
-
-
-def test_plain_python_gives_the_same_and_loads_no_compiler(first, tmp_path: Path) -> None:
-    program = """
-import json, sys
-import numpy as np
-from tsas_cli.numerics.turning_points import turning_points
-turns = turning_points(np.cumsum(np.random.default_rng(1).standard_normal(5000)), 3.0)
-print(json.dumps(["numba" in sys.modules, turns.tolist()]))
-"""
-    loaded, plain = json.loads(run(program, tmp_path, TSAS_PLAIN_PYTHON=1).stdout)
-    assert not loaded
-    assert plain == first[1][2]
-    assert len(plain) > 20
 
 
 NO_ROOM = """
@@ -109,8 +85,7 @@ caching.IndexDataCacheFile.save = full
 
 def test_a_full_disk_of_the_cache_is_no_error_of_the_call(tmp_path):
     """Before, it was told as a full disk of the output."""
-    done = run(NO_ROOM + USE_A_KERNEL, tmp_path, TSAS_CACHE_DIR=tmp_path / "cache")
-    compilations, _, turns = json.loads(done.stdout)
+    compilations, _, turns, _ = use_a_kernel(tmp_path, tmp_path / "cache", changes=NO_ROOM)
     assert compilations > 0
     assert len(turns) > 2
 
@@ -122,8 +97,7 @@ def test_damaged_machine_code_is_compiled_again(first, tmp_path, files, bytes_le
     shutil.copytree(first[0], cache)
     for file in cache.rglob(files):
         file.write_bytes(file.read_bytes()[:bytes_left])
-    done = run(USE_A_KERNEL, tmp_path, TSAS_CACHE_DIR=cache)
-    compilations, _, turns = json.loads(done.stdout)
+    compilations, _, turns, told = use_a_kernel(tmp_path, cache)
     assert (compilations > 0, turns) == (True, first[1][2])
-    assert "is damaged; the kernel is compiled again" in done.stderr
+    assert "is damaged; the kernel is compiled again" in told
     assert use_a_kernel(tmp_path, cache)[0] == 0

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
-from tsas_cli.numerics.conditioning import condition
+from tsas_cli.numerics import conditioning_pieces
+from tsas_cli.numerics.conditioning import condition, monotone_between
 from tsas_cli.numerics.conditioning_pieces import CleaningPlan, cleaned, plan
 from tsas_cli.numerics.turning_points import turning_points
 
 NOISE = 0.01
 TIME_S = np.arange(20_000) / 200.0
+NOTHING_TO_CLEAN = CleaningPlan(0.0, 1.0, 0.0, 0.0, 0.005)
 
 
 def motion(time_s):
@@ -26,6 +28,10 @@ def dwells(time_s):
 def pieces(time_s, values, rows, beside):
     starts = range(0, max(values.size - 2 * beside, 1), rows - 2 * beside)
     return [(s, time_s[s : s + rows], values[s : s + rows]) for s in starts]
+
+
+def noisy(true, seed):
+    return true + NOISE * np.random.default_rng(seed).standard_normal(true.size)
 
 
 def in_pieces(time_s, values, rows, beside, known=None):
@@ -46,7 +52,7 @@ LARGE = pytest.mark.large
 @pytest.mark.parametrize("shape", [motion, triangle, dwells])
 def test_it_is_the_signal_that_is_cleaned_as_a_whole(shape, rows):
     true = shape(TIME_S)
-    raw = true + NOISE * np.random.default_rng(1).standard_normal(TIME_S.size)
+    raw = noisy(true, 1)
     whole = condition(TIME_S, raw)
     found, known = in_pieces(TIME_S, raw, rows, 500)
     assert known.noise == pytest.approx(whole.noise, rel=0.02)
@@ -62,14 +68,11 @@ def test_it_is_the_signal_that_is_cleaned_as_a_whole(shape, rows):
 
 @pytest.mark.parametrize(("rows", "threshold"), [(100, 0.05), (1000, 2.0), (7000, 2.0)])
 def test_between_reversals_it_is_the_nearest_monotone_signal_exactly(rows, threshold, monkeypatch):
-    from tsas_cli.numerics import conditioning_pieces
-    from tsas_cli.numerics.conditioning import monotone_between
-
     def as_it_is(time_s, values, noise, memory):
         return values, np.full(values.size, noise), 0.0
 
     monkeypatch.setattr(conditioning_pieces, "smooth_out", as_it_is)
-    raw = motion(TIME_S) + NOISE * np.random.default_rng(2).standard_normal(TIME_S.size)
+    raw = noisy(motion(TIME_S), 2)
     known = CleaningPlan(NOISE, 1.0, threshold, 0.0, 0.005)
     found, _ = in_pieces(TIME_S, raw, rows, 10, known)
     turns = turning_points(raw, threshold)
@@ -81,8 +84,7 @@ def test_between_reversals_it_is_the_nearest_monotone_signal_exactly(rows, thres
 @pytest.mark.parametrize("rows", [900, 4000])
 def test_without_noise_nothing_changes(rows):
     raw = motion(TIME_S)
-    known = CleaningPlan(0.0, 1.0, 0.0, 0.0, 0.005)
-    found, _ = in_pieces(TIME_S, raw, rows, 100, known)
+    found, _ = in_pieces(TIME_S, raw, rows, 100, NOTHING_TO_CLEAN)
     np.testing.assert_array_equal(found["values"], raw)
     np.testing.assert_array_equal(found["reversals"], condition(TIME_S, raw).reversals[1:-1])
 
@@ -94,8 +96,7 @@ def test_a_gap_is_laid_over_straight_wherever_it_is(gap):
     raw = motion(TIME_S)
     raw[gap] = np.nan
     raw[5000::3] = np.nan
-    known = CleaningPlan(0.0, 1.0, 0.0, 0.0, 0.005)
-    found, _ = in_pieces(TIME_S, raw, 3000, 100, known)
+    found, _ = in_pieces(TIME_S, raw, 3000, 100, NOTHING_TO_CLEAN)
     there = np.isfinite(raw)
     np.testing.assert_allclose(found["values"], np.interp(TIME_S, TIME_S[there], raw[there]))
     before, after = gap.start - 1, gap.stop
@@ -108,7 +109,7 @@ def test_a_gap_is_laid_over_straight_wherever_it_is(gap):
 def test_a_rest_longer_than_two_pieces_neither_stops_it_nor_turns_back():
     time_s = np.arange(30_000) / 200.0
     true = np.interp(time_s, [0, 20, 120, 150], [0, 8, 8, 12])
-    raw = true + NOISE * np.random.default_rng(3).standard_normal(time_s.size)
+    raw = noisy(true, 3)
     found, _ = in_pieces(time_s, raw, 2000, 300)
     assert found["reversals"].size == 0
     assert (np.diff(found["values"]) >= 0.0).all()
@@ -118,7 +119,7 @@ def test_a_rest_longer_than_two_pieces_neither_stops_it_nor_turns_back():
 def test_a_drive_that_rests_first_and_for_long_begins_where_it_is():
     time_s = np.arange(20_000) / 200.0
     true = np.interp(time_s, [0, 60, 80, 100], [5, 5, 1, 4])
-    raw = true + NOISE * np.random.default_rng(4).standard_normal(time_s.size)
+    raw = noisy(true, 4)
     found, _ = in_pieces(time_s, raw, 2000, 300)
     assert np.abs(found["values"] - true).max() < 2.0 * NOISE
     assert 15_990 <= found["reversals"][-1] <= 16_010

@@ -20,25 +20,26 @@ def slopes(p):
     return np.array([fade * wave, -T * p[0] * fade * wave, -T * p[0] * fade * np.sin(p[2] * T)]).T
 
 
-def fitted(truth, start, bounds=FREE, noise=0.0, **options):
-    data = decay(truth) + noise * np.random.default_rng(1).standard_normal(T.size)
-    options = {"tolerance": 1e-12, "most": 100} | options
-    return least_squares(
-        lambda p: decay(p) - data, slopes, np.array(start), bounds, **options
-    ), data
+TRUTH = np.array([2.0, 0.5, 3.0])
+
+
+def fitted(start, bounds=FREE, *, noise=0.0, jacobian=slopes, tolerance=1e-12, most=100, **known):
+    data = decay(TRUTH) + noise * np.random.default_rng(1).standard_normal(T.size)
+    how = {"tolerance": tolerance, "most": most} | known
+    return least_squares(lambda p: decay(p) - data, jacobian, np.array(start), bounds, **how), data
 
 
 def test_the_truth_is_found():
-    found, _ = fitted([2.0, 0.5, 3.0], [1.0, 0.1, 2.5])
+    found, _ = fitted([1.0, 0.1, 2.5])
     assert found.converged
-    np.testing.assert_allclose(found.values, [2.0, 0.5, 3.0], rtol=1e-6)
+    np.testing.assert_allclose(found.values, TRUTH, rtol=1e-6)
     np.testing.assert_allclose(found.residual, 0.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("upper_rate", [np.inf, 0.3])
 def test_it_is_scipys_minimum_with_and_without_a_bound_that_holds(upper_rate):
     bounds = (np.full(3, -10.0), np.array([10.0, upper_rate, 10.0]))
-    found, data = fitted([2.0, 0.5, 3.0], [1.0, 0.1, 2.5], bounds, noise=0.1)
+    found, data = fitted([1.0, 0.1, 2.5], bounds, noise=0.1)
     known = reference(lambda p: decay(p) - data, [1.0, 0.1, 2.5], slopes, bounds, xtol=1e-14)
     np.testing.assert_allclose(found.values, known.x, rtol=1e-4)
     assert found.values[1] <= upper_rate
@@ -46,43 +47,34 @@ def test_it_is_scipys_minimum_with_and_without_a_bound_that_holds(upper_rate):
 
 
 def test_slopes_that_are_nearly_known_lead_to_the_same_minimum_by_fewer_jacobians():
-    data, asked = decay([2.0, 0.5, 3.0]), []
+    asked = []
 
     def counted(p):
         asked.append(p)
         return slopes(p)
 
-    start, near = np.array([1.9, 0.45, 2.95]), slopes([1.7, 0.6, 2.8])
-    found = least_squares(
-        lambda p: decay(p) - data, counted, start, FREE, tolerance=1e-9, most=100, slopes=near
-    )
-    np.testing.assert_allclose(found.values, [2.0, 0.5, 3.0], rtol=1e-6)
+    how = {"jacobian": counted, "tolerance": 1e-9, "slopes": slopes([1.7, 0.6, 2.8])}
+    found, _ = fitted([1.9, 0.45, 2.95], **how)
+    np.testing.assert_allclose(found.values, TRUTH, rtol=1e-6)
     np.testing.assert_allclose(found.jacobian, slopes(found.values), atol=1e-3)
-    with_all, without = len(asked), found.evaluations
-    assert with_all < without
+    with_all = len(asked)
+    assert with_all < found.evaluations
     asked.clear()
-    known = {"slopes": near, "values_only": True}
-    rough = least_squares(
-        lambda p: decay(p) - data, counted, start, FREE, tolerance=1e-9, most=100, **known
-    )
-    np.testing.assert_allclose(rough.values, [2.0, 0.5, 3.0], rtol=1e-4)
+    rough, _ = fitted([1.9, 0.45, 2.95], values_only=True, **how)
+    np.testing.assert_allclose(rough.values, TRUTH, rtol=1e-4)
     assert len(asked) < with_all
 
 
 def test_slopes_that_are_known_wrongly_are_calculated_where_no_step_helps():
-    data = decay([2.0, 0.5, 3.0])
-    start = np.array([1.0, 0.1, 2.5])
-    found = least_squares(
-        *(lambda p: decay(p) - data, slopes, start, FREE),
-        tolerance=1e-9, most=100, slopes=-slopes(start),
-    )  # fmt: skip
-    np.testing.assert_allclose(found.values, [2.0, 0.5, 3.0], rtol=1e-6)
+    start = [1.0, 0.1, 2.5]
+    found, _ = fitted(start, tolerance=1e-9, slopes=-slopes(start))
+    np.testing.assert_allclose(found.values, TRUTH, rtol=1e-6)
 
 
 def test_a_start_outside_of_the_bounds_is_moved_inside():
     bounds = (np.zeros(3), np.array([5.0, 1.0, 4.0]))
-    found, _ = fitted([2.0, 0.5, 3.0], [9.0, -1.0, 2.9], bounds)
-    np.testing.assert_allclose(found.values, [2.0, 0.5, 3.0], rtol=1e-6)
+    found, _ = fitted([9.0, -1.0, 2.9], bounds)
+    np.testing.assert_allclose(found.values, TRUTH, rtol=1e-6)
 
 
 def test_an_unknown_that_does_nothing_stays_where_it_is():
@@ -100,6 +92,6 @@ def test_an_unknown_that_does_nothing_stays_where_it_is():
 
 
 def test_giving_up_is_said():
-    found, _ = fitted([2.0, 0.5, 3.0], [1.0, 0.1, 2.5], most=2)
+    found, _ = fitted([1.0, 0.1, 2.5], most=2)
     assert not found.converged
     assert "2 evaluations" in found.message

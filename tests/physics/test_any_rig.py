@@ -43,11 +43,15 @@ def any_rig(rng):
     )
 
 
+def way_to_slack(rig):
+    profile = Profile(rig, 2001)
+    profile.pull_drive_to(0.0)
+    return -profile.x_in
+
+
 def any_motion(rng, rig, samples=300):
     """Reversals of all sizes, from a hundredth of the dead band to far into full slip and slack."""
-    slack = Profile(rig, 2001)
-    slack.pull_drive_to(0.0)
-    turns = -slack.x_in * rng.normal(0.0, 2.0, 15) * 10.0 ** rng.uniform(-3.0, 0.3, 15)
+    turns = way_to_slack(rig) * rng.normal(0.0, 2.0, 15) * 10.0 ** rng.uniform(-3.0, 0.3, 15)
     turns = np.cumsum(np.concatenate(([0.0], turns)))
     return np.interp(np.linspace(0.0, 15.0, samples), np.arange(16), turns)
 
@@ -84,15 +88,13 @@ def test_the_ends_never_leave_the_capstan_cone(seeds, samples):
         motion = any_motion(rng, rig, samples)
         for name, f_in, f_out, phase in every_answer(rig, motion, rng):
             where = f"seed {seed}, {name}, {rig}"
-            assert np.isfinite(f_in).all(), where
-            assert np.isfinite(f_out).all(), where
+            assert np.isfinite([f_in, f_out]).all(), where
             assert UNCONVERGED not in phase, where
             if name != "force":
                 assert min(f_in.min(), f_out.min()) >= 0.0, where
                 forwards = np.diff(f_in) * np.diff(motion) >= -1e-9 * f_in.max()
                 assert forwards.all() or name == "displacement", where
-            sign = np.sign(f_in) * np.sign(f_out)
-            assert (sign >= 0.0).all(), where
+            assert (np.sign(f_in) * np.sign(f_out) >= 0.0).all(), where
             # A straight dead band from anywhere but a corner of the cycle may end a bit too late.
             taut = (f_in != 0.0) & (phase != 2) & (name != "lumped")
             ratio = np.abs(np.log(f_in[taut] / f_out[taut]))
@@ -136,9 +138,7 @@ def test_friction_never_creates_energy(load):
     for seed in SEEDS[:100]:
         rng = np.random.default_rng(seed)
         rig = any_rig(rng)
-        slack = Profile(rig, 2001)
-        slack.pull_drive_to(0.0)
-        x, trip = there_and_back(rng, -slack.x_in * rng.uniform(0.2, 3.0))
+        x, trip = there_and_back(rng, way_to_slack(rig) * rng.uniform(0.2, 3.0))
         level = branches(x, rig)[1][trip][0]
         wander, _ = there_and_back(rng, 1.0)
         values = {

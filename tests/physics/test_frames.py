@@ -1,21 +1,14 @@
-"""What is along the tendon: against the solver's own ends, formulas, and a profile on a grid."""
-
-import math
+"""What is along the tendon: every solver against its own ends, the chain by the closed form."""
 
 import numpy as np
 import pytest
 
 from tests.physics.references import (
-    DRIVEN_BY_FORCE,
     FREE,
     GROUP_A,
-    LOADED_BY_DISPLACEMENT,
-    LOADED_BY_FORCE,
     LOADED_BY_SPRING,
-    Profile,
     course_of,
     through,
-    wrap_of,
 )
 from tsas_cli.effects import Effects, Presliding
 from tsas_cli.physics.closed_form.branches import branches
@@ -25,33 +18,26 @@ from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.slip.chain import slip_chain
 
-N = 60
-WRAP = wrap_of(GROUP_A)
-GIVE = GROUP_A.sheath_length_mm / (WRAP * GROUP_A.tendon_stiffness_N)  # C = L/(a EA)
 NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
 TIME_S = np.arange(0.0, 6.3, 1e-3)
 SINE = 10.0 - 10.0 * np.cos(TIME_S)
-BEHIND = through(20.0, samples=2000)  # a long pull, then a dead band
-LETTING_GO = np.concatenate((BEHIND, np.linspace(20.0, 19.75, 501)[1:]))
-PULLING = np.concatenate((through(20.0, 5.0), np.linspace(5.0, 5.12, 501)[1:]))
 
 
-def closed(x, rig=GROUP_A, *, elements=N, every=1):
-    frames = empty_frames(np.arange(0, len(x), every), elements)
-    return branches(x, rig, frames), frames
+def chain(x, rig, frames):
+    return slip_chain(course_of(x, rig), rig, LOADED_BY_SPRING, frames.slip.shape[1], frames)
 
 
-def chain(x, rig=GROUP_A, *, n=N, every=1, boundary=LOADED_BY_SPRING, load=0.0):
-    frames = empty_frames(np.arange(0, len(x), every), n)
-    return slip_chain(course_of(x, rig, load=load), rig, boundary, n, frames), frames
-
-
-@pytest.mark.parametrize("solver", ["closed form", "slip chain", "LuGre chain"])
-def test_ends_of_the_profile_are_those_of_the_same_simulation(solver):
-    dynamics = "lugre" if solver == "LuGre chain" else "slip"
+@pytest.mark.parametrize(
+    ("solver", "call"),
+    [
+        ("closed form", {}),
+        ("slip chain", {"on_mesh": True}),
+        ("LuGre chain", {"dynamics": "lugre"}),
+    ],
+)
+def test_ends_of_the_profile_are_those_of_the_same_simulation(solver, call):
     drive = DriveInput(SINE, time_s=TIME_S, start_f_in_N=30.0)
     at = np.arange(0, SINE.size, 7)
-    call = {"dynamics": dynamics, "on_mesh": solver == "slip chain"}
     answer = simulate(GROUP_A, drive, looked_at=at, **call)
     assert answer.solver.startswith(solver)
     frames = answer.frames
@@ -65,76 +51,15 @@ def test_ends_of_the_profile_are_those_of_the_same_simulation(solver):
     assert plain.frames is None
 
 
-@pytest.mark.parametrize(
-    ("boundary", "given", "load"),
-    [
-        (LOADED_BY_FORCE, NESTED, 25.0 - 0.5 * NESTED),
-        (LOADED_BY_DISPLACEMENT, NESTED, 0.9 * NESTED),
-        (DRIVEN_BY_FORCE, 25.0 + NESTED, 0.0),
-    ],
-)
-def test_ends_of_the_chain_at_every_boundary(boundary, given, load):
-    (_, _, f_in, f_out, _), frames = chain(given, boundary=boundary, load=load)
-    np.testing.assert_allclose(frames.tension_N[:, 0], f_in, rtol=1e-8)
-    np.testing.assert_allclose(frames.tension_N[:, -1], f_out, rtol=1e-8)
-
-
-@pytest.mark.parametrize("follow", [closed, chain])
-@pytest.mark.parametrize("direction", [1, -1])
-def test_full_slip_is_the_capstan_exponential(follow, direction):
-    """Yang 2025, Eqs. (4) and (7): F(s) = F(0) e^(∓a s/L)."""
-    (*_, phase), frames = follow(through(20.0, 0.0))
-    whole = frames.tension_N[phase == direction]
-    expected = whole[:, :1] * np.exp(-direction * WRAP * frames.places)
-    assert len(whole) > 300
-    np.testing.assert_allclose(whole, expected, rtol=1e-9)
-    assert (frames.slip[phase == direction] == direction).all()
-    assert (frames.front[phase == direction] == 1.0).all()
-
-
-@pytest.mark.parametrize(("x", "direction"), [(LETTING_GO, -1), (PULLING, 1)])
-@pytest.mark.parametrize("follow", [closed, chain])
-def test_the_front_runs_inwards_as_its_travel_says(follow, x, direction):
-    """The drive's travel D from tension A lays the front at u: D = C A (1 − e^(∓a u))²."""
-    answer, frames = follow(x)
-    turn = x.size - 501
-    at_turn = frames.tension_N[turn, 0]
-    assert answer[-1][turn] != 0
-    travel = np.abs(x[turn + 1 :] - x[turn])
-    root = np.sqrt(travel / (GIVE * at_turn))
-    expected = np.minimum(np.log1p(direction * root) / (direction * WRAP), 1.0)
-    front = frames.front[turn + 1 :]
-    assert expected[0] < 0.1
-    assert expected[-1] > 0.9
-    assert (np.diff(front) >= 0.0).all()
-    assert np.abs(front - expected).max() < (1e-9 if follow is closed else 1.5 / N)
-    slip = frames.slip[turn + 1 :]
-    assert (slip[:, 0] == direction).all()
-    nearer = (np.arange(N) + 0.5) / N < front[:, None]
-    assert (slip[nearer] == direction).all()
-    far = (np.arange(N) - 0.5) / N > front[:, None]
-    assert (slip[far] == 0).all()
-
-
 @pytest.mark.parametrize("rig", [GROUP_A, FREE])
-def test_profiles_are_those_of_a_grid_that_knows_no_fronts(rig):
-    _, frames = closed(NESTED, rig, elements=40)
-    grid = Profile(rig, points=41)
-    for at, tension in enumerate(frames.tension_N):
-        grid.pull_drive_to(tension[0])
-        np.testing.assert_allclose(tension, grid.tension, rtol=1e-9, err_msg=f"sample {at}")
-    within = (frames.slip != 0).any(axis=1) & (frames.slip == 0).any(axis=1)
-    assert within.sum() > 200  # partial reversals, nested
-
-
-def test_chain_and_closed_form_agree_along_the_tendon():
-    for rig in (GROUP_A, FREE):
-        _, exact = closed(NESTED, rig, elements=100, every=3)
-        _, found = chain(NESTED, rig, n=100, every=3)
-        assert np.abs(found.tension_N - exact.tension_N).max() < 0.5
-        assert np.sqrt(np.mean((found.tension_N - exact.tension_N) ** 2)) < 0.02
-        assert (found.slip != exact.slip).mean() < 0.01
-        assert np.abs(found.front - exact.front).max() < 0.03
+def test_chain_and_closed_form_agree_along_the_tendon(rig):
+    exact, found = (empty_frames(np.arange(0, NESTED.size, 3), 100) for _ in range(2))
+    branches(NESTED, rig, exact)
+    chain(NESTED, rig, found)
+    assert np.abs(found.tension_N - exact.tension_N).max() < 0.5
+    assert np.sqrt(np.mean((found.tension_N - exact.tension_N) ** 2)) < 0.02
+    assert (found.slip != exact.slip).mean() < 0.01
+    assert np.abs(found.front - exact.front).max() < 0.03
 
 
 @pytest.mark.parametrize("dynamics", ["slip", "lugre"])
@@ -143,17 +68,18 @@ def test_a_slack_tendon_carries_nothing(dynamics, on_mesh):
     x = np.concatenate((through(5.0, -40.0, -35.0), np.full(50, -35.0)))
     drive = DriveInput(x, time_s=1e-2 * np.arange(x.size))
     answer = simulate(GROUP_A, drive, dynamics, on_mesh=on_mesh, looked_at=np.arange(x.size))
-    slack = answer.phase == SLACK
+    slack, frames = answer.phase == SLACK, answer.frames
     assert slack.sum() > 100
-    assert (answer.frames.tension_N[slack] == 0.0).all()
-    assert (answer.frames.slip[slack] == SLACK).all()
-    assert (answer.frames.front[slack] == 0.0).all()
-    assert (answer.frames.slip[~slack] != SLACK).all()
+    assert not frames.tension_N[slack].any()
+    assert not frames.front[slack].any()
+    assert ((frames.slip == SLACK) == slack[:, None]).all()
 
 
 def test_presliding_slips_where_its_bristles_are_at_their_limit():
     rig = GROUP_A._replace(effects=Effects(presliding=Presliding(0.02)))
-    (*_, phase), frames = chain(LETTING_GO, rig)
+    pull, dead_band = through(20.0, samples=2000), np.linspace(20.0, 19.75, 501)[1:]
+    frames = empty_frames(np.arange(2500), 60)
+    phase = chain(np.concatenate((pull, dead_band)), rig, frames).phase
     assert (frames.slip[phase == 1] == 1).all()
     turned, front = frames.slip[-500:], frames.front[-500:]
     assert (turned[:5] != -1).all()  # the bristles turn round first
@@ -161,32 +87,21 @@ def test_presliding_slips_where_its_bristles_are_at_their_limit():
     assert (np.diff(front[(turned[:, 0] == -1)]) >= 0.0).all()
 
 
-def test_what_no_solver_has_reached_is_unknown():
-    frames = empty_frames(np.array([3, 5]), 4)
-    assert np.isnan(frames.tension_N).all()
-    assert (frames.slip == UNCONVERGED).all()
-    np.testing.assert_allclose(frames.places, [0.0, 0.25, 0.5, 0.75, 1.0])
-
-
 def test_the_lumped_model_does_not_say_it():
     answer = simulate(GROUP_A, DriveInput(SINE), "static", looked_at=np.array([0, 10]))
     assert answer.frames is None
 
 
-def test_a_straight_sheath_carries_one_tension():
-    straight = GROUP_A._replace(total_bend_rad=0.0)
-    (f_in, *_), frames = closed(np.linspace(0.0, 10.0, 50), straight)
-    np.testing.assert_allclose(frames.tension_N, np.tile(f_in[:, None], N + 1), rtol=1e-8)
-    assert math.isclose(f_in[-1], 25.0 + 10.0 / (1.0 / 1.579 + 785.398 / 67858.4), rel_tol=1e-4)
-
-
 def test_the_front_is_where_slip_changes_first():
-    frames = empty_frames(np.array([4, 6, 9]), 4)
-    frames.slip[:] = [[1, 1, 0, 1], [-1, -1, -1, -1], [0, 1, 1, 1]]
-    assert [slips_up_to(frames, k) for k in range(3)] == [0.5, 1.0, 0.0]
-    frames.slip[0] = 2
-    assert slips_up_to(frames, 0) == 0.0  # slack
-    assert [is_next(frames, k, 6) for k in range(4)] == [False, True, False, False]
-    np.testing.assert_array_equal(
-        empty_frames(np.array([1]), 4).places, [0.0, 0.25, 0.5, 0.75, 1.0]
-    )
+    frames = empty_frames(np.array([4, 6, 9, 12]), 4)
+    frames.slip[:3] = [[1, 1, 0, 1], [-1, -1, -1, -1], [0, 1, 1, 1]]
+    frames.slip[3] = SLACK
+    assert [slips_up_to(frames, k) for k in range(4)] == [0.5, 1.0, 0.0, 0.0]
+    assert [is_next(frames, k, 6) for k in range(5)] == [False, True, False, False, False]
+
+
+def test_what_no_solver_has_reached_is_unknown():
+    frames = empty_frames(np.array([3, 5]), 4)
+    assert np.isnan(frames.tension_N).all()
+    assert (frames.slip == UNCONVERGED).all()
+    np.testing.assert_allclose(frames.places, [0.0, 0.25, 0.5, 0.75, 1.0])

@@ -1,22 +1,14 @@
 """One run: which solver answers, where it starts, and what the sensors would read."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.response import (
-    first_determined_sample,
-    force_beside_tendon,
-    simulate,
-    with_spring_load,
-)
-from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.response import first_determined_sample, simulate
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
 MOTION = np.concatenate((np.linspace(0, 20, 500), np.linspace(20, 5, 500), np.linspace(5, 9, 300)))
@@ -62,47 +54,14 @@ def test_a_run_that_begins_mid_cycle_starts_from_the_measured_tension(spring, lo
     assert answer.f_in_N[-1] == pytest.approx(spring.f_in_N[-1], rel=0.01)
 
 
-def from_both_sides(drive):
-    """Run with the highest and the lowest tension that the drive can have when it begins."""
-    return [simulate(RIG, replace(drive, start_f_in_N=f_in)).f_in_N for f_in in (1e3, 1e-3)]
-
-
 @pytest.mark.parametrize("load", ["spring", "force", "displacement"])
 def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
     drive = mid_cycle(spring, load, slice(1000, None))  # begins with a reversal
     first = first_determined_sample(RIG, drive)
-    pulled, released = from_both_sides(drive)
+    pulled, released = (
+        simulate(RIG, replace(drive, start_f_in_N=extreme)).f_in_N for extreme in (1e3, 1e-3)
+    )
     assert first is not None
     assert first > 5
     np.testing.assert_allclose(pulled[first:], released[first:], rtol=1e-6)
     assert np.all(pulled[:first] > released[:first] + 1e-3)
-
-
-def test_a_drive_feels_its_friction_its_spring_and_its_motion():
-    ends = SimpleNamespace(
-        direction=np.array([1.0, -1.0, 0.0]),
-        drive=np.array([2.0, 3.0, -4.0]),
-        motion_N=np.zeros(3),
-    )
-    moves = SimpleNamespace(**vars(ends) | {"motion_N": np.array([0.5, 0.0, -1.5])})
-    np.testing.assert_array_equal(force_beside_tendon(GROUP_A, moves), [0.5, 0.0, -1.5])
-    both = {"drive_friction.friction_N": 5.0, "proximal_spring.stiffness_N_per_mm": 0.5}
-    rubs, springs = ({k: v} for k, v in both.items())
-    np.testing.assert_allclose(
-        force_beside_tendon(with_values(GROUP_A, both), ends), [6.0, -3.5, -2.0]
-    )
-    np.testing.assert_allclose(
-        force_beside_tendon(with_values(GROUP_A, rubs), ends), [5.0, -5.0, 0.0]
-    )
-    np.testing.assert_allclose(
-        force_beside_tendon(with_values(GROUP_A, springs), ends), [1.0, 1.5, -2.0]
-    )
-    assert force_beside_tendon(GROUP_A, ends) == 0.0
-    f_out = np.array([25.0, 30.0, 20.0])
-    x_in, x_out, f_in, told, _ = with_spring_load(
-        with_values(GROUP_A, both), ends, Tensions(f_out + 1.0, f_out, np.zeros(3))
-    )
-    np.testing.assert_allclose(x_out * GROUP_A.load_stiffness_N_per_mm, [0.0, 5.0, -5.0])
-    np.testing.assert_allclose(f_in, f_out + 1.0 + [6.0, -3.5, -2.0])
-    assert told is f_out
-    assert x_in is ends.drive

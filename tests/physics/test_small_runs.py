@@ -50,10 +50,8 @@ def friction_by_hand(time_s, position, speed, session_s):
 def test_friction_at_a_moment_is_all_that_changes_it(speed):
     expected = friction_by_hand(4.0, 7.0, speed, 30.0)
     assert losses_at(4.0, 7.0, speed, 30.0, VARYING) == pytest.approx(expected)
-    still = friction_by_hand(4.0, 7.0, math.inf, 30.0)
-    assert losses_without_speed(4.0, 7.0, 30.0, VARYING) == pytest.approx(
-        (*still[:2], 0.0, still[3])
-    )
+    still = friction_by_hand(4.0, 7.0, 0.0, 30.0)
+    assert losses_without_speed(4.0, 7.0, 30.0, VARYING) == pytest.approx(still)
 
 
 def test_the_course_of_a_run_is_what_acts_at_each_sample():
@@ -67,10 +65,9 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     np.testing.assert_allclose(ends.course[:4].T, expected)
     np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
     assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
-    by_force = ends_of(
-        VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S)
-    )  # its position and speed are not known
-    np.testing.assert_allclose(by_force.course[:4, 2], friction_by_hand(0.3, 0.0, 0.0, 0.0))
+    by_force = ends_of(VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S))
+    unmoved = friction_by_hand(0.3, 0.0, 0.0, 0.0)  # its position and speed are not known
+    np.testing.assert_allclose(by_force.course[:4, 2], unmoved)
     slowly = ends_of(VARYING, DriveInput(x))
     still = [friction_by_hand(0.0, place, 0.0, 0.0) for place in x]
     np.testing.assert_allclose(slowly.course[:4].T, still)
@@ -80,7 +77,7 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
 
 
 @pytest.mark.parametrize(
-    ("load", "expected"),
+    ("load", "at_load"),
     [
         ("spring", (SPRING, [0.0, 0.0])),
         ("force", (FORCE, [26.0, 27.0])),
@@ -88,14 +85,15 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     ],
 )
 @pytest.mark.parametrize(
-    ("kind", "drive"), [("displacement", (DISPLACEMENT, [7.0, 8.0])), ("force", (FORCE, [10, 11]))]
+    ("kind", "at_drive"),
+    [("displacement", (DISPLACEMENT, [7.0, 8.0])), ("force", (FORCE, [10.0, 11.0]))],
 )
-def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, drive, load, expected):
+def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, at_drive, load, at_load):
     """Both places count from their zeros, no force does."""
     given = DriveInput(np.array([10.0, 11.0]), kind, load, np.array([26.0, 27.0]))
     ends = ends_of(RIG, given)
-    assert ends.boundary == Boundary(drive[0], expected[0])
-    assert [ends.course[DRIVE].tolist(), ends.course[LOAD].tolist()] == [drive[1], expected[1]]
+    assert (ends.boundary.drive, ends.course[DRIVE].tolist()) == at_drive
+    assert (ends.boundary.load, ends.course[LOAD].tolist()) == at_load
 
 
 def test_what_is_given_at_the_ends_is_free_of_the_sensors_errors():
@@ -149,17 +147,12 @@ MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])
 @pytest.mark.parametrize(("friction", "stiffness"), [(2.0, 4.0), (0.0, 4.0), (2.0, 0.0)])
 @pytest.mark.parametrize("on_mesh", [False, True])
 def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiffness, on_mesh):
-    beside = {
-        "drive_friction.friction_N": friction,
-        "proximal_spring.stiffness_N_per_mm": stiffness,
-    }
+    names = ("drive_friction.friction_N", "proximal_spring.stiffness_N_per_mm")
+    beside = with_values(RIG, dict(zip(names, (friction, stiffness), strict=True)))
     drive = DriveInput(MOTION + 3.0)
-    plain = simulate(RIG, drive, on_mesh=on_mesh, nodes=3)
-    answer = simulate(with_values(RIG, beside), drive, on_mesh=on_mesh, nodes=3)
-    directions = np.array([0.0, 1.0, -1.0, -1.0, 1.0])
-    np.testing.assert_allclose(
-        answer.f_in_N - plain.f_in_N, friction * directions + stiffness * MOTION, atol=1e-9
-    )
+    plain, answer = (simulate(rig, drive, on_mesh=on_mesh, nodes=3) for rig in (RIG, beside))
+    felt = friction * np.array([0.0, 1.0, -1.0, -1.0, 1.0]) + stiffness * MOTION
+    np.testing.assert_allclose(answer.f_in_N - plain.f_in_N, felt, atol=1e-9)
     np.testing.assert_allclose(answer.f_out_N, plain.f_out_N)
     np.testing.assert_array_equal(answer.x_in_mm, MOTION + 3.0)
 
@@ -184,9 +177,8 @@ def test_who_answers_and_on_what_mesh():
     at_rest = DriveInput(np.array([3.0, 3.0]), time_s=TIME_S[:2])
     assert simulate(RIG, at_rest, "lugre").solver.startswith("LuGre chain, 50 lumps, ")
     for nodes in (2, 1000):
-        assert (
-            simulate(RIG, at_rest, on_mesh=True, nodes=nodes).solver == f"slip chain, {nodes} nodes"
-        )
+        solver = simulate(RIG, at_rest, on_mesh=True, nodes=nodes).solver
+        assert solver == f"slip chain, {nodes} nodes"
     for nodes in (1, 1001):
         with pytest.raises(ValueError, match=f"{nodes} nodes; expected 2 to 1000"):
             simulate(RIG, drive, nodes=nodes)
@@ -195,15 +187,8 @@ def test_who_answers_and_on_what_mesh():
 
 
 AT_THE_ENDS_ALONE = {  # what the closed form knows, or what is off its path
-    "backlash",
-    "drive_compliance",
-    "drive_damping",
-    "drive_friction",
-    "drive_inertia",
-    "drive_ripple",
-    "free_tendon",
-    "proximal_spring",
-    "sheath_compression",
+    *("backlash", "drive_compliance", "drive_damping", "drive_friction", "drive_inertia"),
+    *("drive_ripple", "free_tendon", "proximal_spring", "sheath_compression"),
 }
 
 

@@ -1,16 +1,17 @@
 """Recordings of robots: the first byte chooses the format."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.fuzz.foreign import Offering, ask
-from tests.fuzz.rules import Scratch
+from tests.fuzz.foreign import Offering, whole_file
+from tests.fuzz.rules import chosen
 from tests.recordings.readers.bags import save_mcap, save_ros1, save_ros2
 from tsas_cli.recordings.readers import mcap_file, ros1_bag, ros2_bag  # noqa: F401 # instrumented
-from tsas_cli.recordings.readers.table import ReadOptions
 
-FORMATS = (("mcap_file", ".mcap"), ("ros1_bag", ".bag"), ("ros2_bag", ".db3"))
+FORMATS = [
+    whole_file(Offering(module), f"a.{suffix}")
+    for module, suffix in (("mcap_file", "mcap"), ("ros1_bag", "bag"), ("ros2_bag", "db3"))
+]
 SHARE = 0.1
 MOST_BYTES = 50_000
 WORDS = (
@@ -18,20 +19,17 @@ WORDS = (
     b"SQLite format 3",
     b"MCAP0\r\n",
     b"float64[] a",
-    b"own/msg/Force",
+    b"msg/Force",
     b"cdr",
 )
-_scratch = Scratch()
 
 
-def one(data: bytes) -> None:
-    """The rest is the file."""
-    module, suffix = FORMATS[data[0] % 3 if data else 0]
-    ask(Offering(module), _scratch.file(f"a{suffix}", data[1:]), ReadOptions())
+def one(data):
+    reader, file = chosen(data, FORMATS)
+    reader(file)
 
 
-def seeds() -> Iterable[bytes]:
-    """Two topics in each of the formats."""
+def seeds():
     with TemporaryDirectory() as name:
         folder = Path(name)
         yield b"\0" + save_mcap(folder / "a.mcap").read_bytes()

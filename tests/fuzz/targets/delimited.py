@@ -1,7 +1,5 @@
 """Text tables, whatever is in them; what two ways of reading a table both take, they read alike."""
 
-from collections.abc import Iterable
-
 import numpy as np
 import pyarrow as pa
 
@@ -28,7 +26,7 @@ OPTIONS = tuple(
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """The first byte chooses the options, the rest is the file."""
     options = OPTIONS[data[0] % len(OPTIONS)] if data else OPTIONS[0]
     path = _scratch.file("a.csv", data[1:])
@@ -61,8 +59,7 @@ def _both_ways(path, options, every):  # type: ignore[no-untyped-def]
             raise Broken(f"column {source} is {fast[source]} or {slow[source]}")
 
 
-def seeds() -> Iterable[bytes]:
-    """Tables as loggers write them."""
+def seeds():
     yield b"\0time_s,x [mm],f (N)\n0,1.5,2\n0.1,,NaN\n0.2,1e3,-4\n"
     yield b"\0# rig 3\n# time;x\n0;1\n1;2\n"
     yield "\1Zeit;Weg\ns;µm\n0,0;1,5\n0,1;2,5\n".encode("cp1252")

@@ -1,30 +1,21 @@
 """Feather files, as Arrow and pandas write them."""
 
 import io
-from collections.abc import Iterable
 
 import numpy as np
 import pyarrow as pa
 from pyarrow import feather as files
 
-from tests.fuzz.foreign import Offering, ask
-from tests.fuzz.rules import Scratch
+from tests.fuzz.foreign import Offering, whole_file
 from tsas_cli.recordings.readers import feather as _reader  # noqa: F401 # instrumented
-from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 6000
 SHARE = 0.12
 WORDS = (b"ARROW1", b"unit", b"\xff\xff\xff\xff", b"\x10\x00\x00\x00")
-_scratch = Scratch()
+one = whole_file(Offering("feather"), "a.feather")
 
 
-def one(data: bytes) -> None:
-    """All of it is the file."""
-    ask(Offering("feather"), _scratch.file("a.feather", data), ReadOptions())
-
-
-def seeds() -> Iterable[bytes]:
-    """Numbers, gaps, dates, text and a dictionary, packed and not."""
+def seeds():
     table = pa.table(
         {
             "t": np.arange(4) / 10,

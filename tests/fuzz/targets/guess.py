@@ -1,9 +1,9 @@
 """Files that nobody has described yet, for which a map is proposed."""
 
+import json
 import math
-from collections.abc import Iterable
 
-from tests.fuzz.rules import Broken, Scratch, answer
+from tests.fuzz.rules import Broken, Scratch, answer, chosen
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.guess.text import content, tables
 from tsas_cli.recordings.ingest_map import read_map
@@ -15,11 +15,10 @@ WORDS = (b"time", b"[ms]", b"f_in (N)", b"Weg", b"motor", b"\r\n", b"[[", b'"dat
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """The map that is proposed can be printed and read; the first byte chooses the format."""
-    suffix = SUFFIXES[data[0] % len(SUFFIXES)] if data else ".csv"
-    path = _scratch.file(f"a{suffix}", data[1:])
-    proposal = answer(propose, [path])
+    suffix, file = chosen(data, SUFFIXES)
+    proposal = answer(propose, [_scratch.file(f"a{suffix}", file)])
     if proposal is None:
         return
     told = content(proposal)
@@ -32,8 +31,7 @@ def one(data: bytes) -> None:
         raise Broken("a map says that it is taken, and is refused, or the other way round")
 
 
-def seeds() -> Iterable[bytes]:
-    """A rig's recording in each of the formats, with and without names."""
+def seeds():
     rows = [
         [0.001 * i, 10 - 10 * math.cos(0.4 * i), 25 + 10 * math.sin(0.4 * i), 20 + i % 7]
         for i in range(40)
@@ -42,9 +40,5 @@ def seeds() -> Iterable[bytes]:
     yield b"\0" + "\n".join(["time [s]; x_in [mm]; f_in [N]; load", *lines]).encode()
     yield b"\0" + "\n".join(["rig 3", "recorded by me", "", *lines]).encode()
     yield b"\1" + "\n".join("\t".join(line.split("; ")) for line in lines).encode()
-    yield (
-        b"\2"
-        + repr({"log": {"columns": ["t", "x_in", "f_in", "c"], "rows": rows}})
-        .replace("'", '"')
-        .encode()
-    )
+    log = {"columns": ["t", "x_in", "f_in", "c"], "rows": rows}
+    yield b"\2" + json.dumps({"log": log}).encode()

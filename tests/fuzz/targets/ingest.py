@@ -1,6 +1,5 @@
 """The whole of `tsas ingest`: a file's name, a map and a table, and nothing beside the output."""
 
-from collections.abc import Iterable
 from pathlib import Path
 
 import tsas_cli
@@ -18,7 +17,7 @@ _home = _scratch.folder / "home"
 _home.mkdir()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """Beside the output folder nothing is written, and what is written can be read."""
     name, _, rest = data.partition(_BETWEEN)
     words, _, table = rest.partition(_BETWEEN)
@@ -51,7 +50,7 @@ def _check(out: Path) -> None:
             raise Broken("a run without columns")
 
 
-def mutate(data: bytes, most: int, seed: int) -> bytes:
+def mutate(data, most, seed):
     """Change one of the three parts."""
     from atheris import Mutate
 
@@ -64,8 +63,7 @@ def mutate(data: bytes, most: int, seed: int) -> bytes:
     return _BETWEEN.join(parts)[:most]
 
 
-def seeds() -> Iterable[bytes]:
-    """Maps of the kinds that there are, each with its table."""
+def seeds():
     head = '[dataset]\nname = "a"\n'
     plain = head + '[columns]\ntime_s = {source = "t [s]"}\nx_in_mm = {source = "x [cm]"}\n'
     plain += 'f_in_N = {source = "f", unit = "V", factor = 10, factor_unit = "N"}\n'

@@ -1,6 +1,5 @@
 """The map of `tsas ingest`."""
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from tests.fuzz.documents import toml_document as mutate
@@ -14,15 +13,14 @@ MAPS = Path(__file__).parents[3] / "datasets" / "maps"
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """A map that is taken names its sources."""
     mapping = answer(read_map, _scratch.file("map.toml", data))
     if mapping is not None:
         mapping.sources()
 
 
-def seeds() -> Iterable[bytes]:
-    """The shipped maps, and one with what they leave out."""
+def seeds():
     for path in sorted(MAPS.glob("*.toml")):
         yield b"\n".join(s for s in path.read_bytes().splitlines() if not s.startswith(b"#"))
     yield b"""[dataset]

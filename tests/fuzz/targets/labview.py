@@ -1,35 +1,29 @@
 """Files of LabVIEW: the first byte chooses between TDMS and LVM."""
 
 import io
-from collections.abc import Iterable
 
 import numpy as np
 from nptdms import ChannelObject, TdmsWriter
 
-from tests.fuzz.foreign import Offering, ask
-from tests.fuzz.rules import Scratch, answer
-from tsas_cli.recordings.readers import labview, names, read, tdms  # noqa: F401 # instrumented
-from tsas_cli.recordings.readers.table import ReadOptions
+from tests.fuzz.foreign import Offering, whole_file
+from tests.fuzz.rules import Scratch, read_all
+from tsas_cli.recordings.readers import labview, tdms  # noqa: F401 # instrumented
 
 SHARE = 0.3
 MOST_BYTES = 4000
 WORDS = (b"TDSm", b"wf_increment", b"***End_of_Header***", b"X_Value", b"Delta_X", b"Channels\t")
 _scratch = Scratch()
+_tdms = whole_file(Offering("tdms"), "a.tdms")
 
 
-def one(data: bytes) -> None:
-    """The rest is the file."""
+def one(data):
     if data[:1] < b"\x80":
-        ask(Offering("tdms"), _scratch.file("a.tdms", data[1:]), ReadOptions())
-        return
-    path = _scratch.file("a.lvm", data[1:])
-    listed = answer(names, path, ReadOptions())
-    if listed is not None:
-        answer(read, path, ReadOptions(), list(range(1, len(listed) + 1))[:20])
+        _tdms(data[1:])
+    else:
+        read_all(_scratch.file("a.lvm", data[1:]))
 
 
-def seeds() -> Iterable[bytes]:
-    """Channels with and without a clock; samples with a comment, and without times."""
+def seeds():
     for said in ({}, {"wf_increment": 0.1, "wf_start_offset": 0.0}):
         stream = io.BytesIO()
         with TdmsWriter(stream) as file:

@@ -1,7 +1,5 @@
 """The manifest of a dataset."""
 
-from collections.abc import Iterable
-
 from tests.fuzz.documents import toml_document as mutate
 from tests.fuzz.rules import Broken, Scratch, answer
 from tsas_cli.identification.model import data_sheet
@@ -15,7 +13,7 @@ _scratch = Scratch()
 _written = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """A manifest that is taken keeps its runs inside, and is the same when it is read again."""
     path = _scratch.file(MANIFEST_FILE, data)
     dataset = answer(read_dataset, path.parent)
@@ -37,8 +35,7 @@ def one(data: bytes) -> None:
         raise Broken(f"{manifest} is {again} when it is read again")
 
 
-def seeds() -> Iterable[bytes]:
-    """A small one and a full one."""
+def seeds():
     run = f'[[run]]\nid = "a"\nfile = "runs/a.parquet"\nsha256 = "{"0" * 64}"\n'
     head = 'format = 1\nname = "bench"\nkind = "measured"\n'
     yield f"{head}{run}".encode()

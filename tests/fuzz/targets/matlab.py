@@ -3,31 +3,23 @@
 import random
 import struct
 import zlib
-from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.io import savemat
 
-from tests.fuzz.foreign import Offering, ask
-from tests.fuzz.rules import Scratch
+from tests.fuzz.foreign import Offering, whole_file
 from tests.recordings.readers.matlab_files import controldesk
 from tsas_cli.recordings.readers import matlab as _reader  # noqa: F401 # instrumented
-from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 0.12
 WORDS = tuple(struct.pack("<I", kind) for kind in (*range(1, 19), 0x10001, 0x40006))
 _HEAD, _TAG, _COMPRESSED = 128, 8, 15
-_scratch = Scratch()
+one = whole_file(Offering("matlab"), "a.mat")
 
 
-def one(data: bytes) -> None:
-    """All of it is the file."""
-    ask(Offering("matlab"), _scratch.file("a.mat", data), ReadOptions())
-
-
-def mutate(data: bytes, most: int, seed: int) -> bytes:
+def mutate(data, most, seed):
     """Change bytes, of compressed parts what is inside."""
     from atheris import Mutate
 
@@ -60,8 +52,7 @@ def _closed(part: bytes) -> bytes:
     return struct.pack("<II", _COMPRESSED, len(content)) + content
 
 
-def seeds() -> Iterable[bytes]:
-    """Vectors, matrices, structs, cells, text and captures, compressed and not."""
+def seeds():
     time_s = np.arange(4) / 10
     plain = {
         "t": time_s,

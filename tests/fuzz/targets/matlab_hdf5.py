@@ -1,30 +1,21 @@
 """MATLAB files of version 7.3, which are HDF5."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from tests.fuzz.foreign import Offering, ask
-from tests.fuzz.rules import Scratch
+from tests.fuzz.foreign import Offering, whole_file
 from tests.recordings.readers import matlab_files as made
 from tsas_cli.recordings.readers import matlab, matlab_hdf5  # noqa: F401 # instrumented
-from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 16000
 SHARE = 0.12
 WORDS = (b"TREE", b"HEAP", b"SNOD", b"GCOL", b"OHDR", b"MATLAB_class", b"\xff" * 8, b"MATLAB_empty")
-_scratch = Scratch()
+one = whole_file(Offering("matlab"), "a.mat")
 
 
-def one(data: bytes) -> None:
-    """All of it is the file."""
-    ask(Offering("matlab"), _scratch.file("a.mat", data), ReadOptions())
-
-
-def seeds() -> Iterable[bytes]:
-    """Vectors, matrices, structs and text; a capture; a compressed dataset."""
+def seeds():
     time_s = np.arange(4) / 10
 
     def plain(file):  # type: ignore[no-untyped-def]

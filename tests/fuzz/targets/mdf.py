@@ -1,6 +1,5 @@
 """MDF files, version 4 and 3."""
 
-from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -8,24 +7,16 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from asammdf import MDF, Signal
 
-from tests.fuzz.foreign import ask
-from tests.fuzz.rules import Scratch
+from tests.fuzz.foreign import whole_file
 from tsas_cli.recordings.readers import mdf
-from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 6000
 SHARE = 0.1
 WORDS = (b"##DT", b"##DZ", b"##CN", b"##CG", b"##DG", b"##CC", b"##TX", b"##SD", b"##HL", b"##DL")
-_scratch = Scratch()
+one = whole_file(mdf, "a.mf4")
 
 
-def one(data: bytes) -> None:
-    """All of it is the file."""
-    ask(mdf, _scratch.file("a.mf4", data), ReadOptions())
-
-
-def seeds() -> Iterable[bytes]:
-    """One raster; two rasters and invalid samples, compressed; version 3."""
+def seeds():
     time_s = np.arange(4) / 10
     one = [
         Signal(time_s, time_s, name="f", unit="N"),

@@ -1,7 +1,5 @@
 """The file of a model."""
 
-from collections.abc import Iterable
-
 from tests.fuzz.documents import toml_document as mutate
 from tests.fuzz.rules import Broken, Scratch, answer
 from tsas_cli.identification.model import CORRECTION, Model
@@ -16,7 +14,7 @@ WORDS = (b"[parameters.", b"[effects.", b"[bristles.", b"[runs.a.", b'origin = "
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """A model that is taken makes a rig, and one in eight is the same written and read again."""
     model: Model | None = answer(read_model, _scratch.file("model.toml", data))
     if model is None:
@@ -35,8 +33,7 @@ def _plain(model: Model) -> list[str]:
     return sorted(repr(estimate) for estimate in model.estimates)
 
 
-def seeds() -> Iterable[bytes]:
-    """A calibrated one, and one with every effect."""
+def seeds():
     head = 'format = 1\nkind = "model"\nversion = "0.1.0"\n[dataset]\nname = "bench"\n'
     value = (
         "value = {}\nunit = {!r}\nstderr = 0.1\ninterval_low = 0.0\ninterval_high = 1e3\n"

@@ -1,15 +1,13 @@
 """Parquet files of any tool."""
 
 import io
-from collections.abc import Iterable
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tests.fuzz.rules import Scratch, answer
+from tests.fuzz.rules import PLAIN, Scratch, answer, read_all
 from tsas_cli.recordings.readers import names, read
 from tsas_cli.recordings.readers import parquet as _reader  # noqa: F401 # to be instrumented
-from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 35
 WORDS = (b"PAR1", b"\x15\x00", b"\x15\x02", b"\x15\x04\x19", b"unit", b"\xff\xff\xff\x7f")
@@ -17,18 +15,14 @@ MOST_BYTES = 6000
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
-    """All of it is the file."""
+def one(data):
     path = _scratch.file("a.parquet", data)
-    listed = answer(names, path, ReadOptions())
-    if listed is not None:
-        answer(read, path, ReadOptions(), list(range(1, len(listed) + 1)))
-        for source in list(dict.fromkeys(listed))[:20]:
-            answer(read, path, ReadOptions(), [source])
+    read_all(path)
+    for source in list(dict.fromkeys(answer(names, path, PLAIN) or ()))[:20]:
+        answer(read, path, PLAIN, [source])
 
 
-def seeds() -> Iterable[bytes]:
-    """Small tables of several types, encodings and compressions."""
+def seeds():
     mm = pa.field("x_in_mm", pa.float64(), metadata={"unit": "mm"})
     table = pa.table(
         {"time_s": [0.0, 0.1, 0.2], "x_in_mm": [1.0, None, 3.0], "f_in_N": [1, 2, 3]},

@@ -1,7 +1,5 @@
 """The file of planned runs."""
 
-from collections.abc import Iterable
-
 from tests.fuzz.documents import toml_document as mutate
 from tests.fuzz.rules import Scratch, answer
 from tsas_cli.diagnosis.rig_file import read_rig_file
@@ -12,15 +10,14 @@ WORDS = (b"[[run]]", b"[sensors]", b"[limits]", b'"nested"', b'"chirp"', b"frequ
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """A plan that is taken says the speed of each run."""
     file = answer(read_rig_file, _scratch.file("rig.toml", data))
     for run in file.run if file is not None else ():
         _ = run.speed
 
 
-def seeds() -> Iterable[bytes]:
-    """A plan of two runs."""
+def seeds():
     run = "sheath_length_mm = 785.0\ntotal_bend_rad = 3.1\npreload_N = 25.0\namplitude_mm = 10.0\n"
     yield f"""format = 1
 kind = "plan"

@@ -1,7 +1,6 @@
 """The Parquet file of a run, whose checksum fits."""
 
 import hashlib
-from collections.abc import Iterable
 
 import numpy as np
 import pyarrow as pa
@@ -18,7 +17,7 @@ SHARE = 5
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """What is read strictly has a time that increases, and is the same column by column."""
     path = _scratch.file("a.parquet", data)
     run = Run(id="a", file=path.name, sha256=hashlib.sha256(data).hexdigest())
@@ -37,8 +36,7 @@ def one(data: bytes) -> None:
         answer(columns_of, path, listed[:20])
 
 
-def seeds() -> Iterable[bytes]:
-    """A run as it is written, and those of other tools."""
+def seeds():
     columns = {"time_s": [0.0, 0.1], "x_in_mm": [1.0, None], "f_in_N": [2.0, 3.0]}
     yield parquet(pa.table(columns), compression="none")
     yield from any_parquet()

@@ -1,7 +1,5 @@
 """The settings of a closed loop."""
 
-from collections.abc import Iterable
-
 import tomlkit
 
 from tests.fuzz.documents import toml_document as mutate
@@ -15,7 +13,7 @@ WORDS = (b"[controllers.adaptive-sliding-mode]", b"[loop]", b"phi = [", b"[refer
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
+def one(data):
     """Settings that are taken give each controller its laws."""
     settings: Settings | None = answer(read_settings, _scratch.file("settings.toml", data))
     if settings is None:
@@ -26,7 +24,6 @@ def one(data: bytes) -> None:
     settings.drive.kinematic()
 
 
-def seeds() -> Iterable[bytes]:
-    """Every setting as it is without a file, and a part of them."""
+def seeds():
     yield tomlkit.dumps(Settings().model_dump(mode="json", by_alias=True)).encode()
     yield b"[reference]\nmean_N = 40\n[controllers.pid]\nproportional_rpm_per_mm = 2.0\n"

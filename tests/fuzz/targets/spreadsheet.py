@@ -1,12 +1,11 @@
 """Workbooks: the first byte chooses the suffix."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.fuzz.rules import Scratch, answer
+from tests.fuzz.rules import Scratch, answer, chosen, read_all
 from tests.recordings.readers.workbooks import DATE, save_xlsx
-from tsas_cli.recordings.readers import names, read, spreadsheet, tables  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import spreadsheet, tables  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 SUFFIXES = (".xlsx", ".xls", ".xlsb", ".ods")
@@ -16,23 +15,16 @@ WORDS = (b"<row ", b"<c r=", b"<v>", b"PK\x01\x02", b"\xd0\xcf\x11\xe0", b"inlin
 _scratch = Scratch()
 
 
-def one(data: bytes) -> None:
-    """The rest is the file."""
-    path = _scratch.file(f"a{SUFFIXES[data[0] % 4] if data else '.xlsx'}", data[1:])
+def one(data):
+    suffix, file = chosen(data, SUFFIXES)
+    path = _scratch.file(f"a{suffix}", file)
     for table in (None, *(answer(tables, path) or [])[:2]):
-        options = ReadOptions(table=table)
-        listed = answer(names, path, options)
-        if listed is not None:
-            answer(read, path, options, list(range(1, len(listed) + 1))[:20])
+        read_all(path, ReadOptions(table=table))
 
 
-def seeds() -> Iterable[bytes]:
-    """Numbers, dates, faults and text on one sheet, and on two."""
-    rows = [
-        ["t", "f", "when"],
-        ["s", "N", None],
-        *[[i, 1.5, (45000.5 + i, DATE)] for i in range(3)],
-    ]
+def seeds():
+    numbers = [[i, 1.5, (45000.5 + i, DATE)] for i in range(3)]
+    rows = [["t", "f", "when"], ["s", "N", None], *numbers]
     with TemporaryDirectory() as name:
         for sheets in ({"Log": rows}, {"Log": rows, "Notes": [["a", "#N/A"], [1, 2]]}):
             yield b"\0" + save_xlsx(Path(name) / "a.xlsx", sheets).read_bytes()

@@ -1,7 +1,6 @@
 """What the stages have written, as the page, the comparison and the benchmark read it."""
 
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -27,7 +26,7 @@ for _scratch in _scratches:
         _scratch.file(_name, MODEL)
 
 
-def one(data: bytes) -> None:
+def one(data):
     """The first byte chooses which file it is, the rest is its content."""
     which = data[0] % len(FILES) if data else 0
     path = _scratches[which].file(FILES[which], data[1:])
@@ -45,8 +44,7 @@ def one(data: bytes) -> None:
             answer(compare_tracked, path.parent, path.parent)
 
 
-def seeds() -> Iterable[bytes]:
-    """One of each, its lists cut short."""
+def seeds():
     with TemporaryDirectory() as name:
         folder = Path(name)
         data = made.make_dataset(folder / "data", samples=400)

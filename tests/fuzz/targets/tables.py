@@ -1,7 +1,6 @@
 """Known numbers in any layout of text, JSON and Parquet, which have to come back bit by bit."""
 
 import random
-from collections.abc import Iterable
 
 from hypothesis import given, settings
 
@@ -20,12 +19,11 @@ def _holds(known: Known) -> None:
     check(known, _scratch.folder)
 
 
-def one(data: bytes) -> None:
+def one(data):
     """The bytes are what the table is drawn with."""
     _holds.hypothesis.fuzz_one_input(data)  # type: ignore[attr-defined]
 
 
-def seeds() -> Iterable[bytes]:
-    """Bytes at random, enough for a table each."""
+def seeds():
     for seed in range(20):
         yield random.Random(seed).randbytes(1000)  # noqa: S311 # not a secret

@@ -1,33 +1,18 @@
 """What people write for units, in maps and above columns."""
 
-from collections.abc import Iterable
-
 from tests.fuzz.rules import Broken, answer
 from tsas_cli.recordings.columns import COLUMNS
 from tsas_cli.recordings.guess.words import kind_of, unit_behind
 from tsas_cli.recordings.units import _LABELS, _SPELLINGS, conversion, is_label, is_unit
 
 SHARE = 7
-WORDS = tuple(
-    word.encode()
-    for word in (
-        *_SPELLINGS,
-        *_LABELS,
-        "mm",
-        "newton",
-        "kilogram_force",
-        "**",
-        "^",
-        "²",
-        "µ",
-        "per",
-    )
-)
+OTHERS = ("mm", "newton", "kilogram_force", "**", "^", "²", "µ", "per")
+WORDS = tuple(word.encode() for word in (*_SPELLINGS, *_LABELS, *OTHERS))
 MOST_BYTES = 60
 CANONICAL = tuple(dict.fromkeys(column.unit for column in COLUMNS))
 
 
-def one(data: bytes) -> None:
+def one(data):
     """A slope is a finite number; the first byte chooses what to convert to."""
     text = data[1:].decode("utf-8", "replace")
     to = CANONICAL[data[0] % len(CANONICAL)] if data else "mm"
@@ -41,8 +26,7 @@ def one(data: bytes) -> None:
     answer(kind_of, text)
 
 
-def seeds() -> Iterable[bytes]:
-    """Every spelling that is known, and some that pint knows."""
+def seeds():
     for text in (*_SPELLINGS, "mm", "µm", "kN", "m/s**2", "N*m", "Nm", "°C", "degC", "delta_degC"):
         for to in range(0, len(CANONICAL), 2):
             yield bytes([to]) + text.encode()

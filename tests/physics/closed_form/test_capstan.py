@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 from scipy.integrate import quad
 
@@ -27,14 +26,10 @@ def test_tension_falls_towards_the_load_while_the_drive_pulls():
 
 
 @pytest.mark.parametrize("direction", [1.0, -1.0])
-@pytest.mark.parametrize("wrap", [1e-9, 0.05, A, 3.0])
+@pytest.mark.parametrize("wrap", [0.0, 1e-9, 0.05, A, 3.0])
 def test_mean_tension_is_that_of_the_profile(wrap, direction):
     mean, _ = quad(lambda s: math.exp(-direction * wrap * s), 0.0, 1.0)
     assert mean_tension_ratio(wrap, direction) == pytest.approx(mean, rel=1e-12)
-
-
-def test_mean_tension_of_a_straight_sheath_is_that_of_the_drive():
-    assert mean_tension_ratio(0.0, 1.0) == 1.0
 
 
 @pytest.mark.parametrize(
@@ -80,13 +75,7 @@ def test_dead_band_widths_of_the_paper(tension, width):
     assert dead_band_width(tension, A, 785.0, EA) == pytest.approx(width, abs=5e-4)
 
 
-@pytest.mark.parametrize(
-    ("stiffness", "per_rpm"), [(2.338, 0.0553), (175.10, 4.141), (1.066, 0.0252), (52.0, 1.230)]
-)
-def test_motor_speed_turns_into_force_as_in_the_paper(stiffness, per_rpm):
-    assert speed_per_stiffness(27.1, 120.0) * stiffness == pytest.approx(per_rpm, rel=2e-3)
-
-
-def test_one_turn_of_the_motor_turns_the_pulley_by_its_gear():
-    turn_mm = 2.0 * np.pi * 27.1 / 120.0
-    assert speed_per_stiffness(27.1, 120.0) * 60.0 == pytest.approx(turn_mm)
+def test_one_turn_of_the_motor_turns_the_pulley_by_its_gear_as_in_the_paper():
+    per_stiffness, turn_mm = speed_per_stiffness(27.1, 120.0), 2.0 * math.pi * 27.1 / 120.0
+    assert per_stiffness * 60.0 == pytest.approx(turn_mm)
+    assert per_stiffness * 175.10 == pytest.approx(4.141, rel=2e-3)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.physics.references import LOADED_BY_SPRING, course_of
+from tests.physics.lugre.lumps import run
 from tsas_cli.effects import (
     Effects,
     LoadFriction,
@@ -16,7 +16,7 @@ from tsas_cli.effects import (
 )
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.lugre.chain import OWN_STEPS, Progress, StepControl, lugre_chain
+from tsas_cli.physics.lugre.chain import Progress
 from tsas_cli.physics.lugre.stability import stability
 from tsas_cli.physics.response import TOLERANCE, simulate
 from tsas_cli.physics.rig import Rig
@@ -78,17 +78,8 @@ def random_case(seed):
 
 
 def followed(case, tolerance):
-    start = np.zeros((2, case.lumps + 2))
-    start[1] = case.rig.preload_N
-    output, progress = lugre_chain(
-        course_of(case.x_in_mm, case.rig, time_s=case.time_s),
-        start,
-        case.rig,
-        LOADED_BY_SPRING,
-        case.lumps,
-        StepControl(tolerance, OWN_STEPS),
-        None,
-    )
+    how = {"rig": case.rig, "n": case.lumps, "tolerance": tolerance}
+    output, progress = run(case.x_in_mm, case.time_s, **how)
     finished = progress.reached_s >= case.time_s[-1] * (1.0 - 1e-12)
     return Followed(np.array(output[:4]), progress, finished)
 

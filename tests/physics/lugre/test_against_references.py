@@ -5,8 +5,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.lugre_rivals.references import FOLDER, problems
-from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
-from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
+from tests.physics.lugre.lumps import run
+from tests.physics.references import TABLE_1
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.physics.rig import with_values
 
@@ -27,16 +27,11 @@ def rig_of(model):
 def apart(name, tolerance):
     """Return the largest difference of each channel from the reference, over its range."""
     problem, table = PROBLEMS[name], pq.read_table(FOLDER / f"{name}.parquet")
-    lumps = problem.model.lumps
     finer = 1 if name.startswith("noisy") else FINER
-    rig = rig_of(problem.model)
     samples = np.arange(finer * (problem.time_s.size - 1) + 1)
     times = np.interp(samples, samples[::finer], problem.time_s)
-    x_in = problem.drive.position(times)
-    start = np.zeros((2, lumps + 2))
-    start[1] = rig.preload_N
-    course, control = course_of(x_in, rig, time_s=times), StepControl(tolerance, OWN_STEPS)
-    output, _ = lugre_chain(course, start, rig, LOADED_BY_SPRING, lumps, control, None)
+    how = {"rig": rig_of(problem.model), "n": problem.model.lumps, "tolerance": tolerance}
+    output, _ = run(problem.drive.position(times), times, **how)
     assert not np.any(output.phase == 3)
     off = {}
     for channel, row in (("x_out_mm", 1), ("f_in_N", 2), ("f_out_N", 3)):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.physics.lugre.lumps import GH, LAST, STEP, cleared, nodes, run, segments
 from tests.physics.references import (
     DRIVEN_BY_FORCE,
     GROUP_A,
@@ -16,14 +17,9 @@ from tests.physics.references import (
 )
 from tsas_cli.physics.boundary import FORCE, share_before_sensor
 from tsas_cli.physics.course import DRIVE, LOAD
+from tsas_cli.physics.lugre import state as rows
 from tsas_cli.physics.lugre.balance import balance, set_limits
-from tsas_cli.physics.lugre.chain import (
-    OWN_STEPS,
-    StepControl,
-    has_gone_slack,
-    lugre_chain,
-    phase_of,
-)
+from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, phase_of
 from tsas_cli.physics.lugre.ends import (
     F_IN,
     F_OUT,
@@ -39,124 +35,93 @@ from tsas_cli.physics.lugre.ends import (
     write_samples,
 )
 from tsas_cli.physics.lugre.slack import shortening, unloaded_load
-from tsas_cli.physics.lugre.start import clear_state, lugre_laws, rest_at
-from tsas_cli.physics.lugre.state import (
-    DEFLECTION,
-    DEFLECTION_HISTORY,
-    DEFLECTION_NEW,
-    FRICTION,
-    LIMIT,
-    LIMIT_BY_T,
-    LIMIT_BY_V,
-    PITCH,
-    RATE,
-    RATE_PREDICTED,
-    RESIDUAL,
-    ROWS,
-    STIFFNESS,
-    TENSION,
-    TENSION_HISTORY,
-    TENSION_SLOPE,
-    Given,
-    Step,
-)
+from tsas_cli.physics.lugre.start import rest_at
+from tsas_cli.physics.lugre.state import Given, Step
 from tsas_cli.physics.lugre.step import bdf2, newton, step_error
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import with_values
 
-N, LAST = 3, 4
-F0, KL, GH = 25.0, 1.579, 2e-3
-STEP = Step(GH, Given(30.0, 0.0), Given(27.0, 0.0), Given(0.0, 1.5), 0.14, 0.11, 1.2)
+F0, KL = 25.0, 1.579
+BOUNDARIES = [LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT, DRIVEN_BY_FORCE]
+NONE = Given(0.0, 0.0)
 
 
 def lumps(rig, *, speeds=(0.0,) * 5, tensions=(40.0, 31.0, 22.0, 13.0)):
     """Return lumps with these speeds and tensions, their segments rigid in this step."""
-    s = np.zeros(ROWS * PITCH)
-    clear_state(s, rig, N)
-    s[RATE : RATE + N + 2] = speeds
-    s[TENSION_HISTORY : TENSION_HISTORY + N + 1] = s[TENSION : TENSION + N + 1] = tensions
-    return s, lugre_laws(rig, N, LOADED_BY_SPRING)
+    s, law = cleared(rig)
+    nodes(s, rows.RATE)[:] = speeds
+    for row in (rows.TENSION_HISTORY, rows.TENSION):
+        segments(s, row)[:] = tensions
+    return s, law
 
 
-@pytest.mark.parametrize("exponent", [0.0, 1.0, -1.0, -0.4, 0.3])
+@pytest.mark.parametrize(
+    ("exponent", "excess"),
+    [(0.0, 0.4), (1.0, 0.4), (-1.0, 0.4), (-0.4, 0.4), (0.3, 0.4), (1.0, 0.0), (0.0, -0.5)],
+)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_limits_of_friction_follow_tension_way_and_speed(exponent, sign):
+def test_limits_of_friction_follow_tension_way_and_speed(exponent, excess, sign):
     """By the mean of both tensions; in contraction where its bristles lean towards the drive."""
-    values = {
-        "load_dependent_friction.exponent": exponent,
-        "stribeck_friction.excess": 0.4,
-        "stribeck_friction.velocity_mm_per_s": 2.0,
-    }
-    speeds = np.array([0.0, 1.0, -4.0, 0.5, 0.0])
-    tensions = sign * np.array([40.0, 31.0, 22.0, 13.0])
-    s, law = lumps(with_values(GROUP_A, values), speeds=speeds, tensions=tensions)
-    s[DEFLECTION_HISTORY + 3] = -0.01
-    set_limits(s, STEP, law)
-    for i, wrap in ((1, 0.14), (2, 0.11), (3, 0.11)):
-
-        def limit(tension, v, wrap=wrap):
-            factor = wrap * (abs(tension) / F0) ** exponent
-            return abs(tension) * factor * (1.0 + 0.4 * math.exp(-((v / 2.0) ** 2)))
-
-        mean, v, d = 0.5 * (tensions[i - 1] + tensions[i]), speeds[i] + 1.5, 1e-5
-        assert s[LIMIT + i] == pytest.approx(limit(mean, v), rel=1e-8)
-        by_t = (limit(mean + d, v) - limit(mean - d, v)) / (2.0 * d)
-        by_v = (limit(mean, v + d) - limit(mean, v - d)) / (2.0 * d)
-        assert s[LIMIT_BY_T + i] == pytest.approx(by_t, rel=1e-6, abs=1e-9)
-        assert s[LIMIT_BY_V + i] == pytest.approx(by_v, rel=1e-6, abs=1e-9)
-    for row in (LIMIT, LIMIT_BY_T, LIMIT_BY_V):  # an end has none of a lump
-        assert s[row] == s[row + LAST] == 0.0
-
-
-@pytest.mark.parametrize(("excess", "exponent"), [(0.0, 1.0), (1.0, 0.0), (-0.5, 0.0)])
-def test_a_limit_without_the_other_effect(excess, exponent):
     values = {
         "load_dependent_friction.exponent": exponent,
         "stribeck_friction.excess": excess,
         "stribeck_friction.velocity_mm_per_s": 2.0,
     }
-    s, law = lumps(with_values(GROUP_A, values))
+    speeds = np.array([0.0, 1.0, -4.0, 0.5, 0.0])
+    tensions = sign * np.array([40.0, 31.0, 22.0, 13.0])
+    s, law = lumps(with_values(GROUP_A, values), speeds=speeds, tensions=tensions)
+    s[rows.DEFLECTION_HISTORY + 3] = -0.01
     set_limits(s, STEP, law)
-    raised = 1.0 + excess * math.exp(-((1.5 / 2.0) ** 2))
-    for i, mean in ((1, 35.5), (2, 26.5), (3, 17.5)):
-        assert s[LIMIT + i] == pytest.approx(0.14 * mean * (mean / F0) ** exponent * raised)
+    found = [nodes(s, row) for row in (rows.LIMIT, rows.LIMIT_BY_T, rows.LIMIT_BY_V)]
+    for i, wrap in ((1, 0.14), (2, 0.11), (3, 0.11)):
+
+        def limit(tension, v, wrap=wrap):
+            factor = wrap * (abs(tension) / F0) ** exponent
+            return abs(tension) * factor * (1.0 + excess * math.exp(-((v / 2.0) ** 2)))
+
+        mean, v, d = 0.5 * (tensions[i - 1] + tensions[i]), speeds[i] + 1.5, 1e-5
+        by_t = (limit(mean + d, v) - limit(mean - d, v)) / (2.0 * d)
+        by_v = (limit(mean, v + d) - limit(mean, v - d)) / (2.0 * d)
+        assert found[0][i] == pytest.approx(limit(mean, v), rel=1e-8)
+        assert [each[i] for each in found[1:]] == pytest.approx([by_t, by_v], rel=1e-6, abs=1e-9)
+    for each in found:  # an end has none of a lump
+        assert each[0] == each[LAST] == 0.0
 
 
 def test_a_lump_without_tension_has_a_limit_all_the_same():
     s, law = lumps(GROUP_A, tensions=(0.0,) * 4)
     set_limits(s, STEP, law)
-    assert s[LIMIT + 1 : LIMIT + 4].tolist() == [1e-9] * 3
+    assert nodes(s, rows.LIMIT)[1:LAST].tolist() == [1e-9] * 3
 
 
 def test_an_end_that_is_moved_keeps_the_bristle_that_it_had():
     """It rubs only where a force pulls at it: its deflection waits for that."""
     rig = with_values(GROUP_A, {"drive_friction.friction_N": 2.0})
     s, law = lumps(rig, speeds=(0.0, 1.0, -1.0, 0.5, 0.3))
-    s[DEFLECTION_NEW] = 0.125
-    balance(s, STEP, at(law, LOADED_BY_SPRING))
-    assert s[DEFLECTION_NEW] == 0.125
-    balance(s, STEP, at(law, DRIVEN_BY_FORCE))
-    assert s[DEFLECTION_NEW] == 0.0
+    s[rows.DEFLECTION_NEW] = 0.125
+    for boundary, bent in ((LOADED_BY_SPRING, 0.125), (DRIVEN_BY_FORCE, 0.0)):
+        balance(s, STEP, at(law, boundary))
+        assert s[rows.DEFLECTION_NEW] == bent
 
 
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, DRIVEN_BY_FORCE])
 def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
     s, law = lumps(GROUP_A, tensions=(F0,) * 4)
-    s[TENSION_SLOPE : TENSION_SLOPE + N + 1] = s[STIFFNESS : STIFFNESS + N + 1] * GH
-    step = STEP._replace(frame=Given(0.0, 0.0))
+    segments(s, rows.TENSION_SLOPE)[:] = segments(s, rows.STIFFNESS) * GH
     if boundary.drive == FORCE:
-        step = step._replace(drive=Given(math.inf, 0.0))
+        step = STEP._replace(frame=NONE, drive=Given(math.inf, 0.0))
     else:
-        step = step._replace(lost_N=math.inf)
+        step = STEP._replace(frame=NONE, lost_N=math.inf)
     assert newton(s, step, at(law, boundary), 1e-6) == (0, False)
 
 
 def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
     """Backward Euler leaves out h²/2 of the acceleration, which the guess has not seen."""
     s, law = lumps(GROUP_A, speeds=(0.0, 0.1, 0.3, -0.2, 0.0))
-    s[RATE_PREDICTED : RATE_PREDICTED + N + 2] = 0.0, 0.1, 0.1, 0.1, 0.0
-    stretched = s[STIFFNESS : STIFFNESS + N + 1] * np.abs(np.diff([0.0, 0.0, 0.2, -0.3, 0.0]))
+    nodes(s, rows.RATE_PREDICTED)[:] = 0.0, 0.1, 0.1, 0.1, 0.0
+    stretched = segments(s, rows.STIFFNESS) * np.abs(np.diff([0.0, 0.0, 0.2, -0.3, 0.0]))
     first = bdf2(0.2, math.inf, math.inf)
+    assert (first.gh, first.near, first.far) == (0.2, 1.0, 0.0)
     assert step_error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
 
 
@@ -167,26 +132,21 @@ ENDS = StepEnds(
 )
 
 
-def test_what_a_step_does_not_see_is_told_by_how_each_end_answers():
+@pytest.mark.parametrize("boundary", BOUNDARIES[:3])
+def test_what_a_step_does_not_see_is_told_by_how_each_end_answers(boundary):
     """Drive and load leave the straight lines that the step sees by 0.1 and 0.02."""
     times = np.linspace(0.0, 1.0, 11)
     course = course_of(1.0 + 2.0 * times, GROUP_A, load=10.0 + 3.0 * times, time_s=times)
     end = STEP._replace(drive=Given(3.0, 2.0), load=Given(13.0, 3.0))
-    law = lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
-    answers = (2.0, 50.0)
+    law = at(cleared(GROUP_A)[1], boundary)
 
-    def not_seen(boundary):
-        return input_error(
-            course, Samples(1, 9), Span(0.0, 1.0), ENDS, end, answers, at(law, boundary)
-        )
+    def not_seen():
+        return input_error(course, Samples(1, 9), Span(0.0, 1.0), ENDS, end, (2.0, 50.0), law)
 
-    for boundary in (LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT):
-        assert not_seen(boundary) == pytest.approx(0.0, abs=1e-12)
+    assert not_seen() == pytest.approx(0.0, abs=1e-12)
     course[DRIVE, 5] += 0.1
     course[LOAD, 3] -= 0.02
-    assert not_seen(LOADED_BY_SPRING) == pytest.approx(0.2)
-    for boundary in (LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT):
-        assert not_seen(boundary) == pytest.approx(0.2 + 1.0)
+    assert not_seen() == pytest.approx(0.2 if boundary == LOADED_BY_SPRING else 0.2 + 1.0)
 
 
 def test_how_tensions_answered_what_was_given():
@@ -197,54 +157,34 @@ def test_how_tensions_answered_what_was_given():
     assert end_stiffnesses(ENDS, later, 5.0) == (6.0, 5.0)
     unmoved = ENDS._replace(drive=ENDS.drive._replace(tension=99.0))
     assert end_stiffnesses(ENDS, unmoved, 1.0) == (1.0, 1.0)
-    fell = ENDS.drive._replace(given=Given(1.5, 2.0), tension=26.0)
-    assert secant_stiffness(ENDS.drive, fell, 2.0) == 8.0
+    assert secant_stiffness(ENDS.drive, drive._replace(tension=26.0), 2.0) == 8.0
 
 
-GUIDED = {"load_friction.before_sensor_N": 1.5, "load_friction.after_sensor_N": 3.0}
+@pytest.mark.parametrize(("before_N", "share"), [(1.5, 1.0 / 3.0), (0.0, 0.0)])
+def test_the_share_of_the_guide_that_the_sensor_does_not_feel(before_N, share):
+    rubs = {"load_friction.before_sensor_N": before_N, "load_friction.after_sensor_N": 3.0}
+    law = cleared(with_values(GROUP_A, rubs))[1]
+    assert share_before_sensor(at(law, LOADED_BY_SPRING).load) == pytest.approx(share)
+    assert share_before_sensor(at(law, LOADED_BY_DISPLACEMENT).load) == (before_N > 0.0)
 
 
-def test_the_share_of_the_guide_that_the_sensor_does_not_feel():
-    law = lugre_laws(with_values(GROUP_A, GUIDED), N, LOADED_BY_SPRING)
-    assert share_before_sensor(at(law, LOADED_BY_SPRING).load) == pytest.approx(1.0 / 3.0)
-    assert share_before_sensor(at(law, LOADED_BY_DISPLACEMENT).load) == 1.0
-    bare = lugre_laws(
-        with_values(GROUP_A, {"load_friction.after_sensor_N": 3.0}), N, LOADED_BY_SPRING
-    )
-    assert share_before_sensor(at(bare, LOADED_BY_SPRING).load) == 0.0
-    assert share_before_sensor(at(bare, LOADED_BY_DISPLACEMENT).load) == 0.0
-
-
-@pytest.mark.parametrize(
-    "boundary", [LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT, DRIVEN_BY_FORCE]
-)
+@pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_samples_within_a_step_read_what_was_given_and_what_answered(boundary):
     """Everything goes straight here; the guide's share is taken off what the sensor reads."""
-    times, law = (
-        np.linspace(0.0, 1.0, 11),
-        lugre_laws(with_values(GROUP_A, GUIDED), N, LOADED_BY_SPRING),
-    )
+    rubs = {"load_friction.before_sensor_N": 1.5, "load_friction.after_sensor_N": 3.0}
+    times, law = np.linspace(0.0, 1.0, 11), cleared(with_values(GROUP_A, rubs))[1]
     course = course_of(100.0 + times, GROUP_A, load=101.0 + times, time_s=times)
-    none = Given(0.0, 0.0)
-    a = StepEnds(EndState(none, 1.0, 10.0, 30.0, 40.0), EndState(none, 2.0, 20.0, 50.0, 60.0), 0.0)
-    b = StepEnds(EndState(none, 6.0, 10.0, 50.0, 40.0), EndState(none, 12.0, 20.0, 80.0, 60.0), 3.0)
+    a = StepEnds(EndState(NONE, 1.0, 10.0, 30.0, 40.0), EndState(NONE, 2.0, 20.0, 50.0, 60.0), 0.0)
+    b = StepEnds(EndState(NONE, 6.0, 10.0, 50.0, 40.0), EndState(NONE, 12.0, 20.0, 80.0, 60.0), 3.0)
     columns = np.full((4, 11), -1.0)
     write_samples(columns, Samples(3, 7), course, Span(0.25, 0.5), a, b, at(law, boundary))
     since = times[3:7] - 0.25
-    expected = {
-        X_IN: 1.0 + 10.0 * since,
-        X_OUT: 2.0 + 20.0 * since,
-        F_IN: 30.0 + 40.0 * since,
-        F_OUT: 50.0 + 60.0 * since,
-    }
-    if boundary.load != FORCE:
-        share = 1.0 if boundary == LOADED_BY_DISPLACEMENT else 1.0 / 3.0
-        expected[F_OUT] = expected[F_OUT] - share * 3.0 * since / 0.5
+    expected = {X_IN: 1.0 + 10.0 * since, X_OUT: 2.0 + 20.0 * since, F_IN: 30.0 + 40.0 * since}
+    share = 1.0 if boundary == LOADED_BY_DISPLACEMENT else 1.0 / 3.0
+    expected[F_OUT] = 50.0 + 60.0 * since - share * 3.0 * since / 0.5
     expected[F_IN if boundary.drive == FORCE else X_IN] = course[DRIVE, 3:7]
-    if boundary == LOADED_BY_FORCE:
-        expected[F_OUT] = course[LOAD, 3:7]
-    if boundary == LOADED_BY_DISPLACEMENT:
-        expected[X_OUT] = course[LOAD, 3:7]
+    if boundary.load != LOADED_BY_SPRING.load:
+        expected[F_OUT if boundary.load == FORCE else X_OUT] = course[LOAD, 3:7]
     for row, values in expected.items():
         np.testing.assert_allclose(columns[row, 3:7], values)
     assert np.all(columns[:, [0, 1, 2, 7, 8, 9, 10]] == -1.0)
@@ -260,26 +200,20 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
         "drive_friction.friction_N": 2.0,
         "load_friction.after_sensor_N": 3.0,
     }
-    rig = with_values(GROUP_A, values)
-    s, law = lumps(rig)
+    s, law = lumps(with_values(GROUP_A, values))
     tensions = np.array([21.0, 22.0, 21.5, 22.3])
-    start = np.zeros((2, N + 2))
-    start[1, : N + 1] = tensions
-    start[0] = 0.7, 0.5, 0.3, 0.2, 0.1
-    step = Step(1e-13, Given(21.5, 0.0), Given(0.0, 0.0), Given(0.0, 0.0), 0.14, 0.06, 2.0)
+    start = np.array([[0.7, 0.5, 0.3, 0.2, 0.1], [*tensions, 0.0]])
+    step = Step(1e-13, Given(21.5, 0.0), NONE, NONE, 0.14, 0.06, 2.0)
     ends = rest_at(s, start, step, at(law, DRIVEN_BY_FORCE))
     assert (ends.drive.tension, ends.drive.x) == (21.0, 0.7)
     assert (ends.load.tension, ends.load.x) == (22.3, 0.1)
-    left = [0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)]
-    s[DEFLECTION_HISTORY : DEFLECTION_HISTORY + N + 2] = s[DEFLECTION : DEFLECTION + N + 2]
-    assert balance(s, step, at(law, DRIVEN_BY_FORCE)) == pytest.approx(
-        abs(s[RESIDUAL]) + abs(s[RESIDUAL + LAST]), abs=1e-6
-    )
-    np.testing.assert_allclose(s[FRICTION + 1 : FRICTION + LAST], left[1:LAST], rtol=1e-5)
-    stiffness = law.end_bristle.stiffness
-    assert [s[DEFLECTION], s[DEFLECTION + LAST]] == pytest.approx(
-        [left[0] / stiffness, left[LAST] / stiffness]
-    )
+    left = np.array([0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)])
+    bent = nodes(s, rows.DEFLECTION)
+    nodes(s, rows.DEFLECTION_HISTORY)[:] = bent
+    total = balance(s, step, at(law, DRIVEN_BY_FORCE))
+    assert total == pytest.approx(np.abs(nodes(s, rows.RESIDUAL)[[0, LAST]]).sum(), abs=1e-6)
+    np.testing.assert_allclose(nodes(s, rows.FRICTION)[1:LAST], left[1:LAST], rtol=1e-5)
+    assert bent[[0, LAST]] == pytest.approx(left[[0, LAST]] / law.end_bristle.stiffness)
 
 
 @pytest.mark.parametrize(
@@ -288,13 +222,11 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
 )
 def test_the_phase_is_that_in_which_all_lumps_are(leans, phase):
     """A lump slips where its bristles are bent by 99 % of the most that its limit bends them."""
-    rig = with_values(GROUP_A, {"presliding.length_mm": 0.05})
-    s, law = lumps(rig)
-    s[LIMIT + 1 : LIMIT + 4] = 2.0, 3.0, 4.0
-    longest = np.array([2.0, 3.0, 4.0]) / law.lump.bristle.stiffness + 0.05
-    s[DEFLECTION_NEW + 1 : DEFLECTION_NEW + 4] = (
-        np.where(leans, 0.991, 0.989) * longest * np.sign(np.add(leans, 0.1))
-    )
+    s, law = lumps(with_values(GROUP_A, {"presliding.length_mm": 0.05}))
+    limits = nodes(s, rows.LIMIT)[1:LAST] = 2.0, 3.0, 4.0
+    longest = np.array(limits) / law.lump.bristle.stiffness + 0.05
+    share = np.where(leans, 0.991, 0.989) * np.sign(np.add(leans, 0.1))
+    nodes(s, rows.DEFLECTION_NEW)[1:LAST] = share * longest
     assert phase_of(s, law) == phase
 
 
@@ -316,12 +248,7 @@ def test_a_tendon_hangs_where_nothing_pulls_and_the_drive_is_too_near():
     assert not slack(-1e-6, boundary=LOADED_BY_FORCE)
 
 
-def run(drive, times, *, steps=OWN_STEPS, rig=GROUP_A, tolerance=1e-3):
-    start = np.zeros((2, N + 2))
-    start[1] = F0
-    course = course_of(drive, rig, time_s=times)
-    control = StepControl(tolerance, steps)
-    return lugre_chain(course, start, rig, LOADED_BY_SPRING, N, control, None)
+REST = [[0.0], [0.0], [F0], [F0]]
 
 
 def test_a_tendon_that_nothing_moves_asks_nothing_of_newtons_method():
@@ -329,7 +256,7 @@ def test_a_tendon_that_nothing_moves_asks_nothing_of_newtons_method():
     times = np.array([0.0, 1e-3, 0.2, 0.3])
     output, progress = run(np.zeros(4), times)
     assert output.phase.tolist() == [0, 0, 0, 0]
-    np.testing.assert_allclose(output[:4], np.tile([[0.0], [0.0], [F0], [F0]], 4), atol=1e-9)
+    np.testing.assert_allclose(output[:4], np.tile(REST, 4), atol=1e-9)
     assert (progress.iterations, progress.reached_s) == (0, 0.3)
     assert progress.tries == progress.step_ends_s.size
     lengths = np.diff(progress.step_ends_s, prepend=0.0)
@@ -360,7 +287,7 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
     drive[7:] = math.nan
     output, progress = run(drive, times, steps=steps)
     assert output.phase.tolist() == [0] * 5 + [UNCONVERGED] * 6
-    np.testing.assert_allclose(output[:4], np.tile([[0.0], [0.0], [F0], [F0]], 11), atol=1e-9)
+    np.testing.assert_allclose(output[:4], np.tile(REST, 11), atol=1e-9)
     assert 0.5 - 1e-9 < progress.reached_s < 0.5 + 1e-12
     assert progress.tries > progress.step_ends_s.size
     assert progress.step_ends_s[-1] == progress.reached_s

@@ -52,15 +52,18 @@ def test_two_solvers_agreed(name):
     assert max(stored(name).about["largest_difference_over_range"].values()) < AGREED
 
 
-@pytest.mark.parametrize("name", ["a-10", "nested-50"])
-def test_a_third_solver_finds_the_same(name):
+def test_a_third_solver_finds_the_same():
     tolerance = Tolerance(y_mm=1e-9, w_mm_s=1e-5, z_mm=1e-10)
-    found = lsoda(PROBLEMS[name], tolerance, max_order=5).output
-    assert max(differences(found, stored(name).output).values()) < AGREED
+    found = lsoda(PROBLEMS["a-10"], tolerance, max_order=5).output
+    assert max(differences(found, stored("a-10").output).values()) < AGREED
 
 
-@pytest.mark.parametrize("name", ["a-50", "nested-50"])
-@pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.name)
+# The others are slow where the drive is sampled.
+@pytest.mark.parametrize(
+    ("rival", "name"),
+    [*((rival, "nested-50") for rival in RIVALS), *((rival, "noisy-50") for rival in RIVALS[:2])],
+    ids=lambda one: getattr(one, "name", one),
+)
 def test_rivals_solve_the_same_equations(rival, name):
     """At their loose tolerances they miss by about 0.05 %."""
     try:
@@ -68,11 +71,6 @@ def test_rivals_solve_the_same_equations(rival, name):
     except NotAvailableError as reason:
         pytest.skip(str(reason))
     assert max(differences(found, stored(name).output).values()) < 3e-3
-
-
-@pytest.mark.parametrize("rival", RIVALS[:2], ids=lambda rival: rival.name)  # the others are slow
-def test_rivals_follow_samples(rival):
-    test_rivals_solve_the_same_equations(rival, "noisy-50")
 
 
 def test_the_samples_of_the_noisy_run_are_in_its_file():

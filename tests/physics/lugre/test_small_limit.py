@@ -10,7 +10,6 @@ from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
@@ -19,8 +18,7 @@ N = 3
 TIME_S = np.linspace(0.0, 2.0 * math.pi, 41)
 MOTION = 3.0 - 3.0 * np.cos(TIME_S) + 0.3 * np.sin(3.0 * TIME_S)
 STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=2e5))
-NOT_HERE = {"load_inertia", "stribeck_friction"}  # with a motion of their own
-NOT_HERE |= {"antagonist"}  # which the dynamic chain refuses
+NOT_HERE = {"load_inertia", "stribeck_friction", "antagonist"}  # own motions; it is refused
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
@@ -39,13 +37,8 @@ def both(rig, drive):
 
 
 # What depends on speed or time is so much larger that it shows in a slow motion of six seconds.
-LARGER = {
-    "drive_damping": 20.0,
-    "drive_inertia": 200.0,
-    "viscous_friction": 10.0,
-    "bend_drift": 10.0,
-    "friction_drift": 10.0,
-}
+LARGER = {"drive_damping": 20.0, "drive_inertia": 200.0}
+LARGER |= dict.fromkeys(("viscous_friction", "bend_drift", "friction_drift"), 10.0)
 
 
 @pytest.mark.parametrize("name", [e.name for e in EFFECTS if e.name not in NOT_HERE])
@@ -71,23 +64,14 @@ def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
         assert stiffer["f_in_N"] < 0.45 * softer["f_in_N"]  # 4 times as stiff
 
 
-@pytest.mark.parametrize("lumps", [1, -3, MOST_NODES + 1])
-def test_a_number_of_lumps_that_cannot_be_is_refused(lumps):
-    with pytest.raises(ValueError, match=f"{lumps} nodes; expected 2 to {MOST_NODES}"):
-        simulate(STIFF, DriveInput(MOTION, time_s=TIME_S), "lugre", nodes=lumps)
-
-
-@pytest.mark.parametrize("kind", ["force", "displacement", "drive by force"])
-def test_what_is_given_at_the_ends(kind):
+def test_what_is_given_at_the_ends():
     slip = simulate(STIFF, DriveInput(MOTION, time_s=TIME_S), on_mesh=True, nodes=N)
-    drive = {
-        "force": DriveInput(MOTION, load="force", load_values=slip.f_out_N, time_s=TIME_S),
-        "displacement": DriveInput(
-            MOTION, load="displacement", load_values=slip.x_out_mm, time_s=TIME_S
-        ),
-        "drive by force": DriveInput(slip.f_in_N, kind="force", time_s=TIME_S),
-    }[kind]
-    assert max(both(STIFF, drive)[2].values()) < 5e-3
+    for given in (
+        {"values": MOTION, "load": "force", "load_values": slip.f_out_N},
+        {"values": MOTION, "load": "displacement", "load_values": slip.x_out_mm},
+        {"values": slip.f_in_N, "kind": "force"},
+    ):
+        assert max(both(STIFF, DriveInput(**given, time_s=TIME_S))[2].values()) < 5e-3
 
 
 @pytest.mark.parametrize("lost_N_per_s", [0.0, 0.5])

@@ -68,8 +68,8 @@ def test_the_chain_chatters_where_it_is_said_to():
     Longer ones glide over it: that is why it has to be said.
     """
 
-    def rough(rig, begin, end, step_ends_s):
-        f_in = follow(SINE[:3400], TIME_S[:3400], rig=rig, step_ends_s=step_ends_s)[0][2]
+    def rough(rig, begin, end, steps):
+        f_in = follow(SINE[:3400], TIME_S[:3400], rig=rig, steps=steps)[0][2]
         return np.max(np.abs(np.diff(f_in[begin:end], 3)))
 
     short = np.arange(1e-4, 3.4, 1e-4)

@@ -4,29 +4,26 @@ import math
 
 import pytest
 
-from tests.physics.references import GROUP_A, LOADED_BY_SPRING, step_ends
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING
+from tsas_cli.physics.lugre.ends import EndState, StepEnds
 from tsas_cli.physics.lugre.start import lugre_laws
-from tsas_cli.physics.lugre.state import Formula
+from tsas_cli.physics.lugre.state import Formula, Given
 from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor, tolerances_of
-
-N = 3
-EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N
 
 
 @pytest.mark.parametrize(
     ("f_in", "f_out", "tension"),
-    [(-80.0, 60.0, 80.0), (50.0, -90.0, 90.0), (1.0, 1.0, 0.1 * F0)],
+    [(-80.0, 60.0, 80.0), (50.0, -90.0, 90.0), (1.0, 1.0, 0.1 * GROUP_A.preload_N)],
 )
 def test_what_a_step_may_be_off_by_is_a_share_of_the_largest_tension(f_in, f_out, tension):
-    law = lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
-    found = tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1.0)
+    law = lugre_laws(GROUP_A, 3, LOADED_BY_SPRING)
+    ends = StepEnds(*(EndState(Given(0.0, 0.0), 0.0, 0.0, f, 0.0) for f in (f_in, f_out)), 0.0)
+    found = tolerances_of(ends, law, 1e-3, 1.0)
     assert found == pytest.approx((1e-3 * tension, 0.3e-3 * tension))
-    assert tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1e-5).residual_N == pytest.approx(
-        1e-5 * tension
-    )
+    assert tolerances_of(ends, law, 1e-3, 1e-5).residual_N == pytest.approx(1e-5 * tension)
     heavy = law._replace(load=law.load._replace(mass_kg=1.0))
-    assert tolerances_of(step_ends(f_in, f_out), heavy, 1e-3, 1.0)[0] < found[0]
-    assert tolerances_of(step_ends(f_in, f_out), law, math.inf, 1e-5).error_N == math.inf
+    assert tolerances_of(ends, heavy, 1e-3, 1.0)[0] < found[0]
+    assert tolerances_of(ends, law, math.inf, 1e-5).error_N == math.inf
 
 
 FIRST = Formula(1.0, math.inf, math.inf, 1.0, 1.0, 0.0)

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from tests.both_ways import answers
 from tests.physics.plant.open_loop import ACTUATOR, run
-from tests.physics.references import GROUP_A, LOADED_BY_SPRING, TABLE_1
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING
 from tsas_cli.physics.bristles import TONNES_PER_KG, Bristles
 from tsas_cli.physics.lugre.start import lugre_laws, segments
 from tsas_cli.physics.rig import with_values
@@ -31,27 +31,13 @@ def apart(rig, motor_mm=NESTED, **how):
     }
 
 
-def test_a_tendon_that_hangs_slack_at_the_start_and_the_end():
-    assert max(apart(STIFF, NESTED - 18.0).values()) < 1e-4
-    lugre, _, _ = run(STIFF, NESTED - 18.0, STEP_S, lumped=True)
+@pytest.mark.parametrize("start_mm", [-18.0, 3.0])
+def test_a_tendon_that_hangs_slack_at_the_start_and_the_end_or_begins_under_tension(start_mm):
+    assert max(apart(STIFF, NESTED + start_mm).values()) < 1e-4
+    lugre, _, _ = run(STIFF, NESTED + start_mm, STEP_S, lumped=True)
     slack = np.abs(lugre["f_out_N"]) < 1e-9
-    assert slack[0]
-    assert slack[-1]
-    assert 500 < np.count_nonzero(slack) < 1500
-
-
-def test_a_slack_tendon_leaves_the_drive_to_its_friction_and_spring():
-    values = {"drive_friction.friction_N": 2.0, "proximal_spring.stiffness_N_per_mm": 3.0}
-    rig, away = with_values(STIFF, values), np.linspace(0.0, -25.0, 500)
-    lugre, _, unsettled = run(rig, away, STEP_S, lumped=True, actuator=DAMPED)
-    assert unsettled == 0
-    last = {name: values[-2] for name, values in lugre.items()}
-    assert last["f_out_N"] == 0.0
-    assert last["f_in_N"] == pytest.approx(3.0 * last["x_in_mm"] - 2.0, abs=1e-3)
-
-
-def test_a_run_that_begins_under_tension():
-    assert max(apart(STIFF, NESTED + 3.0).values()) < 1e-4
+    assert slack[0] == slack[-1] == (start_mm < 0.0)
+    assert (500 < np.count_nonzero(slack) < 1500) == (start_mm < 0.0)
 
 
 def test_a_rig_that_changes_during_the_run():
@@ -70,12 +56,6 @@ def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
     ]
     assert 2e-4 < off[0] < 2e-3
     assert off[1] < off[0] / 8.0
-
-
-@pytest.mark.parametrize("damping", [math.nan, 2.0])
-def test_the_bristles_of_the_paper_are_within_a_percent_of_the_slip_chain(damping):
-    bristles = TABLE_1.bristles._replace(damping_N_s_per_mm=damping)
-    assert max(apart(TABLE_1._replace(bristles=bristles)).values()) < 1e-2
 
 
 def linear(rig, actuator, n, speed_mm_s, step_s, samples):
@@ -136,25 +116,6 @@ def test_shorter_steps_come_closer_with_friction():
     assert off[0] < 1e-2
     assert off[1] < off[0] / 2.0
     assert off[2] < off[1] / 2.0
-
-
-def work(channels, motor_speed, samples):
-    """Return what the motor puts in over some samples that end as they begin [N mm]."""
-    motor = np.cumsum(0.5 * (motor_speed[1:] + motor_speed[:-1])) * STEP_S
-    pull = ACTUATOR.stiffness_N_per_mm * (motor - channels["x_in_mm"][1:])
-    part, way = pull[samples], motor[samples]
-    return float(np.sum(0.5 * (part[1:] + part[:-1]) * np.diff(way)))
-
-
-@pytest.mark.parametrize("bristles", [Bristles(5e3), Bristles(5e5)], ids=["soft", "stiff"])
-def test_friction_takes_as_much_work_as_in_the_slip_chain(bristles):
-    rig, turns = GROUP_A._replace(bristles=bristles), np.concatenate((NESTED, NESTED))
-    period = slice(NESTED.size - 1, 2 * NESTED.size - 1)
-    lugre, motor_speed, _ = run(rig, turns, STEP_S, lumped=True)
-    slip, _, _ = run(rig, turns, STEP_S, lumped=False)
-    taken = work(slip, motor_speed, period)
-    assert taken > 100.0
-    assert work(lugre, motor_speed, period) == pytest.approx(taken, rel=0.01)
 
 
 def test_a_rig_left_alone_rings_down_and_rests():

@@ -112,4 +112,4 @@ def test_a_path_to_a_force_gives_that_force(name):
 
 def test_the_path_rests_where_the_force_does():
     _, path, _ = inverted(GROUP_A)
-    assert path[9] == path[8]
+    assert (path[0], path[9]) == (0.0, path[8])

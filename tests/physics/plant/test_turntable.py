@@ -63,18 +63,6 @@ def there_and_back(*rpm, hold=0.0, each_s=0.2, h=1e-3):
     return np.concatenate(legs)
 
 
-@pytest.mark.parametrize("lag", [0.002, 0.05])
-def test_the_motor_is_exact_for_a_speed_that_is_held(lag):
-    start = Motor(1.0, 2.0)
-    h, asked = 0.03, -700.0
-    now = advance_motor(start, asked, DRIVE._replace(motor_lag_s=lag), h)
-    exact = solve_ivp(
-        lambda _, y: [(asked - y[0]) / lag, K * y[0]], (0, h), start[:2], rtol=1e-11, atol=1e-11
-    )
-    assert now[:2] == pytest.approx(exact.y[:, -1], rel=1e-8)
-    assert now[2:] == start[2:]
-
-
 def test_a_motor_without_lag_has_its_speed_at_once():
     now = advance_motor(Motor(5.0, 1.0), 300.0, DRIVE._replace(motor_lag_s=0.0), 0.01)
     assert now[:2] == pytest.approx((300.0, 1.0 + 300.0 * K * 0.01))
@@ -113,11 +101,10 @@ def test_a_speed_step_without_friction_is_of_second_order(drive, spring):
         np.testing.assert_allclose(np.log2(coarse / fine), 2.0, atol=0.2)
 
 
-def test_a_motor_at_rest_leaves_everything_at_rest():
-    run = Run(np.zeros(20))
-    for column in (run.motor, run.x, run.v, run.end, run.x_out):
-        np.testing.assert_allclose(column, 0.0, atol=1e-12)
-    np.testing.assert_allclose(run.f_in, F0)
+def moved_likewise(run, rig=GROUP_A):
+    """Return what the model says where the drive moves the tendon's end as in a run."""
+    drive = DriveInput(np.append(0.0, run.end), time_s=np.append(0.0, run.time_s))
+    return simulate(rig, drive, on_mesh=True, nodes=N)
 
 
 MOTION = there_and_back(2000.0, -600.0, 800.0, -1500.0, hold=0.05)
@@ -143,8 +130,7 @@ def test_tensions_are_those_of_the_model_whose_drive_is_moved_likewise(values):
     """The plant finds tensions from forces, `simulate` from the way of the tendon's end."""
     rig = with_values(GROUP_A, values)
     run = Run(MOTION, rig)
-    start = np.concatenate(([0.0], run.end)), np.concatenate(([0.0], run.time_s))
-    there = simulate(rig, DriveInput(start[0], time_s=start[1]), on_mesh=True, nodes=N)
+    there = moved_likewise(run, rig)
     np.testing.assert_allclose(run.x_out, there.x_out_mm[1:], atol=1e-5)
     np.testing.assert_allclose(run.f_out, there.f_out_N[1:], atol=1e-5)
     np.testing.assert_allclose(run.f_in, there.f_in_N[1:], atol=1e-5)
@@ -155,21 +141,11 @@ def test_viscous_friction_is_late_by_a_step():
     rig, errors = with_values(GROUP_A, {"viscous_friction.coefficient_N_s_per_mm": 0.05}), []
     for h in (1e-3, 5e-4, 2.5e-4):
         run = Run(there_and_back(1500.0, -1200.0, each_s=0.15, h=h), rig, h=h)
-        moved = DriveInput(np.concatenate(([0.0], run.end)), time_s=np.append(0.0, run.time_s))
-        there, plain = (simulate(r, moved, on_mesh=True, nodes=N) for r in (rig, GROUP_A))
+        there, plain = (moved_likewise(run, r) for r in (rig, GROUP_A))
         errors.append(np.mean(np.abs(run.f_in - there.f_in_N[1:])))
         assert np.mean(np.abs(run.f_in - plain.f_in_N[1:])) > 5.0 * errors[-1]
     for coarse, fine in pairwise(errors):
         assert 0.7 < math.log2(coarse / fine) < 1.6
-
-
-def test_the_turntable_is_in_balance_with_what_it_drives():
-    """At rest the gear carries the tension, whatever hangs at the tendon's end."""
-    for values in MOVED.values():
-        rig = with_values(GROUP_A, values)
-        run = Run(there_and_back(1500.0, hold=0.1), rig)
-        carried = DRIVE.stiffness_N_per_mm * (run.motor[-1] - run.x[-1])
-        assert run.f_in[-1] - F0 == pytest.approx(carried, rel=1e-3)
 
 
 def play_of(x, play):
@@ -192,28 +168,6 @@ def test_the_tendon_rests_while_the_drive_crosses_its_play():
     assert np.abs(np.diff(run.x))[crossing].max() > 1e-3
 
 
-def test_ripple_has_its_amplitude_and_period():
-    ripple = {"drive_ripple.sine_mm": 0.04, "drive_ripple.cosine_mm": 0.02}
-    rig = with_values(GROUP_A, ripple | {"drive_ripple.period_mm": 0.9})
-    motion = there_and_back(600.0, -600.0, each_s=0.2, h=2.5e-4)
-    plain, run = Run(motion, h=2.5e-4), Run(motion, rig, h=2.5e-4)
-    assert run.x.max() > 2.0 * 0.9
-    angle = 2.0 * np.pi * run.x / 0.9
-    wave = 0.04 * np.sin(angle) + 0.02 * (np.cos(angle) - 1.0)
-    np.testing.assert_allclose(run.end - run.x, wave, atol=2e-5)
-    np.testing.assert_array_equal(plain.end, plain.x)
-
-
-def test_the_gear_feels_the_tension_through_the_slope_of_the_ripple():
-    """What the tendon takes as work the gear gives: p dx' times the tension."""
-    ripple = {"drive_ripple.sine_mm": 0.06, "drive_ripple.period_mm": 0.9}
-    run = Run(there_and_back(500.0, hold=0.2), with_values(GROUP_A, ripple))
-    slope = 1.0 + 0.06 * 2.0 * np.pi / 0.9 * np.cos(2.0 * np.pi * run.x[-1] / 0.9)
-    assert abs(slope - 1.0) > 0.05
-    carried = DRIVE.stiffness_N_per_mm * (run.motor[-1] - run.x[-1])
-    assert carried == pytest.approx(slope * (run.f_in[-1] - F0), rel=1e-3)
-
-
 def test_friction_at_the_drive_sticks_until_the_gear_is_wound_up():
     rig = with_values(GROUP_A, {"drive_friction.friction_N": 6.0})
     slow = Run(np.full(800, 30.0), rig)
@@ -223,11 +177,9 @@ def test_friction_at_the_drive_sticks_until_the_gear_is_wound_up():
     assert not slow.x[sticks].any()
     np.testing.assert_allclose(slow.f_in[sticks] - F0, wound[sticks], atol=0.02)
     assert slow.x[-1] > 0.05
-    same = simulate(
-        GROUP_A, DriveInput(np.concatenate(([0.0], slow.end))), on_mesh=True, nodes=N
-    ).f_in_N[1:]
     moves = np.diff(slow.end, prepend=0.0) > 0.0
-    np.testing.assert_allclose((slow.f_in - same)[moves], 6.0, atol=1e-6)
+    rubs = slow.f_in - moved_likewise(slow).f_in_N[1:]
+    np.testing.assert_allclose(rubs[moves], 6.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("friction", [0.0, 3.0])
@@ -243,9 +195,7 @@ def test_a_motor_that_unwinds_far_lets_the_tendon_hang(friction):
     assert (np.abs(run.f_in[hanging]) <= friction + 1e-9).all()
     assert (run.f_out >= 0.0).all()
     assert run.f_in.min() > -friction - 1e-9
-    moved = np.concatenate(([0.0], run.end))
-    same = simulate(GROUP_A, DriveInput(moved), on_mesh=True, nodes=N)
-    np.testing.assert_allclose(run.f_out, same.f_out_N[1:], atol=1e-5)
+    np.testing.assert_allclose(run.f_out, moved_likewise(run).f_out_N[1:], atol=1e-5)
 
 
 def energy(run, drive=DRIVE):

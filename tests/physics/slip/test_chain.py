@@ -7,24 +7,18 @@ import numpy as np
 import pytest
 
 from tests.physics.references import (
-    DRIVEN_BY_FORCE,
     FREE,
     GROUP_A,
-    LOADED_BY_DISPLACEMENT,
-    LOADED_BY_FORCE,
-    Profile,
     follow,
     through,
 )
 from tsas_cli.physics.closed_form.branches import branches
 
-NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
-
 
 @pytest.mark.parametrize(
     ("motion", "rms_order"),
     [
-        pytest.param(np.linspace(20.0, 19.75, 200001), 1.8, id="constant speed"),
+        pytest.param(np.linspace(20.0, 19.75, 50001), 1.8, id="constant speed"),
         pytest.param(10.0 + 10.0 * np.cos(np.linspace(0.0, 2.0 * np.pi, 40001)), 1.45, id="sine"),
     ],
 )
@@ -46,73 +40,14 @@ def test_full_slip_is_second_order():
         assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
 
 
-@pytest.mark.parametrize("rig", [GROUP_A, FREE])
-def test_nested_partial_reversals_are_those_of_the_closed_form(rig):
-    exact_in, exact_out, _ = branches(NESTED, rig)
-    _, x_out, f_in, f_out, phase = follow(NESTED, rig=rig, n=100)
-    assert np.sqrt(np.mean((f_in - exact_in) ** 2)) < 0.02
-    assert np.abs(f_out - exact_out).max() < 0.02
-    np.testing.assert_allclose(f_out, 25.0 + 1.579 * x_out, rtol=1e-12)
-    assert set(phase) == {-1, 0, 1}
-
-
-@pytest.mark.parametrize("rig", [GROUP_A, FREE])
-@pytest.mark.parametrize("boundary", [LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT])
-def test_the_spring_run_fed_back_as_a_load_repeats_itself(rig, boundary):
-    spring = follow(NESTED, rig=rig)
-    load = spring[3] if boundary == LOADED_BY_FORCE else spring[1]
-    again = follow(NESTED, load=load, rig=rig, boundary=boundary)
-    for before, after in zip(spring[:4], again[:4], strict=True):
-        np.testing.assert_allclose(after, before, atol=1e-6)
-    assert not (again[4] == 3).any()
-
-
-def test_the_tension_at_the_drive_fed_back_repeats_the_motion():
-    spring = follow(NESTED, rig=FREE)
-    again = follow(spring[2], rig=FREE, boundary=DRIVEN_BY_FORCE)
-    for before, after in zip(spring[:4], again[:4], strict=True):
-        np.testing.assert_allclose(after, before, atol=1e-6)
-
-
-def test_a_drive_by_force_moves_as_the_profile_says():
-    turns = 25.0 * np.array([2.0, 0.9, 1.7, 1.1, 0.4, 3.0])
-    profile, exact = Profile(FREE), []
-    for f_in in turns:
-        profile.pull_drive_to(f_in)
-        exact.append((profile.x_in, profile.x_out))
-    x_in, x_out, f_in, _, _ = follow(turns, rig=FREE, boundary=DRIVEN_BY_FORCE, n=200)
-    np.testing.assert_array_equal(f_in, turns)
-    np.testing.assert_allclose(np.transpose(exact), [x_in, x_out], atol=1e-3)
-
-
-PUSHED = [("drive", 1.3), ("load", 1.15), ("drive", 1.05), ("load", 0.9), ("drive", 1.2)]
-
-
-@pytest.mark.parametrize("boundary", [LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT])
-def test_fronts_from_both_ends_are_those_of_the_profile(boundary):
-    profile, drive, load, exact = Profile(FREE), [], [], []
-    for end, factor in PUSHED:
-        pull = {
-            "drive": profile.pull_drive_with_held_load,
-            "load": profile.pull_load_with_held_drive,
-        }
-        pull[end](25.0 * factor)
-        drive.append(profile.x_in)
-        load.append(profile.tension[-1] if boundary == LOADED_BY_FORCE else profile.x_out)
-        exact.append((profile.x_in, profile.x_out, profile.tension[0], profile.tension[-1]))
-    answer = follow(drive, load=load, rig=FREE, boundary=boundary, n=400)
-    np.testing.assert_allclose(np.transpose(exact)[:2], answer[:2], atol=1e-4)
-    np.testing.assert_allclose(np.transpose(exact)[2:], answer[2:4], atol=0.03)
-
-
 @pytest.mark.parametrize("n", [1, 2, 30])
 def test_a_slack_tendon_carries_nothing_until_it_is_taut_again(n):
     motion = through(5.0, -40.0, 10.0, -5.0, -40.0, -41.0, 20.0)
     exact_in, exact_out, exact_phase = branches(motion, FREE)
     _, _, f_in, f_out, phase = follow(motion, rig=FREE, n=n)
     assert f_in.min() == f_out.min() == 0.0
-    np.testing.assert_array_equal(phase == 2, exact_phase == 2)
     loose = phase == 2
+    np.testing.assert_array_equal(loose, exact_phase == 2)
     assert not f_in[loose].any()
     assert not f_out[loose].any()
     if n == 30:

@@ -30,7 +30,6 @@ SPRINGY = GROUP_A._replace(
     tendon_stiffness_N=5e3, load_stiffness_N_per_mm=30.0, sheath_length_mm=300.0
 )
 UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 1.47, 1.1, 0.5, -0.1, -0.7, -0.6])
-STEP_S = 0.05
 MASS_TAKES_UP_S = 0.01  # documented in `slip.ends`
 ROUNDING = 1e-6  # [N, mm]
 FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
@@ -93,11 +92,11 @@ def moments(course):
     return [moment(course, i) for i in range(course.shape[1])]
 
 
-def gives(rig):
+def gives(rig, n=N):
     """Return what each segment gives [mm/N]: halves at both ends, all else in series with them."""
     effects, EA = rig.effects, rig.tendon_stiffness_N
-    sheathed = rig.sheath_length_mm / EA * (1.0 + effects.sheath_compression.compliance_ratio) / N
-    give = sheathed * np.array([0.5, *[1.0] * (N - 1), 0.5])
+    sheathed = rig.sheath_length_mm / EA * (1.0 + effects.sheath_compression.compliance_ratio) / n
+    give = sheathed * np.array([0.5, *[1.0] * (n - 1), 0.5])
     give[0] += effects.free_tendon.proximal_length_mm / EA
     give[0] += effects.drive_compliance.compliance_mm_per_N
     give[-1] += effects.free_tendon.distal_length_mm / EA
@@ -171,7 +170,6 @@ def hold_everywhere(course, rig, boundary):
     ways, beside = [], BesideSpring(rig)
     for now, (x, T) in zip(moments(course), states(course, rig, boundary), strict=True):
         drive, load, losses, step_s = now
-        lost_N = losses.preload_N
         way = x - x_before
         np.testing.assert_allclose(x[:-1] - x[1:], give * (T - F0), atol=ROUNDING)
         for i in range(1, N + 1):
@@ -184,15 +182,12 @@ def hold_everywhere(course, rig, boundary):
         if boundary.load == DISPLACEMENT:
             assert x[-1] == load
         else:
-            before, after = (
-                effects.load_friction.before_sensor_N,
-                effects.load_friction.after_sensor_N,
-            )
-            pull, guide = load, before
+            guide, after = effects.load_friction[::-1]
+            pull = load
             if boundary.load == SPRING:
                 shape = effects.load_spring_nonlinearity
                 bent = 1.0 + shape.quadratic_per_mm * x[-1] + shape.cubic_per_mm2 * x[-1] ** 2
-                pull, guide = F0 - lost_N, before + after
+                pull, guide = F0 - losses.preload_N, guide + after
                 pull += rig.load_stiffness_N_per_mm * x[-1] * bent
                 pull += beside.force(x[-1], way[-1], step_s)
                 if effects.load_inertia.mass_kg > 0.0:
@@ -206,18 +201,19 @@ def hold_everywhere(course, rig, boundary):
     return np.array(ways)
 
 
+def varying(drive, rig, **given):
+    """Return the course of a drive while friction of both directions and the preload change."""
+    m = drive.size
+    pulled, released = np.linspace(0.9, 1.3, m) * A, np.linspace(0.8, 0.6, m) * A
+    losses = {"pulled": pulled, "released": released, "lost": np.linspace(0.0, 2.0, m)}
+    return course_of(drive, rig, step=0.05, **losses, **given)
+
+
 @pytest.mark.parametrize("name", EFFECTS)
 def test_every_effect_at_a_spring(name):
     rig = with_values(SPRINGY, EFFECTS[name])
-    course = course_of(
-        UP_AND_DOWN,
-        rig,
-        pulled=np.linspace(0.9, 1.3, UP_AND_DOWN.size) * A,
-        released=np.linspace(0.8, 0.6, UP_AND_DOWN.size) * A,
-        viscous=np.linspace(0.5, 1.5, UP_AND_DOWN.size),
-        lost=np.linspace(0.0, 2.0, UP_AND_DOWN.size),
-        step=STEP_S,
-    )
+    viscous = np.linspace(0.5, 1.5, UP_AND_DOWN.size)
+    course = varying(UP_AND_DOWN, rig, viscous=viscous)
     ways = hold_everywhere(course, rig, LOADED_BY_SPRING)
     assert ways[1:3, 1:].min() > 0.05  # all nodes, and the load, are pulled, and later let go
     assert ways[10, 1:].max() < -0.05

@@ -5,107 +5,81 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import (
-    GROUP_A,
-    LOADED_BY_SPRING,
-    at,
-)
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING, at
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.physics.boundary import unloaded_position
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip import state as rows
 from tsas_cli.physics.slip.ends import update_ends
-from tsas_cli.physics.slip.nodes import (
-    breakaway,
-    set_friction,
-    slips_backwards,
-    update_travel,
-)
+from tsas_cli.physics.slip.nodes import breakaway, set_friction, slips_backwards, update_travel
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import (
-    POSITION,
-    POSITION_BEFORE,
-    SHARE,
-    SHARE_BEFORE,
-    SLIP,
-    TENSION,
-    TRAVEL,
-    WRAP_PULLED,
-    WRAP_RELEASED,
-    Moment,
-)
+from tsas_cli.physics.slip.state import Moment
 
 N = 3
-NODES = slice(1, N + 1)
 F0, KL = 25.0, 1.579
 NOW = Moment(30.0, 27.0, Losses(0.6, 0.45, 1.2, 2.0), 0.05)
-TENSIONS = np.array([40.0, 31.0, 22.0, 13.0])
 
 
-def laws(**values):
-    """Return the laws of a rig with these effects, named with two underscores for a dot."""
-    rig = with_values(GROUP_A, {name.replace("__", "."): v for name, v in values.items()})
-    return slip_laws(rig, N, LOADED_BY_SPRING)
+def laws(values=()):
+    return slip_laws(with_values(GROUP_A, dict(values)), N, LOADED_BY_SPRING)
+
+
+BRISTLY = laws({"presliding.length_mm": 0.05})
 
 
 @pytest.fixture
 def chain():
     """A chain at rest whose tensions fall towards the load."""
     found = chain_at_rest(GROUP_A, N)
-    found[TENSION : TENSION + N + 1] = TENSIONS
+    found[rows.TENSION :][: N + 1] = 40.0, 31.0, 22.0, 13.0
     return found
 
 
-def row(chain, at):
-    return chain[at : at + N + 2]
+def nodes(chain, row):
+    return chain[row + 1 : row + N + 1]
 
 
 def test_friction_stays_finite_where_no_tension_is_left(chain):
     """Its tension counts as a hundredth of the preload, and a node passes on e^−30 at least."""
-    row(chain, TENSION)[:] = 1e-9
-    set_friction(chain, NOW, laws(load_dependent_friction__exponent=-0.5))
-    np.testing.assert_allclose(row(chain, WRAP_PULLED)[NODES], 0.2 * 10.0)
-    set_friction(chain, NOW, laws(load_dependent_friction__exponent=-1.5))
-    np.testing.assert_allclose(row(chain, WRAP_PULLED)[NODES], 30.0)
-    np.testing.assert_allclose(row(chain, WRAP_RELEASED)[NODES], 30.0)
+    chain[rows.TENSION :][: N + 2] = 1e-9
+    for exponent, pulled, released in ((-0.5, 0.2 * 10.0, 0.15 * 10.0), (-1.5, 30.0, 30.0)):
+        set_friction(chain, NOW, laws({"load_dependent_friction.exponent": exponent}))
+        np.testing.assert_allclose(nodes(chain, rows.WRAP_PULLED), pulled)
+        np.testing.assert_allclose(nodes(chain, rows.WRAP_RELEASED), released)
 
 
 def test_a_way_that_would_turn_stops_at_its_turning(chain):
-    bristly = laws(presliding__length_mm=0.05)
-    row(chain, POSITION)[NODES] = 0.02, 0.02, -0.01
-    row(chain, TRAVEL)[NODES] = 0.01, 0.0, -0.03
-    row(chain, SHARE_BEFORE)[NODES] = 0.5, -0.5, 0.1
-    assert not update_travel(chain, bristly)
-    assert row(chain, TRAVEL)[NODES].tolist() == [0.02, 0.02, -0.01]
-    kept = math.exp(-0.4), math.exp(-0.2)
-    np.testing.assert_allclose(
-        row(chain, SHARE)[NODES],
-        [1.0 - 0.5 * kept[0], 1.0 - 1.5 * kept[0], -1.0 + 1.1 * kept[1]],
-        rtol=1e-9,
-    )
-    row(chain, TRAVEL)[2] = -1e-3
-    assert update_travel(chain, bristly)
-    assert row(chain, TRAVEL)[NODES].tolist() == [0.02, 0.0, -0.01]
-    assert row(chain, SHARE)[2] == pytest.approx(-0.5)
+    nodes(chain, rows.POSITION)[:] = 0.02, 0.02, -0.01
+    nodes(chain, rows.TRAVEL)[:] = 0.01, 0.0, -0.03
+    nodes(chain, rows.SHARE_BEFORE)[:] = 0.5, -0.5, 0.1
+    assert not update_travel(chain, BRISTLY)
+    assert nodes(chain, rows.TRAVEL).tolist() == [0.02, 0.02, -0.01]
+    far, near = math.exp(-0.4), math.exp(-0.2)
+    shares = [1.0 - 0.5 * far, 1.0 - 1.5 * far, -1.0 + 1.1 * near]
+    np.testing.assert_allclose(nodes(chain, rows.SHARE), shares, rtol=1e-9)
+    chain[rows.TRAVEL + 2] = -1e-3
+    assert update_travel(chain, BRISTLY)
+    assert nodes(chain, rows.TRAVEL).tolist() == [0.02, 0.0, -0.01]
+    assert chain[rows.SHARE + 2] == pytest.approx(-0.5)
 
 
 def test_rounding_turns_no_way_of_a_node_that_rests(chain):
     """Else its step would never settle: the sign of a way of 1e-18 mm changes for ever."""
-    bristly = laws(presliding__length_mm=0.05)
-    row(chain, POSITION)[NODES] = row(chain, POSITION_BEFORE)[NODES] + 1e-15
-    row(chain, TRAVEL)[NODES] = -1e-15
-    assert not update_travel(chain, bristly)
-    assert not row(chain, TRAVEL)[NODES].any()
+    nodes(chain, rows.POSITION)[:] = nodes(chain, rows.POSITION_BEFORE) + 1e-15
+    nodes(chain, rows.TRAVEL)[:] = -1e-15
+    assert not update_travel(chain, BRISTLY)
+    assert not nodes(chain, rows.TRAVEL).any()
 
 
 @pytest.mark.parametrize("slip", [1.0, -1.0])
 def test_a_node_that_goes_against_its_slip_is_held(chain, slip):
-    row(chain, SLIP)[2] = slip
-    row(chain, POSITION_BEFORE)[2] = 0.3
+    chain[rows.SLIP + 2] = slip
+    chain[rows.POSITION_BEFORE + 2] = 0.3
     for way, back in ((1e-3, False), (0.0, False), (-1e-3, True), (-0.5e-12, False)):
-        row(chain, POSITION)[2] = 0.3 + slip * way
+        chain[rows.POSITION + 2] = 0.3 + slip * way
         assert slips_backwards(2, chain, at(laws(), scale=0.01)) == back
-    row(chain, POSITION)[2] = 0.3 - slip * 2e-12
+    chain[rows.POSITION + 2] = 0.3 - slip * 2e-12
     assert slips_backwards(2, chain, at(laws(), scale=0.01))
 
 
@@ -123,15 +97,15 @@ def test_a_node_is_pulled_loose_outside_of_the_capstan_ratio(chain):
         (least - 1e-9, 0.0),  # within rounding
         (most + 1e-9, 0.0),
     ):
-        row(chain, TENSION)[1:3] = before, behind
+        chain[rows.TENSION + 1 :][:2] = before, behind
         assert breakaway(2, 2.0 * half, chain) == expected
 
 
 def test_a_load_without_a_guide_is_asked_to_balance(chain):
     """To a billionth of the tensions there, which a tangent that is not straight may miss."""
-    row(chain, POSITION)[N + 1] = 2.0
+    chain[rows.POSITION + N + 1] = 2.0
     for off, wrong in ((0.0, False), (4e-8, False), (6e-8, True), (-6e-8, True)):
-        row(chain, TENSION)[N] = F0 - 2.0 + KL * 2.0 + off
+        chain[rows.TENSION + N] = F0 - 2.0 + KL * 2.0 + off
         assert update_ends(chain, NOW, at(laws(), LOADED_BY_SPRING, 0.01)) == wrong
 
 

@@ -15,11 +15,13 @@ from tests.physics.references import (
     course_of,
     follow,
 )
+from tests.physics.slip.test_small_chains import SPRINGY
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip import state as rows
 from tsas_cli.physics.slip.chain import (
     ChainEnds,
     between,
@@ -32,18 +34,7 @@ from tsas_cli.physics.slip.chain import follow as go_on
 from tsas_cli.physics.slip.chain import moment as moment_of
 from tsas_cli.physics.slip.outputs import phase_of, tension_at_sensor
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import (
-    COMPLIANCE,
-    END_SPEED,
-    POSITION,
-    POSITION_BEFORE,
-    SHARE_BEFORE,
-    SLIP,
-    TENSION,
-    TENSION_BEFORE,
-    TENSION_RISE,
-    Moment,
-)
+from tsas_cli.physics.slip.state import Moment
 
 F0, KL = 25.0, 1.579
 NOW = Moment(0.9, 0.4, Losses(0.6, 0.45, 1.2, 2.0), math.inf)
@@ -53,6 +44,10 @@ AT_ENDS = {
     "load_friction.before_sensor_N": 1.5,
     "load_friction.after_sensor_N": 3.0,
 }
+
+
+def row(chain, at):
+    return chain[at : at + 5]
 
 
 def test_a_load_that_its_guide_holds_does_not_move_at_all():
@@ -66,33 +61,26 @@ def test_a_load_that_its_guide_holds_does_not_move_at_all():
     assert x_out[-1] < x_out[30] - 0.1
 
 
-START = Moment(1.0, 2.0, Losses(0.3, 0.4, 5.0, 6.0), 0.1)
-END = Moment(3.0, 6.0, Losses(0.5, 0.8, 9.0, 14.0), 0.2)
-
-
 def test_the_way_between_two_samples_is_straight():
-    quarter = Moment(1.5, 3.0, Losses(0.35, 0.5, 6.0, 8.0), 0.05)
-    between_them = between(START, END, 0.25, 0.05)
-    np.testing.assert_allclose(between_them.losses, quarter.losses)
-    assert (between_them.drive, between_them.load, between_them.step_s) == (1.5, 3.0, 0.05)
-    assert between(START, END, 1.0, 0.15) == END._replace(step_s=0.15)
+    start = Moment(1.0, 2.0, Losses(0.3, 0.4, 5.0, 6.0), 0.1)
+    end = Moment(3.0, 6.0, Losses(0.5, 0.8, 9.0, 14.0), 0.2)
+    drive, load, losses, step_s = between(start, end, 0.25, 0.05)
+    assert losses == pytest.approx((0.35, 0.5, 6.0, 8.0))
+    assert (drive, load, step_s) == (1.5, 3.0, 0.05)
+    assert between(start, end, 1.0, 0.15) == end._replace(step_s=0.15)
 
 
 @pytest.mark.parametrize(
     ("slips", "phase"),
     [
-        ((1, 1, 1), 1),
-        ((-1, -1, -1), -1),
-        ((0, 0, 0), 0),
-        ((1, 1, 0), 0),
-        ((0, 1, 1), 0),
-        ((1, -1, 1), 0),
+        *(((1, 1, 1), 1), ((-1, -1, -1), -1), ((0, 0, 0), 0)),
+        *(((1, 1, 0), 0), ((0, 1, 1), 0), ((1, -1, 1), 0)),
     ],
 )
 def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
     """What the ends do does not count."""
     chain = chain_at_rest(GROUP_A, 3)
-    chain[SLIP : SLIP + 5] = [5.0, *slips, 7.0]
+    row(chain, rows.SLIP)[:] = 5.0, *slips, 7.0
     assert phase_of(chain, slip_laws(GROUP_A, 3, LOADED_BY_SPRING)) == phase
 
 
@@ -100,7 +88,7 @@ def test_what_a_sensor_at_the_load_feels():
     """The guide's friction before it is taken off, by its share of the guide where that sticks."""
     rig = with_values(GROUP_A, AT_ENDS)
     laws, chain = slip_laws(rig, 3, LOADED_BY_SPRING), chain_at_rest(rig, 3)
-    chain[TENSION + 3], chain[POSITION + 4], chain[SLIP + 4] = 40.0, 2.0, -1.0
+    chain[rows.TENSION + 3], chain[rows.POSITION + 4], chain[rows.SLIP + 4] = 40.0, 2.0, -1.0
     assert tension_at_sensor(chain, NOW, at(laws, LOADED_BY_FORCE)) == NOW.load
     assert tension_at_sensor(chain, NOW, at(laws, LOADED_BY_DISPLACEMENT)) == 41.5
     held = 40.0 - (F0 - 2.0 + 2.0 * KL)
@@ -114,32 +102,22 @@ def test_what_a_sensor_at_the_load_feels():
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, LOADED_BY_DISPLACEMENT])
 def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
     laws, chain = slip_laws(GROUP_A, 3, LOADED_BY_SPRING), chain_at_rest(GROUP_A, 3)
-    chain[POSITION : POSITION + 5] = -40.0, 1.0, 2.0, 3.0, 0.4
-    for row in (SLIP, END_SPEED, SHARE_BEFORE, TENSION_RISE):
-        chain[row : row + 5] = -3.0
+    x, T = row(chain, rows.POSITION), row(chain, rows.TENSION)
+    x[:] = -40.0, 1.0, 2.0, 3.0, 0.4
+    for each in (rows.SLIP, rows.END_SPEED, rows.SHARE_BEFORE, rows.TENSION_RISE):
+        row(chain, each)[:] = -3.0
     go_slack(chain, NOW, at(laws, boundary))
     load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.losses.preload_N) / KL
     gives = segment_compliances(GROUP_A, 3)
-    places = load - F0 * np.append(np.cumsum(gives[:0:-1])[::-1], 0.0)
-    np.testing.assert_allclose(chain[POSITION + 1 : POSITION + 5], places)
-    assert chain[POSITION] == -40.0  # where the drive is
-    assert not chain[TENSION : TENSION + 4].any()
-    assert chain[SLIP : SLIP + 5].tolist() == [
-        -3.0,
-        1.0,
-        1.0,
-        1.0,
-        1.0,
-    ]  # as the next pull finds it
-    assert chain[END_SPEED + 4] == 0.0
-    assert chain[SHARE_BEFORE : SHARE_BEFORE + 5].tolist() == [1.0] * 5
-    assert not chain[TENSION_RISE : TENSION_RISE + 5].any()
-    np.testing.assert_array_equal(
-        chain[POSITION_BEFORE : POSITION_BEFORE + 5], chain[POSITION : POSITION + 5]
-    )
-    np.testing.assert_array_equal(
-        chain[TENSION_BEFORE : TENSION_BEFORE + 5], chain[TENSION : TENSION + 5]
-    )
+    np.testing.assert_allclose(x[1:], load - F0 * np.append(np.cumsum(gives[:0:-1])[::-1], 0.0))
+    assert x[0] == -40.0  # where the drive is
+    assert not T[:4].any()
+    assert row(chain, rows.SLIP).tolist() == [-3.0, 1.0, 1.0, 1.0, 1.0]  # as the next pull finds it
+    assert chain[rows.END_SPEED + 4] == 0.0
+    assert row(chain, rows.SHARE_BEFORE).tolist() == [1.0] * 5
+    assert not row(chain, rows.TENSION_RISE).any()
+    np.testing.assert_array_equal(row(chain, rows.POSITION_BEFORE), x)
+    np.testing.assert_array_equal(row(chain, rows.TENSION_BEFORE), T)
 
 
 def test_segments_share_the_compliance_of_the_sheath_by_their_bend():
@@ -150,66 +128,78 @@ def test_segments_share_the_compliance_of_the_sheath_by_their_bend():
             "free_tendon.proximal_length_mm": 40.0,
             "free_tendon.distal_length_mm": 15.0,
             "drive_compliance.compliance_mm_per_N": 0.004,
+            "sheath_compression.compliance_ratio": 0.5,
         },
     )
     EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
     middles = np.array([-0.875, -0.5, 0.0, 0.5, 0.875])  # from −1 at the drive to 1 at the load
     shares = np.array([1, 2, 2, 2, 1]) / 8
     per_angle = 1.0 + 0.3 * middles - 0.2 * (1.5 * middles**2 - 0.5)
-    expected = L / EA * shares * per_angle
+    expected = 1.5 * L / EA * shares * per_angle
     expected[0] += 40.0 / EA + 0.004
     expected[-1] += 15.0 / EA
     np.testing.assert_allclose(segment_compliances(rig, 4), expected)
-    np.testing.assert_allclose(
-        chain_at_rest(rig, 4)[COMPLIANCE : COMPLIANCE + 6], [*expected, expected[-1]]
-    )
+    kept = chain_at_rest(rig, 4)[rows.COMPLIANCE :][:6]
+    np.testing.assert_allclose(kept, [*expected, expected[-1]])
 
 
 UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 0.3, -0.5, -25.0, -24.0, 2.0, 1.9])
 
 
-def test_a_run_may_be_followed_in_two_parts():
+WAVE = np.sin(np.arange(UP_AND_DOWN.size))
+RUBBING, PAIR = with_values(GROUP_A, AT_ENDS), with_values(SPRINGY, {"antagonist.preload_N": 18.0})
+
+
+@pytest.mark.parametrize(
+    ("rig", "boundary", "drive", "load"),
+    [
+        (RUBBING, LOADED_BY_SPRING, UP_AND_DOWN, 0.0),
+        (RUBBING, LOADED_BY_FORCE, UP_AND_DOWN, 27.0 + WAVE),
+        (RUBBING, LOADED_BY_DISPLACEMENT, UP_AND_DOWN, 0.3 * WAVE),
+        (RUBBING, DRIVEN_BY_FORCE, 25.0 + 0.8 * UP_AND_DOWN, 0.0),
+        (PAIR, LOADED_BY_SPRING, 0.4 * UP_AND_DOWN, 0.0),
+    ],
+)
+def test_a_run_may_be_followed_in_two_parts(rig, boundary, drive, load):
     """All that changes from outside is remembered, and both answers are one."""
-    m = UP_AND_DOWN.size
-    varying = {
-        "pulled": np.linspace(0.3, 0.6, m),
-        "released": np.linspace(0.5, 0.2, m),
-        "viscous": np.linspace(0.5, 1.5, m),
-        "lost": np.linspace(0.0, 2.0, m),
-        "step": 0.05,
-    }
-    rig = with_values(GROUP_A, AT_ENDS)
-    for boundary, drive, load in (
-        (LOADED_BY_SPRING, UP_AND_DOWN, 0.0),
-        (LOADED_BY_FORCE, UP_AND_DOWN, 27.0 + np.sin(np.arange(m))),
-        (LOADED_BY_DISPLACEMENT, UP_AND_DOWN, 0.3 * np.sin(np.arange(m))),
-        (DRIVEN_BY_FORCE, 25.0 + 0.8 * UP_AND_DOWN, 0.0),
-    ):
-        course = course_of(drive, rig, load=load, **varying)
-        whole = slip_chain(course, rig, boundary, 3)
-        state, parts = initial_state(course, rig, boundary, 3), []
-        for part in (course[:, :5].copy(), course[:, 5:].copy()):
-            output, state = go_on(part, state, rig, boundary, 3, None)
-            parts.append(output)
-        for k, column in enumerate(whole):
-            np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)
-        assert state.before == moment_of(course, m - 1)
-        assert (*state.ends, state.unconverged) == (*(column[-1] for column in whole[:4]), 0)
+    m = drive.size
+    course = course_of(
+        drive,
+        rig,
+        load=load,
+        pulled=np.linspace(0.3, 0.6, m),
+        released=np.linspace(0.5, 0.2, m),
+        viscous=np.linspace(0.5, 1.5, m),
+        lost=np.linspace(0.0, 2.0, m),
+        step=0.05,
+    )
+    whole = slip_chain(course, rig, boundary, 3)
+    state, parts = initial_state(course, rig, boundary, 3), []
+    for part in (course[:, :5].copy(), course[:, 5:].copy()):
+        output, state = go_on(part, state, rig, boundary, 3, None)
+        parts.append(output)
+    for column, *pieces in zip(whole, *parts, strict=True):
+        np.testing.assert_array_equal(np.concatenate(pieces), column)
+    assert state.before == moment_of(course, m - 1)
+    assert (*state.ends, state.unconverged) == (*(column[-1] for column in whole[:4]), 0)
 
 
-def test_a_run_starts_from_rest_at_the_preload():
-    """What is given by force is the preload there, and what is given by place is zero."""
-    course = course_of([30.0], GROUP_A, load=20.0, pulled=0.6, released=0.4)
-    for boundary, ends in (
+@pytest.mark.parametrize(
+    ("boundary", "ends"),
+    [
         (LOADED_BY_SPRING, (0.0, 0.0)),
         (LOADED_BY_FORCE, (0.0, F0)),
         (DRIVEN_BY_FORCE, (F0, 0.0)),
         (LOADED_BY_DISPLACEMENT, (0.0, 0.0)),
-    ):
-        state = initial_state(course, GROUP_A, boundary, 3)
-        assert state.before == (*ends, (0.6, 0.4, 0.0, 0.0), math.inf)
-        assert state.chain[TENSION : TENSION + 5].tolist() == [F0] * 5
-        assert (*state.ends, state.unconverged) == (0.0, 0.0, 0.0, 0.0, 0)
+    ],
+)
+def test_a_run_starts_from_rest_at_the_preload(boundary, ends):
+    """What is given by force is the preload there, and what is given by place is zero."""
+    course = course_of([30.0], GROUP_A, load=20.0, pulled=0.6, released=0.4)
+    state = initial_state(course, GROUP_A, boundary, 3)
+    assert state.before == (*ends, (0.6, 0.4, 0.0, 0.0), math.inf)
+    assert row(state.chain, rows.TENSION).tolist() == [F0] * 5
+    assert (*state.ends, state.unconverged) == (0.0, 0.0, 0.0, 0.0, 0)
 
 
 @pytest.mark.parametrize(("unsettled", "given_up"), [(10, False), (11, True)])
