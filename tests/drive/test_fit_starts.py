@@ -34,7 +34,10 @@ def bench_of(runs=(), **parts):
     return bench
 
 
-def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):
+FRESH = DriveValues(0.02)
+
+
+def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=FRESH):
     """A bench whose fits are made up; it remembers from where it was asked to fit."""
     asked = []
 
@@ -44,54 +47,57 @@ def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):
         solution = SimpleNamespace(converged=converged)
         return SimpleNamespace(start=start, mean_square=square, solution=solution, terms=terms)
 
-    parts = {"_from_response": lambda terms: fresh or DriveValues(0.02)}
-    return bench_of(_mean_square=mean_square, _solved=solved, **parts), asked
+    parts = {"_from_response": lambda terms: fresh, "_solved": solved}
+    return bench_of(_mean_square=mean_square, **parts), asked
 
 
-def simpler(**values):
-    return SimpleNamespace(values=DriveValues(**values))
+def simpler(gain):
+    return SimpleNamespace(values=DriveValues(gain))
 
 
-def test_what_a_simpler_fit_lacks_begins_fresh_at_nothing_and_at_a_little():
-    """The best three of them are followed: by how far they are from a leak of 0.0001."""
-    fresh = DriveValues(0.02, leak_per_s=0.5)
-    bench, asked = bench_with(lambda v: abs(v.leak_per_s - 1e-4), fresh=fresh)
-    bench.fit(["leak"], [simpler(gain_mm_per_s_rpm=0.03)])
-    followed = [(start.gain_mm_per_s_rpm, round(start.leak_per_s, 9)) for start, _ in asked]
-    assert followed == [(0.03, 1e-4), (0.03, 0.0), (0.03, 1e-3)]
-    bench, asked = bench_with(lambda v: -v.leak_per_s, fresh=fresh)
-    bench.fit(["leak"], [simpler(gain_mm_per_s_rpm=0.03)])
-    followed = [(start.gain_mm_per_s_rpm, round(start.leak_per_s, 9)) for start, _ in asked]
-    assert followed == [(0.02, 0.5), (0.03, 0.5), (0.03, 1e-3)]
+LEAK = DriveValues(0.02, leak_per_s=0.5)
+SPRING = DriveValues(0.02, natural_frequency_Hz=9.0, damping_ratio=0.2, motor_lag_s=0.01)
 
 
-def test_a_frequency_is_never_nothing():
-    """What is sought by its logarithm begins where the response says."""
-    fresh = DriveValues(0.02, natural_frequency_Hz=9.0, damping_ratio=0.2, motor_lag_s=0.01)
-    bench, asked = bench_with(lambda v: v.gain_mm_per_s_rpm, fresh=fresh)
-    known = simpler(gain_mm_per_s_rpm=0.03, motor_lag_s=0.04)
-    bench.fit(["spring", "lag"], [known])
-    starts = [start for start, _ in asked]
-    whole = known.values._replace(natural_frequency_Hz=9.0, damping_ratio=0.2)
-    assert starts == [fresh, whole]
-
-
-def test_nothing_lacks_where_everything_is_known():
-    known = simpler(gain_mm_per_s_rpm=0.03, leak_per_s=0.2)
-    bench, asked = bench_with(
-        lambda v: -v.gain_mm_per_s_rpm, fresh=DriveValues(0.02, leak_per_s=0.1)
-    )
-    bench.fit(["leak"], [known])
-    assert [start for start, _ in asked] == [known.values, DriveValues(0.02, leak_per_s=0.1)]
+@pytest.mark.parametrize(
+    ("names", "fresh", "known", "off", "followed"),
+    [
+        (  # by how far they are from a leak of 0.0001
+            ["leak"], LEAK, DriveValues(0.03), lambda v: abs(v.leak_per_s - 1e-4),
+            [LEAK._replace(gain_mm_per_s_rpm=0.03, leak_per_s=x) for x in (1e-4, 0.0, 1e-3)],
+        ),
+        (
+            ["leak"], LEAK, DriveValues(0.03), lambda v: -v.leak_per_s,
+            [LEAK, LEAK._replace(gain_mm_per_s_rpm=0.03), DriveValues(0.03, leak_per_s=1e-3)],
+        ),
+        (  # what is sought by its logarithm, as a frequency, is never nothing
+            ["spring", "lag"], SPRING, DriveValues(0.03, motor_lag_s=0.04),
+            lambda v: v.gain_mm_per_s_rpm,
+            [SPRING, SPRING._replace(gain_mm_per_s_rpm=0.03, motor_lag_s=0.04)],
+        ),
+        (  # nothing lacks
+            ["leak"], LEAK, DriveValues(0.03, leak_per_s=0.2), lambda v: -v.gain_mm_per_s_rpm,
+            [DriveValues(0.03, leak_per_s=0.2), LEAK],
+        ),
+    ],
+)  # fmt: skip
+def test_what_a_simpler_fit_lacks_begins_fresh_at_nothing_and_at_a_little(
+    names, fresh, known, off, followed
+):
+    """The best three of them are followed."""
+    bench, asked = bench_with(off, fresh=fresh)
+    bench.fit(names, [SimpleNamespace(values=known)])
+    assert [start for start, _ in asked] == [pytest.approx(values) for values in followed]
 
 
 @pytest.mark.parametrize(
     ("best", "tolerance"), [(0.5, 1e-6), (1.0, 1e-6), (30.0, 30e-6), (100.0, 1e-4), (1e4, 1e-4)]
 )
 def test_far_from_the_noise_a_fit_is_rougher(best, tolerance):
-    bench, asked = bench_with(lambda v: best)
-    bench.fit([])
-    assert [t for _, t in asked] == [pytest.approx(tolerance)]
+    """So far as the best start is."""
+    bench, asked = bench_with(lambda v: 50.0 * best * v.gain_mm_per_s_rpm)
+    bench.fit([], [simpler(0.5), simpler(0.03)])
+    assert [t for _, t in asked] == [pytest.approx(tolerance)] * 3
 
 
 def test_the_best_fit_that_has_converged_is_taken():
@@ -99,7 +105,7 @@ def test_the_best_fit_that_has_converged_is_taken():
     bench, _ = bench_with(
         lambda v: v.gain_mm_per_s_rpm, lambda start: answers[start.gain_mm_per_s_rpm]
     )
-    found = bench.fit([], [simpler(gain_mm_per_s_rpm=0.01), simpler(gain_mm_per_s_rpm=0.03)])
+    found = bench.fit([], [simpler(0.01), simpler(0.03)])
     assert found.start.gain_mm_per_s_rpm == 0.03
     assert found.terms == frozenset()
 
@@ -134,11 +140,10 @@ def test_errors_count_in_units_of_noise_but_for_where_a_run_begins():
 
 
 @pytest.mark.parametrize("at", [0.15, -0.4, 1.7])
-@pytest.mark.parametrize("kind", ["sine", "cosine"])
+@pytest.mark.parametrize("kind", ["sine_mm", "cosine_mm"])
 def test_the_ripple_begins_where_the_run_does(at, kind):
     """A move of a twentieth of a wave: a wave told wrongly is wrong throughout."""
-    ripple = {f"{kind}_mm": 0.02}
-    values = DriveValues(0.02, **ripple)  # a wave is 0.6 mm long
+    values = DriveValues(0.02, **{kind: 0.02})  # a wave is 0.6 mm long
     run = run_of(values, 2.0 * np.sin(math.pi * TIME_S), at)
     size = float(np.abs(run.x_in - run.x_in.mean()).max()) / NOISE_MM
     assert np.abs(error_of(run, values)).max() < 2e-3 * size
@@ -180,21 +185,21 @@ def test_how_late_the_response_is_goes_to_lag_and_delay():
     assert guess(["delay"], late_by(0.03)).gain_mm_per_s_rpm == GAIN
 
 
-@pytest.mark.parametrize("height", [1.21, 3.0])
-def test_a_peak_is_where_the_spring_swings(height):
-    """As high as 1/(2ζ)."""
-    found = guess(["spring"], np.array([1.0, 1.1, 1.15, height, 1.0]) * late_by(0.03))
-    assert found.natural_frequency_Hz == pytest.approx(5.0 / (2.0 * math.pi))
-    assert found.damping_ratio == pytest.approx(0.5 / height)
+@pytest.mark.parametrize(
+    ("height", "w", "damping"),
+    [
+        (3.0, 5.0, 0.5 / 3.0),
+        (1.21, 5.0, 0.5 / 1.21),
+        (1.19, 2.0 / 0.03, 0.7),
+        (0.8, 2.0 / 0.03, 0.7),
+    ],
+)
+def test_a_spring_swings_at_a_peak_or_is_as_late_as_the_response(height, w, damping):
+    """A peak is as high as 1/(2ζ); without one 2ζ/ω is about as late, with ζ of 0.7."""
+    found = guess(["spring"], np.array([0.7, 1.1, 1.15, height, 1.0]) * late_by(0.03))
+    assert found.natural_frequency_Hz == pytest.approx(w / (2.0 * math.pi))
+    assert found.damping_ratio == pytest.approx(damping)
     assert (found.motor_lag_s, found.delay_s) == (0.0, 0.0)
-
-
-@pytest.mark.parametrize("height", [0.8, 1.19])
-def test_without_a_peak_the_spring_is_as_late_as_the_response(height):
-    """2ζ/ω of about that: with ζ of 0.7 an ω of two over the delay, or nearly so."""
-    found = guess(["spring"], np.array([0.7, 0.7, 0.7, height, 0.7]) * late_by(0.04))
-    assert found.natural_frequency_Hz == pytest.approx(2.0 / 0.04 / (2.0 * math.pi))
-    assert found.damping_ratio == 0.7
 
 
 def test_two_points_say_nothing():
@@ -228,17 +233,6 @@ def test_numbers_are_put_together_with_the_stated_frequency():
     assert bench_of()._values(quantities, np.zeros(3), terms).natural_frequency_Hz == 0.0
     plain = bench._values(d.quantities_of([]), np.zeros(1), frozenset())
     assert plain.natural_frequency_Hz == 0.0
-
-
-def test_how_far_a_fit_is_off_is_its_mean_square():
-    solution = SimpleNamespace(residual=np.array([1.0, -2.0, 2.0]))
-    assert d.DriveTrial(frozenset(), (), solution, DriveValues(0.02)).mean_square == 3.0
-
-
-def test_the_best_start_says_how_rough_a_fit_may_be():
-    bench, asked = bench_with(lambda v: 100.0 * v.gain_mm_per_s_rpm)
-    bench.fit([], [simpler(gain_mm_per_s_rpm=0.5), simpler(gain_mm_per_s_rpm=0.03)])
-    assert [t for _, t in asked] == [pytest.approx(2e-6)] * 3
 
 
 def test_a_run_that_begins_in_motion_may_have_moved_already():
