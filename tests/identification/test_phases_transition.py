@@ -67,14 +67,7 @@ def test_a_stroke_that_one_law_is_enough_for_is_not_cut():
     assert p._transition(stroke({"f_out_N": noise})) is None
 
 
-def test_a_bend_from_gentle_to_steep_is_no_slip():
-    bent = np.where(
-        TRAVEL[CUT] > TRAVEL, 5.0 * TRAVEL, 5.0 * TRAVEL + 60.0 * (TRAVEL - TRAVEL[CUT])
-    )
-    assert p._transition(stroke({"f_in_N": bent})) is None
-
-
-@pytest.mark.parametrize(("slip", "cut"), [(30.0, True), (40.0, False)])
+@pytest.mark.parametrize(("slip", "cut"), [(30.0, True), (40.0, False), (300.0, False)])
 def test_slip_is_a_third_as_steep_at_the_most(slip, cut):
     """After a straight rise of 100 per mm; a law with √D fits that too."""
     D, rng = TRAVEL, np.random.default_rng(5)
@@ -88,28 +81,6 @@ def test_a_stroke_with_too_few_samples_or_no_channel_is_not_cut():
     whole = f_in()
     assert p._transition(stroke({"f_in_N": whole[few]}, TRAVEL[few] - TRAVEL[few][0])) is None
     assert p._transition(stroke({})) is None
-
-
-def test_how_steep_both_sides_of_a_cut_are():
-    line = np.where(TRAVEL[CUT] > TRAVEL, 50.0 * TRAVEL, 50.0 * TRAVEL[CUT] + 0.0 * TRAVEL)
-    line = line + np.where(TRAVEL[CUT] > TRAVEL, 0.0, -4.0 * (TRAVEL - TRAVEL[CUT]))
-    assert p._slopes(stroke({"f_in_N": line}), CUT) == pytest.approx((50.0, 4.0))
-    before, after = p._slopes(stroke({"x_out_mm": line}), CUT)
-    assert (before, after) == pytest.approx((1.0 / 50.0, 1.0 / 4.0))  # a load that moves slips
-    whole, nothing = p._slopes(stroke({"x_out_mm": 0.0 * line, "f_in_N": 3.0 * TRAVEL}), None)
-    assert whole == pytest.approx(3.0)
-    assert math.isnan(nothing)
-    assert np.isnan(p._slopes(stroke({}), None)).all()
-    short = stroke({"f_in_N": TRAVEL[:7]}, TRAVEL[:7])
-    assert np.isnan(p._slopes(short, None)).all()
-    assert np.isnan(p._steepness(np.ones(5), np.arange(5.0)))
-
-
-def test_a_load_that_stands_quite_still_is_in_the_dead_band():
-    """As lazy as can be before the cut, 1/15 after it."""
-    before, after = p._slopes(stroke({"f_out_N": f_out()}), CUT)
-    assert before > 1e9
-    assert after == pytest.approx(1.0 / 15.0)
 
 
 def saved_by_a_cut(channels):
@@ -180,6 +151,21 @@ def test_squares_are_never_negative():
         assert p._residual_squares(basis, values).min() == 0.0
 
 
+def test_a_load_that_moves_slips():
+    """Its slope counts inverted: a load that stands quite still is in the dead band."""
+    load = np.where(TRAVEL[CUT] > TRAVEL, 0.0, -4.0 * (TRAVEL - TRAVEL[CUT]))
+    before, after = p._slopes(stroke({"x_out_mm": load}), CUT)
+    assert before > 1e9
+    assert after == pytest.approx(1.0 / 4.0)
+
+
+@pytest.mark.parametrize(("samples", "steep"), [(0, math.nan), (7, math.nan), (8, 3.0)])
+def test_eight_samples_have_a_slope(samples, steep):
+    line = {"x_out_mm": np.zeros(samples), "f_in_N": 3.0 * TRAVEL[:samples]}
+    found = p._slopes(stroke(line if samples else {}, TRAVEL[:samples]), None)
+    assert found == pytest.approx((steep, math.nan), nan_ok=True)
+
+
 @pytest.mark.parametrize("cut", [None, 20, CUT])
 def test_slopes_are_those_of_lines_through_all_samples_of_a_side(cut):
     values = np.random.default_rng(6).standard_normal(N)
@@ -188,8 +174,3 @@ def test_slopes_are_those_of_lines_through_all_samples_of_a_side(cut):
     found = p._slopes(stroke({"f_out_N": -values, "f_in_N": values}), cut)
     assert found[0] == pytest.approx(steep[0])
     assert math.isnan(found[1]) if cut is None else found[1] == pytest.approx(steep[1])
-
-
-def test_eight_samples_have_a_slope():
-    eight = stroke({"f_in_N": 3.0 * TRAVEL[:8]}, TRAVEL[:8])
-    assert p._slopes(eight, None)[0] == pytest.approx(3.0)
