@@ -17,14 +17,16 @@ from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
 
 
-def test_a_number_is_scaled_by_its_size_or_its_logarithm():
-    lag, spring = d.TERMS["lag"][0], d.TERMS["spring"][0]
-    u = d._unknown(lag, 0.02)
-    assert (u.name, u.run, u.initial, u.lower, u.upper, u.scale) == (
-        "motor_lag_s", None, pytest.approx(2.0), 0.0, pytest.approx(500.0), 1.0,
-    )  # fmt: skip
-    u = d._unknown(spring, 8.0)
-    assert (u.initial, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
+@pytest.mark.parametrize(
+    ("term", "start", "found"),
+    [
+        ("lag", 0.02, (2.0, 0.0, 500.0, 1.0)),
+        ("spring", 8.0, (math.log(8.0), math.log(0.05), math.log(2e3), d.LOG_SCALE)),
+    ],
+)
+def test_a_number_is_scaled_by_its_size_or_its_logarithm(term, start, found):
+    u = d._unknown(d.TERMS[term][0], start)
+    assert (u.initial, u.lower, u.upper, u.scale) == pytest.approx(found)
 
 
 def bench_of(runs=(), **parts):

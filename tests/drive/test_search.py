@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.counted import Counted
+from tests.drive.verdicts import terms
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
@@ -16,10 +17,6 @@ from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
 from tsas_cli.numerics.linear_response import sampled
 
 BLOCKS = 20
-
-
-def terms(*names):
-    return frozenset(names)
 
 
 class MadeUp:
