@@ -55,7 +55,7 @@ def forces(factor, **others):
     ("factor", "unit"),
     [
         *((1e-3, "kilonewton"), (1 / 9.807, "kilogram-force"), (1 / 4.448, "pound-force")),
-        *((factor, None) for factor in (0.5, 0.8, 0.85, 1.15, 1.2, 2.0)),
+        *((factor, None) for factor in (0.5, 0.8, 0.85, 1.15, 1.2, 2.0, 1000.0)),
     ],
 )
 def test_a_common_factor_of_both_forces_is_told_with_its_interval(factor, unit):

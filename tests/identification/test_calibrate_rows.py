@@ -52,6 +52,7 @@ def test_measured_stiffness_is_told_per_millimetre_and_per_turn():
         ("contraction", 2.338, 2.287),
         ("loosening", 1.066, 1.050),
         ("dead_band_up", 175.10, 175.10),
+        ("dead_band_down", 175.10, 175.10),
     ],
 )
 def test_theory_is_that_of_the_paper(phase, theory, elastic):

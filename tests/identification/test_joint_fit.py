@@ -88,20 +88,7 @@ def test_values_that_are_moved_stay_within_their_bounds():
     assert model.value("bristles.damping_N_s_per_mm") is None  # critical
     assert j.moved_model(made, np.array([9.0])).value(ZERO, "a") == 1.0
     assert j.moved_model(made, np.array([-9.0])).value(ZERO, "a") == -1.0
-    assert made.values.tolist()[:2] == [math.log(0.2), 0.5]
     assert {e.origin for e in model.estimates if e.name == ZERO} == {"default"}
-
-
-def test_what_is_fixed_at_its_critical_value_begins_at_the_initial_one():
-    sought = [unknown(FRICTION), unknown("bristles.damping_N_s_per_mm")]
-    assert j._finite(np.array([0.5, math.nan]), sought).tolist() == [0.5, 0.0]
-
-
-def test_each_unknown_has_its_value():
-    with pytest.raises(ValueError, match="longer"):
-        rig_at(GROUP_A, 0, [unknown(FRICTION)], np.zeros(2))
-    with pytest.raises(ValueError, match="longer"):
-        j.estimates_of([unknown(FRICTION)], fitted([0.0, 0.0], [1.0, 1.0]), [])
 
 
 class Runaway:
