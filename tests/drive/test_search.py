@@ -6,14 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.counted import Counted
 from tests.drive.verdicts import terms
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
 from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.drive.runs import DriveRun
-from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
+from tsas_cli.drive.search import NOTHING, drive_folds
 from tsas_cli.numerics.linear_response import sampled
 
 BLOCKS = 20
@@ -85,31 +84,6 @@ def test_with_the_gear_the_structure_is_chosen_again(folded):
     named, _ = ds.find_terms(MadeUp(squares))
     assert named == terms("play")
     assert folded == [NOTHING, terms("lag", "play")]
-
-
-class Bench:
-    """Fits that say from which simpler ones they began."""
-
-    def __init__(self):
-        self.began = {}
-
-    def fit(self, names, simpler):
-        self.began[names] = [trial.terms for trial in simpler]
-        return SimpleNamespace(terms=names)
-
-
-def test_a_fit_begins_from_the_simpler_ones_that_are_known():
-    counted = Counted()
-    fits = DriveFits(Bench(), counted)
-    fits.trials_of([NOTHING, terms("lag")])
-    fits.trials_of([terms("lag"), terms("lag", "delay")])
-    assert fits.bench.began == {
-        NOTHING: [],
-        terms("lag"): [NOTHING],
-        terms("lag", "delay"): [terms("lag")],
-    }
-    assert fits.trial(NOTHING) is fits.trials[NOTHING]
-    assert counted.total == counted.done == 3
 
 
 def run_of(band, size=40):

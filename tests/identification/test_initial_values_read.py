@@ -49,10 +49,6 @@ def test_a_bend_of_nothing_is_a_thousandth():
     assert straight == {}  # 693: more than is plausible
     bent = s.initial_values_of(run, [], km, GROUP_A._replace(total_bend_rad=2.0))
     assert bent == pytest.approx({"friction_coefficient": 0.5 * math.log(2.0)})
-    hardly = [SimpleNamespace(phase=p, value=2.0) for p in KM]
-    for bend, friction in ((0.0, 10.0), (1e-3, 10.0), (0.005, 2.0)):
-        found = s.initial_values_of(run, [], hardly, GROUP_A._replace(total_bend_rad=bend))
-        assert found == pytest.approx({"friction_coefficient": friction})
 
 
 def test_the_tendon_s_stiffness_is_that_of_the_dead_band():
@@ -174,20 +170,3 @@ def test_a_slope_of_nothing_tells_nothing():
         km = [SimpleNamespace(phase=p, value=v) for p, v in told]
         found = s.initial_values_of(run, [], km, GROUP_A).get("friction_coefficient")
         assert found == pytest.approx(friction)  # of the wrong sign: its size counts
-
-
-@pytest.mark.parametrize(("slope", "afar"), [(0.5, True), (-0.5, False), (0.0, False)])
-def test_a_spring_that_pulls_is_counted_from_where_its_run_begins(monkeypatch, slope, afar):
-    """From the first x_out that comes with a tension, on the line of both."""
-    told = []
-    monkeypatch.setattr(s, "_far_zeros", lambda *asked: told.append(asked[2:]) or {"afar": 1.0})
-    f_out = np.where(np.arange(6) < 1, np.nan, 9.0 + slope * X_OUT)
-    found = s._spring(run_of(f_out_N=f_out, x_out_mm=X_OUT), [], {})
-    assert found.get("afar") == (1.0 if afar else None)
-    assert told == ([pytest.approx((2.0, slope, 9.0))] if afar else [])
-
-
-def test_a_preload_of_less_than_a_newton_is_one():
-    f_in = [0.5, 4.5, 8.5, 4.5, 3.5, 2.5]  # 0.5 + 4 x and 2.5 + x
-    found = s._spring(run_of(X_IN, f_in_N=f_in, preload_N=20.0), [UP, DOWN], KM)
-    assert found["preload_N"] == pytest.approx(math.sqrt(1.25))

@@ -48,17 +48,8 @@ def test_so_many_samples_are_kept_that_they_fit_in_a_piece(pieces_of, rows, ever
     assert run_of(rows).every == every
 
 
-def test_a_fit_sees_the_first_twenty_every_fifth_the_turns_and_the_last(pieces_of):
-    pieces_of(20)
-    run = run_of(98)
-    assert run.every == 5
-    first, second = rows_of(0, 40, [22, 31]), rows_of(40, 58, [43, 96])
-    assert np.flatnonzero(run.seen(first)).tolist() == [*range(20), 20, 22, 25, 30, 31, 35]
-    seen = 40 + np.flatnonzero(run.seen(second))
-    assert seen.tolist() == [40, 43, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 96, 97]
-
-
 def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
+    """A fit sees the first twenty rows, every fifth, the turns and the last."""
     pieces_of(20)
     run = run_of(98)
     kept = [run.thin(rows_of(0, 40, [22, 31])), run.thin(rows_of(40, 58, [43, 96]))]
@@ -70,12 +61,11 @@ def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
     prepared = run.thinned(kept)
     whole = np.array([*first, *second])
     conditioned = prepared.conditioned["x_in_mm"]
-    assert conditioned.values.tolist() == (100 + whole).tolist()
-    assert conditioned.sd.tolist() == (200 + whole).tolist()
-    assert conditioned.unseen.tolist() == (300 + whole).tolist()
+    found = np.array([conditioned.values, conditioned.sd, conditioned.unseen])
+    assert (found - whole == [[100], [200], [300]]).all()
     assert whole[conditioned.reversals].tolist() == [0, 22, 31, 43, 96, 97]
-    assert (conditioned.window_s, conditioned.noise) == (0.25, 0.1)
-    assert conditioned.smallest_reversal == 0.3
+    told = conditioned.window_s, conditioned.noise, conditioned.smallest_reversal
+    assert told == (0.25, 0.1, 0.3)
     assert prepared.time_s.tolist() == (0.5 * whole).tolist()
     assert prepared.measured["f_in_N"].tolist() == (500 + whole).tolist()
     assert (prepared.every, prepared.all_rows, prepared.session_s) == (5, 98, 60.0)

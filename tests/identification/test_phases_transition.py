@@ -43,15 +43,6 @@ def test_squares_that_a_fit_to_the_first_samples_leaves(columns):
         assert left[k] == pytest.approx(direct, abs=1e-5)
 
 
-def test_each_channel_has_its_law_on_either_side():
-    dead, slip = p._bases("f_in_N", np.array([0.0, 4.0, 9.0]))
-    assert dead.tolist() == [[1.0, 0.0, 0.0], [1.0, 2.0, 4.0], [1.0, 3.0, 9.0]]
-    assert slip.tolist() == [[1.0, 0.0], [1.0, 4.0], [1.0, 9.0]]
-    still, moving = p._bases("x_out_mm", np.array([0.0, 4.0]))
-    assert still.tolist() == [[1.0], [1.0]]
-    assert moving.tolist() == [[1.0, 0.0], [1.0, 4.0]]
-
-
 @pytest.mark.parametrize("names", [("f_in_N",), ("f_out_N",), ("f_in_N", "f_out_N")])
 def test_the_cut_is_where_both_laws_meet(names):
     channels = {"f_in_N": f_in(noise=1.0), "f_out_N": f_out(noise=1.0)}
@@ -81,43 +72,6 @@ def test_a_stroke_with_too_few_samples_or_no_channel_is_not_cut():
     whole = f_in()
     assert p._transition(stroke({"f_in_N": whole[few]}, TRAVEL[few] - TRAVEL[few][0])) is None
     assert p._transition(stroke({})) is None
-
-
-def saved_by_a_cut(channels):
-    """Return what two laws save at the best cut, in mean squares of what they leave."""
-
-    def left(basis, values):
-        return np.sum((values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]) ** 2)
-
-    bases = {name: p._bases(name, TRAVEL) for name in channels}
-    cuts = [
-        sum(
-            left(bases[n][0][:k], values[:k]) + left(bases[n][1][k:], values[k:])
-            for n, values in channels.items()
-        )
-        for k in range(8, N - 8)
-    ]
-    whole = min(sum(left(bases[n][law], v) for n, v in channels.items()) for law in (0, 1))
-    return (whole - min(cuts)) / (min(cuts) / (N * len(channels)))
-
-
-@pytest.mark.parametrize(
-    "names", [("f_in_N",), ("f_out_N",), ("f_out_N", "x_out_mm")], ids="-".join
-)
-def test_a_cut_has_to_save_thirty_mean_squares(names):
-    noise = np.random.default_rng(8).standard_normal((2, N))
-
-    def of_size(size):
-        law = {"f_in_N": f_in(slip=-5.0), "f_out_N": f_out(), "x_out_mm": f_out()}
-        return {name: size * law[name] + of for name, of in zip(names, noise, strict=False)}
-
-    low, high = 1e-4, 1.0
-    for _ in range(14):
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if saved_by_a_cut(of_size(middle)) > 30.0 else (middle, high)
-    assert saved_by_a_cut(of_size(low)) == pytest.approx(30.0, rel=5e-3)
-    assert p._transition(stroke(of_size(0.995 * low))) is None
-    assert p._transition(stroke(of_size(1.005 * high))) is not None
 
 
 def test_a_short_stroke_is_cut_where_more_than_eight_samples_are_on_either_side():

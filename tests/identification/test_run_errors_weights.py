@@ -142,28 +142,6 @@ def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(mo
     np.testing.assert_allclose(found.predict(2.0)["f_in_N"], 2.0 * X)
 
 
-@pytest.mark.parametrize(("samples", "rigs"), [(2**19, 32), (2 * X.size, 2), (0, 2)])
-def test_the_predictions_of_the_last_rigs_are_cached(model, monkeypatch, samples, rigs):
-    """Of 32, or of as many as hold so many samples; of two at least."""
-    monkeypatch.setattr(rs, "CACHED_SAMPLES", samples)
-    found = errors_of(run_of())
-    model.asked.clear()
-    asked = [10.0 + k for k in range(rigs)]
-    for rig in [*asked, *asked, 1.0, asked[-1], asked[0]]:
-        found.errors(rig)
-    assert [rig for rig, *_ in model.asked] == [*asked, 1.0, asked[0]]
-
-
-def test_a_run_is_answered_as_it_is_asked_for(model):
-    """From rest, with the steps of its own tolerance, on no mesh but where nodes are asked for."""
-    found = errors_of(run_of())
-    r.meshed(found, 12).errors(3.0)
-    (_, drive, _, first), *_, (_, _, _, last) = model.asked
-    assert drive.start_f_in_N is None
-    assert (first["on_mesh"], first["nodes"], first["tolerance"]) == (False, None, 1e-5)
-    assert (last["on_mesh"], last["nodes"]) == (True, 12)
-
-
 def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(model):
     found = errors_of(run_of(), dynamics="lugre")
     own = [how["step_ends_s"] is rs.OWN_STEPS for *_, how in model.asked]
@@ -190,20 +168,6 @@ def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, mo
     assert drive.values.tolist() == [0.0, 4.0, 0.0]
     assert drive.load_values.tolist() == [0.0, 8.0, 0.0]
     assert drive.time_s == pytest.approx([0.0, 0.4, 1.0])
-
-
-def test_the_closed_form_answers_at_every_sample(monkeypatch, model):
-    """It costs next to nothing; a chain, which somebody asks for, follows some."""
-    monkeypatch.setattr(rs, "points", lambda run: np.array([0, 4, 10]))
-    monkeypatch.setattr(rs, "is_closed", lambda rig, drive: rig == 3.0)
-    found = errors_of(run_of())
-    found.predict(3.0)
-    assert {drive.values.size for _, drive, _, _ in model.asked} == {N}
-    model.asked.clear()
-    assert found.predict(2.0)["f_in_N"][:5].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
-    r.meshed(found, 12).predict(3.0)
-    errors_of(run_of(), dynamics="lugre").predict(3.0)
-    assert {drive.values.size for _, drive, _, _ in model.asked} == {3}
 
 
 @pytest.mark.parametrize(
