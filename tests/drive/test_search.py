@@ -6,13 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.counted import Counted
 from tests.drive.verdicts import terms
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
 from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.drive.runs import DriveRun
-from tsas_cli.drive.search import NOTHING, drive_folds
+from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
 from tsas_cli.numerics.linear_response import sampled
 
 BLOCKS = 20
@@ -84,6 +85,17 @@ def test_with_the_gear_the_structure_is_chosen_again(folded):
     named, _ = ds.find_terms(MadeUp(squares))
     assert named == terms("play")
     assert folded == [NOTHING, terms("lag", "play")]
+
+
+def test_a_fit_begins_from_the_simpler_ones_that_are_known():
+    began, counted = {}, Counted()
+    bench = SimpleNamespace(fit=lambda names, simpler: began.setdefault(names, [*simpler]))
+    fits = DriveFits(bench, counted)
+    fits.trials_of([NOTHING, terms("lag")])
+    fits.trials_of([terms("lag"), terms("lag", "delay")])
+    assert [len(simpler) for simpler in began.values()] == [0, 1, 1]
+    assert began[terms("lag", "delay")][0] is fits.trial(terms("lag"))
+    assert counted.total == counted.done == 3
 
 
 def run_of(band, size=40):

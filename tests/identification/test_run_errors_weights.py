@@ -116,6 +116,26 @@ def test_a_channel_without_noise_has_next_to_none(model):
     np.testing.assert_allclose(errors_of(run).weights["f_in_N"], 1e-9)
 
 
+def test_what_is_before_a_turn_is_added_for_each_end(monkeypatch, model):
+    def before(square, change, conditioned):
+        np.testing.assert_allclose(change, 0.3 * WAY)
+        assert conditioned is run.conditioned["x_in_mm"]
+        square += 100.0
+
+    monkeypatch.setattr(r, "_before_reversals", before)
+    run = run_of()
+    np.testing.assert_allclose(errors_of(run).weights["f_in_N"], np.sqrt(4.0 + 0.09 + 100.0))
+
+
+def test_a_run_is_answered_as_it_is_asked_for(model):
+    """From rest, with the steps of its own tolerance, on no mesh but where nodes are asked for."""
+    r.meshed(errors_of(run_of()), 12).errors(3.0)
+    (_, drive, _, first), *_, (_, _, _, last) = model.asked
+    assert drive.start_f_in_N is None
+    assert (first["on_mesh"], first["nodes"], first["tolerance"]) == (False, None, 1e-5)
+    assert (last["on_mesh"], last["nodes"]) == (True, 12)
+
+
 LATER = np.arange(1, N)  # a fit never holds the first sample: nothing is forgotten there
 
 
