@@ -145,19 +145,6 @@ def test_a_spring_swings_at_a_peak_or_is_as_late_as_the_response(height, w, damp
     assert (found.motor_lag_s, found.delay_s) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize(("points", "fitted"), [(4, False), (5, True)])
-def test_more_points_than_twice_the_numbers_are_fitted(points, fitted):
-    """Read off is the delay alone; a fit finds the gain too, twice that of the runs' travel."""
-    w = np.linspace(1.0, 8.0, points + 1)
-    told = np.arange(points + 1) < points  # the last one says nothing, and is wrong
-    response = 2.0 * GAIN * late_by(0.03, w) / (1j * w)
-    response[-1] *= 9.0
-    seen = SimpleNamespace(frequency_Hz=w / (2.0 * math.pi), excited=told, response=response)
-    found = bench_of(gain=GAIN, seen=seen)._from_response(frozenset(["delay", "ripple", "play"]))
-    assert found.delay_s == pytest.approx(0.03, rel=1e-3)
-    assert found.gain_mm_per_s_rpm == pytest.approx(2.0 * GAIN if fitted else GAIN, rel=1e-3)
-
-
 def test_a_run_that_begins_in_motion_may_have_moved_already():
     """What a constant and e^(−0.8 t) make of it is no error; simulated is x_in with that left."""
     values = DriveValues(0.02, leak_per_s=0.8)
