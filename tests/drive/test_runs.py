@@ -137,6 +137,20 @@ def test_x_in_has_to_travel_five_times_its_noise(monkeypatch, noise, taken):
         assert checked(x_in_mm=x).noise_mm == pytest.approx(taken)
 
 
+@pytest.mark.parametrize(("samples", "times"), [(500, 1), (620, 1), (4000, 1), (500, 2), (2000, 3)])
+def test_the_noise_of_x_in_is_that_of_its_sensor(samples, times):
+    """In short runs too, and in those laid on a clock so many times as fast."""
+    time_s = np.arange(samples) / 200.0
+    x_in = 5.0 * np.sin(2.0 * time_s) + 5e-3 * np.random.default_rng(1).standard_normal(samples)
+    clock = np.linspace(0.0, time_s[-1], times * (samples - 1) + 1)
+    run = checked(
+        time_s=clock,
+        motor_speed_rpm=400.0 * np.cos(2.0 * clock),
+        x_in_mm=np.interp(clock, time_s, x_in),
+    )
+    assert run.noise_mm == pytest.approx(5e-3, rel=0.2)
+
+
 @pytest.mark.parametrize(("size", "stretches"), [(4000, 40), (320, 20), (33, 2), (31, 1), (16, 1)])
 def test_noise_is_the_median_over_forty_stretches_of_sixteen_samples_or_more(size, stretches):
     rng = np.random.default_rng(1)
