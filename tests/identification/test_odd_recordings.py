@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import clean
+from tests.identification.recorded import ran as recorded_as
 from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.comparison import compare
-from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.response import DriveInput, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
-from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.rig.motions import dwell, nested, sine, triangle
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
@@ -37,10 +36,7 @@ def recorded(motion=None, *, rig=TRUE, sensors=SENSORS, seed=1):
 
 
 def ran(columns, *, rig=TRUE, run_id="a", **said):
-    told = conditions(rig) | said
-    told = {key: value for key, value in told.items() if value is not None}
-    run = Run(id=run_id, file=f"{run_id}.parquet", sha256="0" * 64, **told)
-    return prepare(Recording(run, columns))
+    return recorded_as(columns, run_id=run_id, **conditions(rig) | said)
 
 
 def calibrated(*runs, **sheet):
@@ -368,9 +364,6 @@ def test_where_a_fit_ends_with_every_parameter_at_a_bound_the_model_is_called_wr
         "f_in_N": 700.0 * pull - 30.0 + 2.0 * rng.standard_normal(time_s.size),
         "f_out_N": 600.0 * (1.0 - pull) - 30.0 + 2.0 * rng.standard_normal(time_s.size),
     }
-    run = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=89.0, load="force")
-    result = calibrate_runs(
-        Manifest(format=1, name="t", kind="measured", run=(run,)),
-        [prepare(Recording(run, columns))],
-    )
+    run = recorded_as(columns, preload_N=89.0, load="force")
+    result = calibrated(run, **dict.fromkeys(DATA_SHEET))
     assert any("the nominal model is wrong" in note for note in result.cannot_tell)

@@ -6,12 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.identification.recorded import ALL, clean, prepared
+from tests.identification.recorded import ALL, clean, prepared, ran
 from tsas_cli.identification import phases as p
 from tsas_cli.identification.phases import segment
-from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.recording import Recording
 from tsas_studies.challenge.rig.motions import chirp, nested, sine, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -78,11 +75,6 @@ def test_motion_inside_the_dead_band_is_not_called_slip():
     assert not {"contraction", "loosening"} & set(labels(run))
 
 
-def made_of(time_s, x_in, f_in):
-    entry = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0)
-    return prepare(Recording(entry, {"time_s": time_s, "x_in_mm": x_in, "f_in_N": f_in}))
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band(seed):
     """At the top of a sine the encoder creeps on by less than shows; the tension falls already."""
@@ -95,7 +87,8 @@ def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band(seed):
     x_in[rests] += np.linspace(0.0, 1e-3, 1000)
     f_in = run.measured["f_in_N"][order]
     f_in[rests] -= np.linspace(0.0, 10.0, 1000)
-    found = labels(made_of(np.arange(order.size) / 1000.0, x_in, f_in))
+    columns = {"time_s": np.arange(order.size) / 1000.0, "x_in_mm": x_in, "f_in_N": f_in}
+    found = labels(ran(columns, preload_N=25.0))
     assert np.mean(found[rests] == "dead_band_down") > 0.7
     assert np.mean(found[top - 700 : top - 50] == "contraction") > 0.9
 
@@ -105,7 +98,8 @@ def test_a_run_may_end_right_after_a_reversal(left):
     """The last stroke has fewer samples than a law is fitted to, and the tension has peaked."""
     x_in = np.concatenate((np.linspace(0.0, 5.0, 100), 5.0 - 0.3 * np.arange(1, left)))
     f_in = 20.0 + 4.0 * x_in + np.random.default_rng(1).normal(0.0, 0.01, x_in.size)
-    parts = segment(made_of(np.arange(x_in.size) / 100.0, x_in, f_in))
+    columns = {"time_s": np.arange(x_in.size) / 100.0, "x_in_mm": x_in, "f_in_N": f_in}
+    parts = segment(ran(columns, preload_N=25.0))
     assert [part.end for part in parts] == [*(part.first for part in parts[1:]), x_in.size]
     assert all(part.first < part.end for part in parts)
     assert abs(parts[-1].first - 99) <= 1
