@@ -9,6 +9,7 @@ import pytest
 from tests.drive.verdicts import STATED, TITLE, TOLD, cause, terms, verdict
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import diagnosis as dd
+from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING
 from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME
 from tsas_cli.numerics.linear_response import sampled
@@ -189,53 +190,43 @@ def test_each_cause_is_held_against_all_the_others(diagnosed):
 PLAIN = "A drive without lag and stiffness, x_in = g ∫u dt,"
 
 
+def reason(found):
+    return dd.reason_of(found, 9.0, 1.44)
+
+
 def test_the_reason_of_each_verdict():
-    assert dd.reason_of(verdict("undecided"), 9.0, 1.44).startswith("too few stretches")
-    quiet = dd.reason_of(verdict("sufficient"), 9.0, 1.44)
+    assert reason(verdict("undecided")).startswith("too few stretches")
+    quiet = reason(verdict("sufficient"))
     assert quiet == f"{PLAIN} is at the noise level: these runs show no missing effect."
-    rest = verdict("unexplained", depends=("time_s", "x_in_mm"))
-    assert dd.reason_of(rest, 9.0, 1.44) == (
+    assert reason(verdict("unexplained", depends=("time_s", "x_in_mm"))) == (
         f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level, and no catalogued effect "
         "of a drive explains it. It depends on time_s, x_in_mm."
     )
-    stated = dd.reason_of(verdict("sufficient", stated=True), 9.0, 1.44)
+    stated = reason(verdict("sufficient", stated=True))
     assert stated.startswith("The nominal drive equation (Yang 2025, Eq. 25, without reaction) is")
 
 
 def test_the_reason_names_causes_rivals_and_the_rest():
-    two = (
-        cause("drive_compliance", rivals=("b", "a")),
-        cause("channel_delay", "pure delay", ("a",)),
-    )
-    said = dd.reason_of(
-        verdict("ambiguous", *two, unexplained=True, depends=("time_s",)), 9.0, 1.44
-    )
-    assert said == (
+    spring = cause("drive_compliance", rivals=("b", "a"))
+    delay = cause("channel_delay", "pure delay", ("a",))
+    found = verdict("ambiguous", spring, delay, unexplained=True, depends=("time_s",))
+    assert reason(found) == (
         f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level. It lacks: the compliance "
         "of the drive, whose stiffness reacts on the position and a pure delay of the motor. With "
         "it the residual RMS is 1.2 × the noise level. Indistinguishable from it in these "
         "recordings: a, b. No catalogued effect explains the remaining residual. It depends on "
         "time_s."
     )
-    plain = dd.reason_of(verdict("named", cause("backlash")), 9.0, 1.44)
+    plain = reason(verdict("named", cause("backlash")))
     assert f"It lacks: the {TITLE['backlash'].lower()}. With" in plain
     assert plain.endswith("With it the residual RMS is 1.2 × the noise level.")
 
 
-def searched(residual, *, noises=(1.0, 2.0)):
+def searched(residual):
     """Two runs of half of the residual each, in blocks of ten samples, held out in turns."""
     size = residual.size // 2
     u = sampled(0.01, 300.0 * np.sin(0.05 * np.arange(size)), "first")
-    runs = [
-        SimpleNamespace(
-            noise_mm=noise,
-            x_in=0.02 * u.integral,
-            u=u,
-            time_s=0.01 * np.arange(size),
-            counts=np.ones(size, dtype=bool),
-        )
-        for noise in noises
-    ]
+    runs = [DriveRun("a", u, 0.02 * u.integral, noise, at_rest=True) for noise in (1.0, 2.0)]
     block = np.arange(residual.size) // 10
     folds = SimpleNamespace(
         block=block, run=np.repeat([0, 1], size), fold=block % 4, blocks=int(block.max()) + 1
