@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.drive import fit as d
-from tsas_cli.drive.harmonic_drive import (
-    DriveValues,
-    gear_response,
-    linear_response,
-)
+from tsas_cli.drive.harmonic_drive import DriveValues, gear_response, linear_response
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
 
@@ -64,10 +60,10 @@ TIME_S = STEP_S * np.arange(201)
 NOISE_MM = 2e-3
 
 
-def run_of(values, speed, at=1.7, *, noise_mm=NOISE_MM):
+def run_of(values, speed, at=1.7):
     u = sampled(STEP_S, speed, "first")
     x = at + linear_response(u, values) + gear_response(u, values, at)
-    return DriveRun("a", u, x, noise_mm, at_rest=True)
+    return DriveRun("a", u, x, NOISE_MM, at_rest=True)
 
 
 def error_of(run, values):
