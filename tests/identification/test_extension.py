@@ -114,7 +114,7 @@ def asked(monkeypatch):
     def solve(unknowns, runs, residuals, *, tolerance, known, values_only):
         values = np.array([3.0, 4.0, 2.0, 5.0][: len(unknowns)])
         found = [residuals(k, values) for k in range(runs)]
-        asked["found"] = found
+        asked.update(found=found, known=known)
         left = np.zeros(sum(f.size for f in found))
         return Solution(values, np.zeros(values.size, bool), left, None, True, "", 1)
 
@@ -139,6 +139,18 @@ def test_an_effect_is_freed_beside_the_base_from_where_its_fit_ended(asked, benc
     assert second[:3] == pytest.approx([4.0, 2.0 * SIZE, 5.0 * other])
     assert trial.sizes == (5, 5)
     assert made.rig(trial, 1).x_in_zero_mm == 4.0
+
+
+def test_near_a_trial_it_begins_there_with_its_slopes(asked, bench):
+    J = np.arange(9.0).reshape(3, 3)
+    sought = [zero_of(0), zero_of(1), unknown_of(PROXIMAL)]
+    near = trial_of(sought, [7.0, 8.0, 9.0], np.zeros(3), J=J)
+    made = bench()
+    trial = made.fit(["free_tendon"], near=near)
+    assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
+    np.testing.assert_array_equal(asked["known"], np.column_stack((J, np.full(3, np.nan))))
+    told = made.fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
+    assert told.unknowns[2].initial == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize(
