@@ -58,6 +58,13 @@ def test_a_stroke_that_one_law_is_enough_for_is_not_cut():
     assert p._transition(stroke({"f_out_N": noise})) is None
 
 
+@pytest.mark.parametrize(("size", "cut"), [(0.0425, False), (0.0465, True)])
+def test_a_cut_has_to_save_thirty_mean_squares(size, cut):
+    """Two laws save 27 and 32 of what they leave here."""
+    values = size * f_out() + np.random.default_rng(8).standard_normal(N)
+    assert (p._transition(stroke({"f_out_N": values})) is not None) == cut
+
+
 @pytest.mark.parametrize(("slip", "cut"), [(30.0, True), (40.0, False), (300.0, False)])
 def test_slip_is_a_third_as_steep_at_the_most(slip, cut):
     """After a straight rise of 100 per mm; a law with √D fits that too."""
