@@ -39,6 +39,11 @@ def on_second(root):
     return compare(*models, on=read_dataset(root / "data-2"))
 
 
+def copied(root, folder):
+    for name in ("data-1", "calibrated-1"):
+        shutil.copytree(root / name, folder / name)
+
+
 def of(it, name):
     return next(p for p in it.pairs if p.name == name).difference
 
@@ -93,8 +98,7 @@ def test_runs_of_the_same_name_that_are_other_recordings_are_not_matched(changed
 
 
 def test_a_renamed_recording_is_matched(root, tmp_path):
-    shutil.copytree(root / "data-1", tmp_path / "data-1")
-    shutil.copytree(root / "calibrated-1", tmp_path / "calibrated-1")
+    copied(root, tmp_path)
     for path in (tmp_path / "data-1" / "dataset.toml", tmp_path / "calibrated-1" / "model.toml"):
         path.write_text(path.read_text().replace('"slow"', '"s"').replace("runs.slow", "runs.s"))
     path = tmp_path / "calibrated-1" / "calibration.json"
@@ -178,20 +182,20 @@ def test_everything_that_is_printed_is_in_the_json(changed, on_second):
 
 
 def test_a_dataset_that_is_gone_or_has_changed_leaves_the_values(root, tmp_path):
-    for name in ("data-1", "calibrated-1"):
-        shutil.copytree(root / name, tmp_path / name)
+    copied(root, tmp_path)
     with (tmp_path / "data-1" / "dataset.toml").open("a") as stream:
         stream.write("\n# changed\n")
-    it = compare(root / "calibrated-2", tmp_path / "calibrated-1")
-    assert [p.name for p in it.differing] == ["friction_coefficient"]
-    assert any("has changed" in note for note in notes(it))
+    says(root, tmp_path, "has changed")
     (tmp_path / "data-1" / "dataset.toml").write_text("what?")
-    it = compare(root / "calibrated-2", tmp_path / "calibrated-1")
-    assert any("is not TOML" in note for note in notes(it))
+    says(root, tmp_path, "is not TOML")
     shutil.rmtree(tmp_path / "data-1")
-    it = compare(root / "calibrated-2", tmp_path / "calibrated-1")
+    says(root, tmp_path, "no longer at")
+
+
+def says(root, folder, told):
+    it = compare(root / "calibrated-2", folder / "calibrated-1")
     assert [p.name for p in it.differing] == ["friction_coefficient"]
-    assert any("no longer at" in note for note in notes(it))
+    assert any(told in note for note in notes(it))
 
 
 def test_what_cannot_be_compared_is_refused(root, tmp_path):
@@ -245,11 +249,8 @@ def test_a_series_of_another_length_is_refused(root, tmp_path):
 def test_which_is_better_is_said_of_runs_that_no_fit_has_seen(on_second, ratios, said):
     row = next(r for r in on_second.errors if r.channel == "f_in_N")
     held_out = {"fitted_a": False, "fitted_b": False}
-    rows = [
-        row.model_copy(update={"run_b": f"r{n}", "ratio": ratio, **held_out})
-        for n, ratio in enumerate(ratios)
-    ]
-    it = replace(on_second, errors=rows)
+    told = [held_out | {"run_b": f"r{n}", "ratio": ratio} for n, ratio in enumerate(ratios)]
+    it = replace(on_second, errors=[row.model_copy(update=one) for one in told])
     assert findings(it)[0].startswith("On 2 held-out runs")
     assert said in findings(it)[0]
     assert not any("predicts better" in note for note in notes(it))

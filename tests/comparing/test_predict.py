@@ -34,6 +34,14 @@ def rough(root):
     return tsas.predict(models, root / "rough", out=root / "out", step=(step := Counted())), step
 
 
+def copied(dataset, folder, old, new):
+    """Copy a dataset with another text in its manifest."""
+    shutil.copytree(dataset, folder / "data")
+    path = folder / "data" / "dataset.toml"
+    path.write_text(path.read_text().replace(old, new))
+    return folder / "data"
+
+
 def rows(result, **wanted):
     return [
         row
@@ -64,12 +72,9 @@ def test_the_model_of_the_same_rig_predicts_and_the_other_one_does_not(rough):
 def test_models_in_another_order_are_held_against_the_other_one(root, rough):
     models = [root / "calibrated-2", root / "calibrated-1"]
     turned = tsas.predict(models, root / "rough", runs=["slow"])
-    for one, other in zip(rows(turned, model="B"), rows(rough[0], model="A", run="slow"),
-                          strict=True):  # fmt: skip
-        assert one.rmse == pytest.approx(other.rmse)
-    for one, other in zip(rows(turned, model="B"), rows(rough[0], model="B", run="slow"),
-                          strict=True):  # fmt: skip
-        assert one.ratio == pytest.approx(1.0 / other.ratio)
+    ours, (a, b) = rows(turned, model="B"), (rows(rough[0], model=m, run="slow") for m in "AB")
+    assert [one.rmse for one in ours] == pytest.approx([other.rmse for other in a])
+    assert [one.ratio for one in ours] == pytest.approx([1.0 / other.ratio for other in b])
     assert turned.record.findings[0].startswith("f_in_N: A predicts best")
 
 
@@ -94,10 +99,8 @@ def test_the_errors_are_those_of_simulate(root, rough):
 
 
 def test_a_recording_that_the_fit_has_seen_is_no_prediction_under_any_name(root, tmp_path):
-    shutil.copytree(root / "data-1", tmp_path / "data")
-    path = tmp_path / "data" / "dataset.toml"
-    path.write_text(path.read_text().replace('"slow"', '"s"'))
-    result = tsas.predict([root / "calibrated-1", root / "calibrated-2"], tmp_path / "data")
+    data = copied(root / "data-1", tmp_path, '"slow"', '"s"')
+    result = tsas.predict([root / "calibrated-1", root / "calibrated-2"], data)
     assert {(row.run, row.model): row.seen for row in result.record.channels} == {
         ("s", "A"): True, ("s", "B"): False, ("fast", "A"): True, ("fast", "B"): False,
     }  # fmt: skip
@@ -111,11 +114,9 @@ def test_a_recording_that_the_fit_has_seen_is_no_prediction_under_any_name(root,
 
 
 def test_only_the_preload_and_the_zeros_of_a_run_are_fitted_to_it(root, tmp_path):
-    shutil.copytree(root / "again", tmp_path / "data")
-    path = tmp_path / "data" / "dataset.toml"
-    path.write_text(path.read_text().replace("preload_N = 25.0", "preload_N = 23.0"))
+    data = copied(root / "again", tmp_path, "preload_N = 25.0", "preload_N = 23.0")
     own, as_is = (
-        tsas.predict(root / "calibrated-1", tmp_path / "data", runs=["slow"], fit_own=fit_own)
+        tsas.predict(root / "calibrated-1", data, runs=["slow"], fit_own=fit_own)
         for fit_own in (True, False)
     )
     assert rows(own, channel="f_out_N")[0].normalised_residual < 1.2
@@ -154,10 +155,8 @@ def test_a_model_that_does_not_say_its_range_leaves_it_open(root, tmp_path):
 
 
 def test_what_the_model_s_recordings_do_not_state_is_not_compared(root, tmp_path):
-    shutil.copytree(root / "again", tmp_path / "data")
-    path = tmp_path / "data" / "dataset.toml"
-    path.write_text(path.read_text().replace("preload_N =", "wrist_deg = 30.0\npreload_N ="))
-    result = tsas.predict(root / "calibrated-1", tmp_path / "data", runs=["slow"])
+    data = copied(root / "again", tmp_path, "preload_N =", "wrist_deg = 30.0\npreload_N =")
+    result = tsas.predict(root / "calibrated-1", data, runs=["slow"])
     assert verdicts(result) == ["inside"]
     assert result.record.ranges[0].not_stated == ("wrist_deg",)
     assert any("not compared: wrist_deg" in note for note in result.record.notes)

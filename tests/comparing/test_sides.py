@@ -27,6 +27,11 @@ def calibration(tmp_path):
     return folder
 
 
+def tell(folder, **content):
+    path = folder / "calibration.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | content))
+
+
 def written(path, *estimates, **dataset):
     write_model(path, Model(estimates), version="0", dataset=dataset)
     return path
@@ -42,26 +47,21 @@ def test_a_folder_is_recognised_by_its_file_and_brings_its_model(calibration):
 
 
 def test_only_the_runs_that_were_chosen_count(calibration):
-    path = calibration / "calibration.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"chosen": ["b"]}))
+    tell(calibration, chosen=["b"])
     side = read_side(calibration)
     assert set(side.recordings) == {"b"}
     assert [run.id for run in side.dataset.runs] == ["b"]
 
 
 def test_conditions_that_were_told_are_those_of_the_runs(calibration):
-    path = calibration / "calibration.json"
-    told = {"conditions": {"total_bend_rad": 1.5}}
-    path.write_text(json.dumps(json.loads(path.read_text()) | told))
+    tell(calibration, conditions={"total_bend_rad": 1.5})
     assert {run.total_bend_rad for run in read_side(calibration).dataset.runs} == {1.5}
     model = read_side(calibration / "model.toml")
     assert 1.5 not in {run.total_bend_rad for run in model.dataset.runs}
 
 
 def test_a_fit_that_did_not_converge_says_so(calibration):
-    path = calibration / "calibration.json"
-    fit = {"converged": False, "message": "it wandered."}
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"fit": fit}))
+    tell(calibration, fit={"converged": False, "message": "it wandered."})
     assert read_side(calibration).not_converged == "it wandered."
 
 

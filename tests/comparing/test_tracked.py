@@ -57,13 +57,9 @@ def test_the_same_folder_differs_in_nothing(root):
 
 
 def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, tmp_path):
+    how = {"settings": root / "usual.toml", "controllers": "pid"}
     for name, value in (("one", 0.2), ("two", 0.3)):
-        track(
-            settings=root / "usual.toml",
-            controllers="pid",
-            disturb=f"friction_coefficient={value}",
-            out=tmp_path / name,
-        )
+        track(**how, disturb=f"friction_coefficient={value}", out=tmp_path / name)
     it = compare_tracked(tmp_path / "one", tmp_path / "two")
     assert it.followed == []
     assert [len(runs) for runs in it.alone.values()] == [1, 1]

@@ -28,17 +28,6 @@ def test_the_interval_adds_the_ends_that_pull_the_same_way_in_quadrature():
     assert d.excludes_zero
 
 
-def test_swapped_sides_turn_the_signs():
-    d, turned = difference(A, B), difference(B, A)
-    assert (turned.value, turned.low, turned.high) == pytest.approx((-d.value, -d.high, -d.low))
-
-
-def test_equal_values_claim_nothing():
-    d = difference(A, A)
-    assert (d.value, d.excludes_zero) == (0.0, False)
-    assert d.low < 0.0 < d.high
-
-
 @pytest.mark.parametrize("ratio", [1.0, 4.0])
 def test_one_in_twenty_claims_is_false_and_a_large_difference_is_found(ratio):
     rng, trials = np.random.default_rng(1), 4000
@@ -61,15 +50,8 @@ def test_intervals_that_are_not_symmetric_hold_the_difference_as_often():
     rng, trials, spread = np.random.default_rng(2), 4000, 0.3
     held = 0
     for logs in rng.normal(0.0, spread, size=(trials, 2)):
-        a, b = (
-            replace(
-                A,
-                value=math.exp(x),
-                interval_low=math.exp(x - 1.96 * spread),
-                interval_high=math.exp(x + 1.96 * spread),
-            )
-            for x in logs
-        )
+        ends = np.exp(logs[:, None] + [0.0, -1.96 * spread, 1.96 * spread])
+        a, b = (replace(A, value=v, interval_low=low, interval_high=high) for v, low, high in ends)
         held += not difference(a, b).excludes_zero
     assert held / trials == pytest.approx(0.95, abs=0.01)
 
@@ -116,11 +98,7 @@ def test_a_value_of_one_run_is_paired_by_the_recording_not_by_the_name():
 def test_what_only_one_model_holds_is_listed_after_what_both_hold():
     length = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
     found = pairs(side(A, length), side(replace(length, name="backlash.play_mm"), B))
-    assert [p.name for p in found] == [
-        "friction_coefficient",
-        "free_tendon.proximal_length_mm",
-        "backlash.play_mm",
-    ]
+    assert [p.name for p in found] == [A.name, length.name, "backlash.play_mm"]
     assert [p.difference is None for p in found] == [False, True, True]
 
 

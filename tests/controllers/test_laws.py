@@ -16,48 +16,28 @@ PHI = Phi(0.005, 18.0, 0.02)
 S = 8.0 * 0.25 + 1.5 * -1.7 + 11.0
 JERK = 8.0 * -1.7 + 1.5 * 11.0 + 70.0
 ALONG = 0.005 * JERK + 18.0 * (6.0 + 1.7) + 0.02 * (-23.0 - 11.0)
-MEMORY = 3
 
 
-def memory_of(*values):
-    memory = np.zeros(MEMORY)
-    memory[: len(values)] = values
-    return memory
-
-
-def test_pid_adds_its_three_parts():
-    memory = memory_of(0.5)
-    u = pid(SEEN, Pid(25.0, 65.0, 2.0), memory, 0.1)
-    assert memory[0] == pytest.approx(0.5 + 0.3 * 0.1)
-    assert u == pytest.approx(25.0 * 0.3 + 65.0 * 0.53 + 2.0 * -1.7)
-
-
-def test_pid_holds_its_sum_while_the_motor_is_at_its_limit():
-    memory = memory_of(0.5)
-    u = pid(SEEN._replace(limited=True), Pid(25.0, 65.0, 2.0), memory, 0.1)
-    assert memory[0] == 0.5
-    assert u == pytest.approx(25.0 * 0.3 + 65.0 * 0.5 + 2.0 * -1.7)
-
-
-def test_the_sliding_surface_is_equation_41():
-    assert distance(SEEN, SURFACE) == pytest.approx(S)
+@pytest.mark.parametrize(("limited", "total"), [(False, 0.5 + 0.3 * 0.1), (True, 0.5)])
+def test_pid_adds_its_three_parts_and_holds_its_sum_at_the_motor_s_limit(limited, total):
+    memory = np.array([0.5, 0.0, 0.0])
+    u = pid(SEEN._replace(limited=limited), Pid(25.0, 65.0, 2.0), memory, 0.1)
+    assert memory[0] == pytest.approx(total)
+    assert u == pytest.approx(25.0 * 0.3 + 65.0 * total + 2.0 * -1.7)
 
 
 @pytest.mark.parametrize(
     ("s", "expected"),
-    [
-        (50.0, 0.5 * 4.0 + 30.0),
-        (-50.0, -0.5 * 4.0 - 30.0),
-        (300.0, 4.0 + 180.0),
-        (-300.0, -4.0 - 180.0),
-        (0.0, 0.0),
-    ],
+    [(0.0, 0.0), (50.0, 0.5 * 4.0 + 30.0), (300.0, 4.0 + 180.0)],
 )
 def test_reaching_is_straight_within_the_boundary_layer(s, expected):
     assert reaching(s, SURFACE) == pytest.approx(expected)
+    assert reaching(-s, SURFACE) == pytest.approx(-expected)
 
 
 def test_sliding_mode_is_equation_45():
+    """Its surface is equation 41."""
+    assert distance(SEEN, SURFACE) == pytest.approx(S)
     expected = ALONG + 4.0 * S / 100.0 + 0.6 * S
     assert sliding_mode(SEEN, SURFACE, PHI) == pytest.approx(expected)
 
@@ -68,7 +48,7 @@ WIDE = AdaptiveSlidingMode(
 
 
 def test_adaptive_sliding_mode_uses_its_estimates_and_renews_them():
-    memory = memory_of(0.01, 21.0, 0.04)
+    memory = np.array([0.01, 21.0, 0.04])
     u = adaptive_sliding_mode(SEEN, WIDE, memory, 0.1)
     along = 0.01 * JERK + 21.0 * (6.0 + 1.7) + 0.04 * (-23.0 - 11.0)
     assert u == pytest.approx(along + 4.0 * S / 100.0 + 0.6 * S)
@@ -84,9 +64,9 @@ def test_adaptive_sliding_mode_uses_its_estimates_and_renews_them():
 def test_every_estimate_stops_at_its_own_bounds():
     lowest, highest = Phi(0.001, 17.0, 0.01), Phi(0.006, 19.0, 0.03)
     bounded = WIDE._replace(lowest=lowest, highest=highest)
-    memory = memory_of(*PHI)
+    memory = np.array(PHI)
     adaptive_sliding_mode(SEEN, bounded, memory, 10.0)
     assert memory == pytest.approx((0.006, 19.0, 0.01))
-    memory = memory_of(*PHI)
+    memory = np.array(PHI)
     adaptive_sliding_mode(SEEN, bounded._replace(psi=Phi(-0.3, -0.5, -0.7)), memory, 10.0)
     assert memory == pytest.approx((0.001, 17.0, 0.03))

@@ -35,15 +35,3 @@ def test_it_is_butterworth_of_third_order_for_an_error_that_is_held(cutoff_Hz, s
     got = run(errors, cutoff_Hz, step_s)
     for ours, theirs in zip(got.T, expected.T, strict=True):
         np.testing.assert_allclose(ours, theirs, atol=1e-8 * np.abs(theirs).max())
-
-
-def test_a_held_error_is_passed_on_and_a_ramp_comes_late():
-    held = run(np.full(2000, 0.7), 10.0, 1e-3)[-1]
-    assert held == pytest.approx((0.7, 0.0, 0.0), abs=1e-9)
-    ramp = 3.0 * 1e-3 * np.arange(3000)
-    place, rate, bend = run(ramp, 10.0, 1e-3)[-1]
-    late_s = 2.0 / (2.0 * math.pi * 10.0)
-    # The state is that of the end of the step in which the sample is held: half a step on average.
-    assert place == pytest.approx(3.0 * (3.0 - late_s + 0.5e-3 - 1e-3), abs=1e-6)
-    assert rate == pytest.approx(3.0, abs=1e-3)
-    assert abs(bend) < 0.1

@@ -5,12 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.drive.estimates import (
-    DataSheet,
-    drive_sheet,
-    estimates_of,
-    total_lag_s,
-)
+from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of, total_lag_s
 from tsas_cli.drive.fit import DriveTrial, quantities_of
 from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.identification.fit import Solution, Unknown
@@ -90,10 +85,13 @@ def test_the_tendon_pulls_back_with_its_stiffness_in_contraction():
     """Eq. (31), where one bend is known of all runs."""
     expected = 1.579 * math.exp(0.125 * 3.0)
     assert drive_sheet(manifest()).pull_back_N_per_mm == pytest.approx(expected)
-    assert drive_sheet(manifest((3.0, 2.0))).pull_back_N_per_mm is None
-    assert drive_sheet(manifest((None, None))).pull_back_N_per_mm is None
-    assert drive_sheet(manifest(friction_coefficient=None)).pull_back_N_per_mm is None
-    assert drive_sheet(manifest(load_stiffness_N_per_mm=None)).pull_back_N_per_mm is None
+    for unknown in (
+        manifest((3.0, 2.0)),
+        manifest((None, None)),
+        manifest(friction_coefficient=None),
+        manifest(load_stiffness_N_per_mm=None),
+    ):
+        assert drive_sheet(unknown).pull_back_N_per_mm is None
 
 
 def test_derived_numbers_are_those_of_the_equations():
@@ -123,10 +121,7 @@ def test_what_the_data_sheet_does_not_say_is_not_derived():
     whole = without_gear["whole_stiffness_N_per_mm"].value
     assert whole == pytest.approx(0.1296 / 27.1**2 * w * w)
     without_mass = told(sheet=DataSheet(27.1, 120.0, None, None))
-    assert {n for n in without_mass if n.startswith("k")} == {
-        "kV_rpm_s_per_mm",
-        "kA_rpm_s2_per_mm",
-    }
+    assert {n for n in without_mass if n.startswith("k")} == {"kV_rpm_s_per_mm", "kA_rpm_s2_per_mm"}
     assert "damping_N_s_per_mm" not in without_mass
     stiff = told(trial(DriveValues(0.02), ()))
     assert set(stiff) == {"gain_mm_per_s_rpm", "kV_rpm_s_per_mm"}
@@ -147,10 +142,8 @@ def test_intervals_of_positive_numbers_are_factors_and_of_others_sums():
 
 def test_intervals_end_at_the_bounds():
     vague = told(trial(weak=("motor_lag_s", "natural_frequency_Hz")))
-    assert vague["motor_lag_s"].interval_low == 0.0
-    assert vague["motor_lag_s"].interval_high == 5.0
-    assert vague["natural_frequency_Hz"].interval_low == 0.05
-    assert vague["natural_frequency_Hz"].interval_high == 2e3
+    for name, bounds in (("motor_lag_s", (0.0, 5.0)), ("natural_frequency_Hz", (0.05, 2e3))):
+        assert (vague[name].interval_low, vague[name].interval_high) == bounds
 
 
 def test_the_error_of_a_reciprocal_is_in_proportion():

@@ -8,23 +8,21 @@ import numpy as np
 import pytest
 
 from tsas_cli.drive import fit as d
-from tsas_cli.drive.harmonic_drive import (
-    DriveValues,
-    gear_response,
-    linear_response,
-)
+from tsas_cli.drive.harmonic_drive import DriveValues, gear_response, linear_response
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
 
 
-def test_a_number_is_scaled_by_its_size_or_its_logarithm():
-    lag, spring = d.TERMS["lag"][0], d.TERMS["spring"][0]
-    u = d._unknown(lag, 0.02)
-    assert (u.name, u.run, u.initial, u.lower, u.upper, u.scale) == (
-        "motor_lag_s", None, pytest.approx(2.0), 0.0, pytest.approx(500.0), 1.0,
-    )  # fmt: skip
-    u = d._unknown(spring, 8.0)
-    assert (u.initial, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
+@pytest.mark.parametrize(
+    ("term", "start", "found"),
+    [
+        ("lag", 0.02, (2.0, 0.0, 500.0, 1.0)),
+        ("spring", 8.0, (math.log(8.0), math.log(0.05), math.log(2e3), d.LOG_SCALE)),
+    ],
+)
+def test_a_number_is_scaled_by_its_size_or_its_logarithm(term, start, found):
+    u = d._unknown(d.TERMS[term][0], start)
+    assert (u.initial, u.lower, u.upper, u.scale) == pytest.approx(found)
 
 
 def bench_of(runs=(), **parts):
@@ -34,74 +32,21 @@ def bench_of(runs=(), **parts):
     return bench
 
 
-def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):
-    """A bench whose fits are made up; it remembers from where it was asked to fit."""
-    asked = []
-
-    def solved(quantities, start, terms, tolerance):
-        asked.append((start, tolerance))
-        square, converged = answers(start)
-        solution = SimpleNamespace(converged=converged)
-        return SimpleNamespace(start=start, mean_square=square, solution=solution, terms=terms)
-
-    parts = {"_from_response": lambda terms: fresh or DriveValues(0.02)}
-    return bench_of(_mean_square=mean_square, _solved=solved, **parts), asked
-
-
-def simpler(**values):
-    return SimpleNamespace(values=DriveValues(**values))
-
-
-def test_what_a_simpler_fit_lacks_begins_fresh_at_nothing_and_at_a_little():
-    """The best three of them are followed: by how far they are from a leak of 0.0001."""
-    fresh = DriveValues(0.02, leak_per_s=0.5)
-    bench, asked = bench_with(lambda v: abs(v.leak_per_s - 1e-4), fresh=fresh)
-    bench.fit(["leak"], [simpler(gain_mm_per_s_rpm=0.03)])
-    followed = [(start.gain_mm_per_s_rpm, round(start.leak_per_s, 9)) for start, _ in asked]
-    assert followed == [(0.03, 1e-4), (0.03, 0.0), (0.03, 1e-3)]
-    bench, asked = bench_with(lambda v: -v.leak_per_s, fresh=fresh)
-    bench.fit(["leak"], [simpler(gain_mm_per_s_rpm=0.03)])
-    followed = [(start.gain_mm_per_s_rpm, round(start.leak_per_s, 9)) for start, _ in asked]
-    assert followed == [(0.02, 0.5), (0.03, 0.5), (0.03, 1e-3)]
-
-
-def test_a_frequency_is_never_nothing():
-    """What is sought by its logarithm begins where the response says."""
-    fresh = DriveValues(0.02, natural_frequency_Hz=9.0, damping_ratio=0.2, motor_lag_s=0.01)
-    bench, asked = bench_with(lambda v: v.gain_mm_per_s_rpm, fresh=fresh)
-    known = simpler(gain_mm_per_s_rpm=0.03, motor_lag_s=0.04)
-    bench.fit(["spring", "lag"], [known])
-    starts = [start for start, _ in asked]
-    whole = known.values._replace(natural_frequency_Hz=9.0, damping_ratio=0.2)
-    assert starts == [fresh, whole]
-
-
-def test_nothing_lacks_where_everything_is_known():
-    known = simpler(gain_mm_per_s_rpm=0.03, leak_per_s=0.2)
-    bench, asked = bench_with(
-        lambda v: -v.gain_mm_per_s_rpm, fresh=DriveValues(0.02, leak_per_s=0.1)
-    )
-    bench.fit(["leak"], [known])
-    assert [start for start, _ in asked] == [known.values, DriveValues(0.02, leak_per_s=0.1)]
-
-
-@pytest.mark.parametrize(
-    ("best", "tolerance"), [(0.5, 1e-6), (1.0, 1e-6), (30.0, 30e-6), (100.0, 1e-4), (1e4, 1e-4)]
-)
-def test_far_from_the_noise_a_fit_is_rougher(best, tolerance):
-    bench, asked = bench_with(lambda v: best)
-    bench.fit([])
-    assert [t for _, t in asked] == [pytest.approx(tolerance)]
-
-
 def test_the_best_fit_that_has_converged_is_taken():
     answers = {0.01: (3.0, True), 0.02: (1.0, False), 0.03: (2.0, True)}
-    bench, _ = bench_with(
-        lambda v: v.gain_mm_per_s_rpm, lambda start: answers[start.gain_mm_per_s_rpm]
+
+    def solved(quantities, start, terms, tolerance):
+        square, converged = answers[start.gain_mm_per_s_rpm]
+        solution = SimpleNamespace(converged=converged)
+        return SimpleNamespace(start=start, mean_square=square, solution=solution)
+
+    bench = bench_of(
+        _mean_square=lambda values: values.gain_mm_per_s_rpm,
+        _from_response=lambda terms: DriveValues(0.02),
+        _solved=solved,
     )
-    found = bench.fit([], [simpler(gain_mm_per_s_rpm=0.01), simpler(gain_mm_per_s_rpm=0.03)])
-    assert found.start.gain_mm_per_s_rpm == 0.03
-    assert found.terms == frozenset()
+    simpler = [SimpleNamespace(values=DriveValues(gain)) for gain in (0.01, 0.03)]
+    assert bench.fit([], simpler).start == DriveValues(0.03)
 
 
 def test_all_samples_of_all_runs_count_alike():
@@ -115,10 +60,10 @@ TIME_S = STEP_S * np.arange(201)
 NOISE_MM = 2e-3
 
 
-def run_of(values, speed, at=1.7, *, noise_mm=NOISE_MM):
+def run_of(values, speed, at=1.7):
     u = sampled(STEP_S, speed, "first")
     x = at + linear_response(u, values) + gear_response(u, values, at)
-    return DriveRun("a", u, x, noise_mm, at_rest=True)
+    return DriveRun("a", u, x, NOISE_MM, at_rest=True)
 
 
 def error_of(run, values):
@@ -134,11 +79,10 @@ def test_errors_count_in_units_of_noise_but_for_where_a_run_begins():
 
 
 @pytest.mark.parametrize("at", [0.15, -0.4, 1.7])
-@pytest.mark.parametrize("kind", ["sine", "cosine"])
+@pytest.mark.parametrize("kind", ["sine_mm", "cosine_mm"])
 def test_the_ripple_begins_where_the_run_does(at, kind):
     """A move of a twentieth of a wave: a wave told wrongly is wrong throughout."""
-    ripple = {f"{kind}_mm": 0.02}
-    values = DriveValues(0.02, **ripple)  # a wave is 0.6 mm long
+    values = DriveValues(0.02, **{kind: 0.02})  # a wave is 0.6 mm long
     run = run_of(values, 2.0 * np.sin(math.pi * TIME_S), at)
     size = float(np.abs(run.x_in - run.x_in.mean()).max()) / NOISE_MM
     assert np.abs(error_of(run, values)).max() < 2e-3 * size
@@ -180,65 +124,30 @@ def test_how_late_the_response_is_goes_to_lag_and_delay():
     assert guess(["delay"], late_by(0.03)).gain_mm_per_s_rpm == GAIN
 
 
-@pytest.mark.parametrize("height", [1.21, 3.0])
-def test_a_peak_is_where_the_spring_swings(height):
-    """As high as 1/(2ζ)."""
-    found = guess(["spring"], np.array([1.0, 1.1, 1.15, height, 1.0]) * late_by(0.03))
-    assert found.natural_frequency_Hz == pytest.approx(5.0 / (2.0 * math.pi))
-    assert found.damping_ratio == pytest.approx(0.5 / height)
+@pytest.mark.parametrize(("points", "delay_s"), [(2, 0.005), (3, 0.03)])
+def test_two_points_of_the_response_say_nothing_and_three_are_read_off(points, delay_s):
+    w, excited = W[:points], np.ones(points, dtype=bool)
+    response = GAIN * late_by(0.03, w) / (1j * w)
+    seen = SimpleNamespace(frequency_Hz=w / (2 * math.pi), excited=excited, response=response)
+    found = bench_of(gain=GAIN, seen=seen)._from_response(frozenset(["delay"]))
+    assert found == pytest.approx(DriveValues(GAIN, delay_s=delay_s))
+
+
+@pytest.mark.parametrize(
+    ("height", "w", "damping"),
+    [
+        (3.0, 5.0, 0.5 / 3.0),
+        (1.21, 5.0, 0.5 / 1.21),
+        (1.19, 2.0 / 0.03, 0.7),
+        (0.8, 2.0 / 0.03, 0.7),
+    ],
+)
+def test_a_spring_swings_at_a_peak_or_is_as_late_as_the_response(height, w, damping):
+    """A peak is as high as 1/(2ζ); without one 2ζ/ω is about as late, with ζ of 0.7."""
+    found = guess(["spring"], np.array([0.7, 1.1, 1.15, height, 1.0]) * late_by(0.03))
+    assert found.natural_frequency_Hz == pytest.approx(w / (2.0 * math.pi))
+    assert found.damping_ratio == pytest.approx(damping)
     assert (found.motor_lag_s, found.delay_s) == (0.0, 0.0)
-
-
-@pytest.mark.parametrize("height", [0.8, 1.19])
-def test_without_a_peak_the_spring_is_as_late_as_the_response(height):
-    """2ζ/ω of about that: with ζ of 0.7 an ω of two over the delay, or nearly so."""
-    found = guess(["spring"], np.array([0.7, 0.7, 0.7, height, 0.7]) * late_by(0.04))
-    assert found.natural_frequency_Hz == pytest.approx(2.0 / 0.04 / (2.0 * math.pi))
-    assert found.damping_ratio == 0.7
-
-
-def test_two_points_say_nothing():
-    two = guess(["delay", "spring"], late_by(0.03, W[:2]), w=W[:2])
-    assert (two.delay_s, two.natural_frequency_Hz, two.damping_ratio) == (0.005, 50.0, 0.1)
-    three = guess(["delay"], late_by(0.03, W[:3]), w=W[:3])
-    assert three.delay_s == pytest.approx(0.03)
-
-
-@pytest.mark.parametrize(("points", "fitted"), [(4, False), (5, True)])
-def test_more_points_than_twice_the_numbers_are_fitted(points, fitted):
-    """Read off is the delay alone; a fit finds the gain too, twice that of the runs' travel."""
-    w = np.linspace(1.0, 8.0, points + 1)
-    told = np.arange(points + 1) < points  # the last one says nothing, and is wrong
-    response = 2.0 * GAIN * late_by(0.03, w) / (1j * w)
-    response[-1] *= 9.0
-    seen = SimpleNamespace(frequency_Hz=w / (2.0 * math.pi), excited=told, response=response)
-    found = bench_of(gain=GAIN, seen=seen)._from_response(frozenset(["delay", "ripple", "play"]))
-    assert found.delay_s == pytest.approx(0.03, rel=1e-3)
-    assert found.gain_mm_per_s_rpm == pytest.approx(2.0 * GAIN if fitted else GAIN, rel=1e-3)
-
-
-def test_numbers_are_put_together_with_the_stated_frequency():
-    bench = bench_of(stated_Hz=7.0)
-    terms = frozenset(["stated", "lag"])
-    quantities = d.quantities_of(terms)
-    values = bench._values(quantities, np.array([math.log(0.03), 2.0, math.log(0.4)]), terms)
-    assert values == pytest.approx(
-        DriveValues(0.03, 0.02, natural_frequency_Hz=7.0, damping_ratio=0.4)
-    )
-    assert bench_of()._values(quantities, np.zeros(3), terms).natural_frequency_Hz == 0.0
-    plain = bench._values(d.quantities_of([]), np.zeros(1), frozenset())
-    assert plain.natural_frequency_Hz == 0.0
-
-
-def test_how_far_a_fit_is_off_is_its_mean_square():
-    solution = SimpleNamespace(residual=np.array([1.0, -2.0, 2.0]))
-    assert d.DriveTrial(frozenset(), (), solution, DriveValues(0.02)).mean_square == 3.0
-
-
-def test_the_best_start_says_how_rough_a_fit_may_be():
-    bench, asked = bench_with(lambda v: 100.0 * v.gain_mm_per_s_rpm)
-    bench.fit([], [simpler(gain_mm_per_s_rpm=0.5), simpler(gain_mm_per_s_rpm=0.03)])
-    assert [t for _, t in asked] == [pytest.approx(2e-6)] * 3
 
 
 def test_a_run_that_begins_in_motion_may_have_moved_already():

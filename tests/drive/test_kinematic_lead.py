@@ -56,13 +56,11 @@ def test_a_gear_ratio_of_one_is_no_gear():
 
 
 def test_what_agrees_is_silent():
-    assert lead_notes(lead(1.0), SHEET) == []
-    assert lead_notes(lead(1.049), SHEET) == []  # as much as gear and radius may be off
-    assert lead_notes(lead(0.951), SHEET) == []
+    """Gear and radius may be off by a twentieth."""
+    for factor, notes in ((1.0, 0), (1.049, 0), (0.951, 0), (1.051, 1), (0.949, 1)):
+        assert len(lead_notes(lead(factor), SHEET)) == notes
     assert lead_notes(lead(1.3, width=0.4), SHEET) == []  # the interval holds it
     assert lead_notes(lead(1000.0), DataSheet(27.1, None, None, None)) == []
-    assert len(lead_notes(lead(1.051), SHEET)) == 1
-    assert len(lead_notes(lead(0.949), SHEET)) == 1
 
 
 def test_a_drive_that_yields_as_the_data_sheet_says_explains_its_lead():
@@ -91,11 +89,11 @@ def manifest(**rig):
         ({"friction_coefficient": 1000.0}, "transmits no tension"),
         (
             {"inertia_N_mm_s2": 1e-9, "turntable_radius_mm": 1e6},
-            "Hz; expected 0.001 to 1e+06 Hz; check",
+            "expected 0.001 to 1e+06 Hz; check",
         ),
         (
             {"inertia_N_mm_s2": 1e9, "turntable_radius_mm": 1e-4},
-            "Hz; expected 0.001 to 1e+06 Hz; check",
+            "expected 0.001 to 1e+06 Hz; check",
         ),
     ],
 )

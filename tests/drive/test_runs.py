@@ -48,7 +48,7 @@ def test_without_a_speed_that_of_the_motors_angle_counts():
     np.testing.assert_array_equal(checked(motor_angle_rad=0.0 * SPEED).u.values, SPEED)
 
 
-@pytest.mark.parametrize(("part", "at_rest"), [(0.0, True), (0.0099, True), (0.0101, False)])
+@pytest.mark.parametrize(("part", "at_rest"), [(0.0099, True), (0.0101, False)])
 @pytest.mark.parametrize("largest", [0.5, 300.0])
 def test_a_run_begins_at_rest_below_a_hundredth_of_its_largest_speed(part, at_rest, largest):
     speed = largest * np.sin(2.0 * TIME_S)
@@ -59,16 +59,23 @@ def test_a_run_begins_at_rest_below_a_hundredth_of_its_largest_speed(part, at_re
     assert checked(motor_speed_rpm=speed, x_in_mm=place + noise).at_rest == at_rest
 
 
-@pytest.mark.parametrize(("by", "fine"), [(0.019, True), (0.021, False)])
-def test_a_clock_may_be_uneven_by_a_fiftieth_of_a_step(by, fine):
+@pytest.mark.parametrize(
+    ("last", "by", "said"),
+    [
+        (901, 0.019, None),
+        (901, 0.021, "time_s goes on by 0.005105 s, by 0.005 s on average"),
+        (N, 1.0, "time_s goes on by 0.01 s, by 0.005003 s on average"),
+    ],
+)
+def test_a_clock_may_be_uneven_by_a_fiftieth_of_a_step(last, by, said):
     time_s = TIME_S.copy()
-    time_s[900] += by * STEP_S
-    if fine:
+    time_s[900:last] += by * STEP_S
+    if said is None:
         checked(time_s=time_s)
     else:
         with pytest.raises(InputError, match="row 900") as raised:
             checked(time_s=time_s)
-        assert "0.005105" in raised.value.line()
+        assert said in raised.value.line()
 
 
 @pytest.mark.parametrize(
@@ -93,8 +100,7 @@ def test_what_no_drive_can_be_told_from_is_refused(columns, said):
 
 @pytest.mark.parametrize(("size", "fine"), [(499, False), (500, True)])
 def test_fewer_than_five_hundred_samples_are_too_few(size, fine):
-    cut = {"time_s": TIME_S[:size], "motor_speed_rpm": SPEED[:size], "x_in_mm": None}
-    cut["x_in_mm"] = recorded().columns["x_in_mm"][:size]
+    cut = {name: values[:size] for name, values in recorded().columns.items()}
     if fine:
         assert checked(**cut).x_in.size == 500
     else:
@@ -116,30 +122,33 @@ def test_gaps_are_counted_and_the_first_is_named(rows, said, row):
     assert f"row {row}" in line
 
 
-@pytest.mark.parametrize(("noise", "fine"), [(1.0, True), (1.25, False), (1.3, False)])
-def test_x_in_has_to_travel_five_times_its_noise(monkeypatch, noise, fine):
+@pytest.mark.parametrize(
+    ("noise", "taken"), [(0.0, 6.25e-6), (1.0, 1.0), (1.25, None), (1.3, None)]
+)
+def test_x_in_has_to_travel_five_times_its_noise(monkeypatch, noise, taken):
+    """Without noise a millionth of the travel is taken for it."""
     monkeypatch.setattr(d, "_noise", lambda values: noise)
     x = 6.25 * (PLACE - PLACE.min()) / np.ptp(PLACE)
     assert np.ptp(x) == 6.25
-    if fine:
-        assert checked(x_in_mm=x).noise_mm == noise
-    else:
+    if taken is None:
         with pytest.raises(InputError, match="x_in_mm does not move"):
             checked(x_in_mm=x)
+    else:
+        assert checked(x_in_mm=x).noise_mm == pytest.approx(taken)
 
 
-def test_without_noise_a_millionth_of_the_travel_is_taken(monkeypatch):
-    monkeypatch.setattr(d, "_noise", lambda values: 0.0)
-    run = checked(x_in_mm=PLACE)
-    assert run.noise_mm == pytest.approx(1e-6 * np.ptp(PLACE))
-
-
-def test_an_uneven_clock_says_by_how_much():
-    time_s = TIME_S.copy()
-    time_s[901:] += STEP_S
-    with pytest.raises(InputError, match="row 901") as raised:
-        checked(time_s=time_s)
-    assert "time_s goes on by 0.01 s, by 0.005003 s on average" in raised.value.line()
+@pytest.mark.parametrize(("samples", "times"), [(500, 1), (620, 1), (4000, 1), (500, 2), (2000, 3)])
+def test_the_noise_of_x_in_is_that_of_its_sensor(samples, times):
+    """In short runs too, and in those laid on a clock so many times as fast."""
+    time_s = np.arange(samples) / 200.0
+    x_in = 5.0 * np.sin(2.0 * time_s) + 5e-3 * np.random.default_rng(1).standard_normal(samples)
+    clock = np.linspace(0.0, time_s[-1], times * (samples - 1) + 1)
+    run = checked(
+        time_s=clock,
+        motor_speed_rpm=400.0 * np.cos(2.0 * clock),
+        x_in_mm=np.interp(clock, time_s, x_in),
+    )
+    assert run.noise_mm == pytest.approx(5e-3, rel=0.2)
 
 
 @pytest.mark.parametrize(("size", "stretches"), [(4000, 40), (320, 20), (33, 2), (31, 1), (16, 1)])
@@ -185,12 +194,9 @@ def test_travel_has_to_go_with_the_turns(follows, said):
 
 
 def test_nothing_that_turns_or_travels_is_followed():
-    for still in ("turns", "travel"):
-        run = related(1.0)
-        if still == "turns":
-            run.u.integral[:] = 0.0
-        else:
-            run.x_in[:] = 0.0
+    rests, stays = related(1.0), related(1.0)
+    rests.u.integral[:] = stays.x_in[:] = 0.0
+    for run in (rests, stays):
         with pytest.raises(InputError, match=r"correlation 0\.00"):
             d._refuse_unrelated(run, "here")
 

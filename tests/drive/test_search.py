@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.counted import Counted
+from tests.drive.verdicts import terms
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
@@ -16,10 +17,6 @@ from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
 from tsas_cli.numerics.linear_response import sampled
 
 BLOCKS = 20
-
-
-def terms(*names):
-    return frozenset(names)
 
 
 class MadeUp:
@@ -60,7 +57,6 @@ def test_all_sixteen_structures_are_there_the_simplest_first():
 
 
 def test_the_simplest_structure_that_is_not_surely_beaten_is_taken():
-    """By three hundredths."""
     near = MadeUp({terms("lag"): 1.02, terms("lag", "spring"): 1.0})
     assert ds.chosen(near, NOTHING) == terms("lag")
     far = MadeUp({terms("lag"): 1.04, terms("lag", "spring"): 1.0})
@@ -91,45 +87,14 @@ def test_with_the_gear_the_structure_is_chosen_again(folded):
     assert folded == [NOTHING, terms("lag", "play")]
 
 
-def test_the_best_of_single_gears_is_not_beaten_by_the_first_one():
-    """Both convince; play is better by far, both together are no better than play."""
-    squares = {NOTHING: 4.0, terms("ripple"): 3.0, terms("play"): 1.0}
-    search = MadeUp(squares | {terms("ripple", "play"): 1.0})
-    assert ds._with_gear(search, NOTHING) == terms("play")
-
-
-class Bench:
-    """Fits that say from which simpler ones they began."""
-
-    def __init__(self, runs=()):
-        self.runs, self.began = list(runs), {}
-
-    def fit(self, names, simpler):
-        self.began[names] = [trial.terms for trial in simpler]
-        residual = np.arange(6.0)
-        solution = SimpleNamespace(converged=True, residual=residual)
-        return SimpleNamespace(terms=names, solution=solution, mean_square=9.0 - len(names))
-
-
 def test_a_fit_begins_from_the_simpler_ones_that_are_known():
-    counted = Counted()
-    fits = DriveFits(Bench(), counted)
-    for one in (NOTHING, terms("lag"), terms("lag", "delay")):
-        fits.trial(one)
-    assert fits.bench.began == {
-        NOTHING: [],
-        terms("lag"): [NOTHING],
-        terms("lag", "delay"): [terms("lag")],
-    }
-    assert fits.trial(NOTHING) is fits.trials[NOTHING]
-    assert counted.total == counted.done == 3
-
-
-def test_each_fit_lies_ahead_once():
-    counted = Counted()
-    fits = DriveFits(Bench(), counted)
+    began, counted = {}, Counted()
+    bench = SimpleNamespace(fit=lambda names, simpler: began.setdefault(names, [*simpler]))
+    fits = DriveFits(bench, counted)
     fits.trials_of([NOTHING, terms("lag")])
-    fits.trials_of([terms("lag"), terms("delay")])
+    fits.trials_of([terms("lag"), terms("lag", "delay")])
+    assert [len(simpler) for simpler in began.values()] == [0, 1, 1]
+    assert began[terms("lag", "delay")][0] is fits.trial(terms("lag"))
     assert counted.total == counted.done == 3
 
 
@@ -145,12 +110,10 @@ def banded(monkeypatch):
 @pytest.mark.parametrize(
     ("highest", "covered"),
     [
-        ([10.0], False),
         ([10.0, 7.0], True),
         ([10.0, 6.9], False),
         ([1.0, 10.0, 8.0], True),
         ([8.0, 1.0, 10.0], True),
-        ([10.0, 1.0, 1.0], False),
         ([0.5, 0.4], True),
         ([0.5, 0.3], False),
         ([None, None], False),
@@ -192,24 +155,32 @@ def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():
     assert ds.rivals(alone, terms("lag"), "lag") == ()  # no better than nothing
 
 
-def test_the_gear_is_looked_at_where_something_is_left():
-    quiet = MadeUp({NOTHING: 1.149}, default=0.5)
-    assert ds._with_gear(quiet, NOTHING) == NOTHING
-    assert quiet.fitted == []
-    assert ds._with_gear(MadeUp({NOTHING: 1.15}, 0.5), NOTHING) != NOTHING
-    play = MadeUp({NOTHING: 4.0, terms("play"): 1.0, terms("ripple", "play"): 1.0}, default=4.0)
-    assert ds._with_gear(play, NOTHING) == terms("play")
-    ripple = MadeUp({NOTHING: 4.0, terms("ripple"): 1.0, terms("ripple", "play"): 0.98}, 4.0)
-    assert ds._with_gear(ripple, NOTHING) == terms("ripple")  # both are not surely better
-    both = MadeUp({NOTHING: 4.0, terms("ripple"): 2.0, terms("ripple", "play"): 1.0}, 4.0)
-    assert ds._with_gear(both, NOTHING) == terms("ripple", "play")
-    neither = MadeUp({NOTHING: 4.0}, default=3.99)
-    assert ds._with_gear(neither, NOTHING) == NOTHING
-    rest = MadeUp({terms("play"): 4.0, terms("play", "ripple"): 1.0})
-    assert ds._with_gear(rest, terms("play")) == terms("play", "ripple")
-    assert rest.fitted == [terms("play", "ripple")]  # what is left, alone
-    found = MadeUp({terms("ripple", "play"): 4.0}, default=1.0)
-    assert ds._with_gear(found, terms("ripple", "play")) == terms("ripple", "play")
+RIPPLE, PLAY, GEAR = terms("ripple"), terms("play"), terms("ripple", "play")
+
+
+@pytest.mark.parametrize(
+    ("squares", "others", "gear"),
+    [
+        ({NOTHING: 1.149}, 0.5, NOTHING),  # nothing is left
+        ({NOTHING: 1.15}, 0.5, RIPPLE),
+        ({NOTHING: 4.0}, 3.99, NOTHING),
+        ({NOTHING: 4.0, PLAY: 1.0, GEAR: 1.0}, 4.0, PLAY),
+        ({NOTHING: 4.0, PLAY: 1.0, GEAR: 1.0, RIPPLE: 3.0}, 4.0, PLAY),  # both convince
+        ({NOTHING: 4.0, RIPPLE: 1.0, GEAR: 0.98}, 4.0, RIPPLE),  # both are not surely better
+        ({NOTHING: 4.0, RIPPLE: 2.0, GEAR: 1.0}, 4.0, GEAR),
+    ],
+)
+def test_the_gear_is_what_surely_explains_what_is_left(squares, others, gear):
+    search = MadeUp(squares, others)
+    assert ds._with_gear(search, NOTHING) == gear
+    assert (search.fitted == []) == (search.mean_square(NOTHING) < 1.15)
+
+
+def test_a_gear_that_is_there_is_tried_with_the_rest_alone():
+    rest = MadeUp({PLAY: 4.0, GEAR: 1.0})
+    assert ds._with_gear(rest, PLAY) == GEAR
+    assert rest.fitted == [GEAR]
+    assert ds._with_gear(MadeUp({GEAR: 4.0}, default=1.0), GEAR) == GEAR
 
 
 def test_a_gear_that_lags_explain_as_well_is_left_out(monkeypatch):
@@ -229,21 +200,19 @@ def chirped(kind, size=1000, highest_Hz=20.0):
     return DriveRun(kind, u, linear_response(u, DriveValues(0.02)), 1e-3, at_rest=True)
 
 
-def test_runs_of_one_band_are_held_out_one_by_one():
-    runs = [chirped("a"), chirped("b", 1200)]
-    residuals = [np.random.default_rng(k).standard_normal(r.x_in.size) for k, r in enumerate(runs)]
-    folds = drive_folds(runs, residuals)
-    assert folds.by_run
-    np.testing.assert_array_equal(folds.fold, np.repeat([0, 1], [1000, 1200]))
-    assert np.all(np.diff(folds.block) >= 0)
-    assert folds.block[999] < folds.block[1000]
-    assert 100 <= folds.blocks <= 220
-
-
-@pytest.mark.parametrize("others", [[], [chirped("slow", 1000, 5.0)]])
-def test_what_only_one_run_shows_is_held_out_in_stretches(others):
+@pytest.mark.parametrize(
+    ("others", "by_run"),
+    [([chirped("b", 1200)], True), ([], False), ([chirped("slow", 1000, 5.0)], False)],
+)
+def test_what_two_runs_show_is_held_out_run_by_run_else_in_stretches(others, by_run):
     runs = [chirped("a"), *others]
     residuals = [np.random.default_rng(k).standard_normal(r.x_in.size) for k, r in enumerate(runs)]
     folds = drive_folds(runs, residuals)
-    assert not folds.by_run
-    np.testing.assert_array_equal(folds.fold, folds.block % 4)
+    assert folds.by_run == by_run
+    np.testing.assert_array_equal(folds.fold, folds.run if by_run else folds.block % 4)
+    np.testing.assert_array_equal(
+        folds.run, np.repeat(np.arange(len(runs)), [r.size for r in residuals])
+    )
+    assert set(np.diff(folds.block)) == {0, 1}
+    assert np.all(np.diff(folds.block)[np.diff(folds.run) > 0] == 1)  # no block is of two runs
+    assert 100 <= folds.blocks == folds.block[-1] + 1 <= 220

@@ -1,6 +1,6 @@
 """Structures of a drive in words, and what its recordings do not tell."""
 
-from tests.drive.verdicts import cause, verdict
+from tests.drive.verdicts import cause, terms, verdict
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import NOTHING
@@ -15,17 +15,7 @@ from tsas_cli.drive.sentences import (
 )
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records.base import Fit
-from tsas_cli.records.drive import (
-    DriveCause,
-    DriveDiagnosis,
-    DriveFile,
-    FrequencyResponses,
-    Pole,
-)
-
-
-def terms(*names):
-    return frozenset(names)
+from tsas_cli.records.drive import DriveDiagnosis, DriveFile, FrequencyResponses, Pole
 
 
 def test_structures_in_words():
@@ -78,8 +68,7 @@ def test_what_is_not_identifiable_of_a_drive():
     assert outside.startswith(
         "A lag lies at 23 Hz, outside of the band that the input shows (0.5 to"
     )
-    stiff = cannot_tell(drive(nominal=EQUATION_NAME), SHEET, NOTHING, ())
-    assert stiff == [
+    assert cannot_tell(drive(nominal=EQUATION_NAME), SHEET, NOTHING, ()) == [
         "These recordings show no resonance: the drive is stiffer than they tell, beyond 12 Hz."
     ]
     (stiffer,) = cannot_tell(drive(nominal=STIFF_NAME), SHEET, NOTHING, ())
@@ -88,10 +77,7 @@ def test_what_is_not_identifiable_of_a_drive():
         "recordings do not show, nor another one: the drive is stiffer than they tell, beyond "
         "12 Hz, and is compared with a stiff one."
     )
-    lag = DriveCause(
-        effect="channel_delay", kind="first-order lag", rivals=("drive_compliance",),
-        parameters={}, gain_percent=9.0, gain_interval_percent=(8.0, 10.0), title="",
-    )  # fmt: skip
+    lag = cause("channel_delay", "first-order lag", ("drive_compliance",))
     assert cannot_tell(drive(nominal=STIFF_NAME, named=[lag]), SHEET, terms("lag"), ()) == [
         "These recordings do not separate a resonance, beyond 12 Hz, from a first-order lag."
     ]

@@ -39,9 +39,13 @@ def prepared(rig: Rig, motion=None, *, seed=0, channels=ALL, run_id="a", sensors
     """Measure a run and prepare it; `said` replaces what the manifest tells."""
     columns = measure(clean(rig, motion), sensors or Sensors(), seed=seed)
     kept = {n: v for n, v in columns.items() if n in channels or n in ("time_s", "x_in_mm")}
-    told = conditions(rig) | said
+    return ran(kept, run_id=run_id, **conditions(rig) | said)
+
+
+def ran(columns, *, run_id="a", **told):
+    """Prepare columns as a run of which the manifest tells that much."""
     run = Run(id=run_id, file=f"{run_id}.parquet", sha256="0" * 64, **told)
-    return prepare(Recording(run, kept))
+    return prepare(Recording(run, columns))
 
 
 def manifest(*runs: Prepared, **sheet: float) -> Manifest:

@@ -33,12 +33,8 @@ def stiffness(phase="contraction", sheet=SHEET, conditions=CONDITIONS, expected=
     return _stiffness(prepared, slope, beside, manifest, model)
 
 
-def row(*asked, **changed):
-    return stiffness(*asked, **changed).content()
-
-
 def test_measured_stiffness_is_told_per_millimetre_and_per_turn():
-    found = row()
+    found = stiffness().content()
     km, kr = found["km"], found["kr"]
     assert (km["value"], km["stderr"]) == (2.35, 0.01)
     assert (km["interval_low"], km["interval_high"]) == pytest.approx((2.326, 2.374))
@@ -46,8 +42,8 @@ def test_measured_stiffness_is_told_per_millimetre_and_per_turn():
         assert kr[name] == pytest.approx(0.0236492 * km[name], rel=1e-5)  # 2π r1/(60 im)
     assert (km["unit"], kr["unit"]) == ("N/mm", "N/(s rpm)")
     assert (found["occurrences"], found["samples"], found["expected_N_per_mm"]) == (3, 400, 2.4)
-    assert row(expected=None)["expected_N_per_mm"] is None
-    assert row(sheet={k: v for k, v in SHEET.items() if k != "gear_ratio"})["kr"] is None
+    less = stiffness(sheet={k: v for k, v in SHEET.items() if k != "gear_ratio"}, expected=None)
+    assert less.expected_N_per_mm is less.kr is None
 
 
 @pytest.mark.parametrize(
@@ -60,17 +56,17 @@ def test_measured_stiffness_is_told_per_millimetre_and_per_turn():
     ],
 )
 def test_theory_is_that_of_the_paper(phase, theory, elastic):
-    found = row(phase)
-    assert found["theory_N_per_mm"] == pytest.approx(theory, abs=1e-3 * theory)
-    assert found["theory_elastic_N_per_mm"] == pytest.approx(elastic, abs=1e-3 * elastic)
-    assert found["note"] == "theory from the data sheet"
+    found = stiffness(phase)
+    assert found.theory_N_per_mm == pytest.approx(theory, abs=1e-3 * theory)
+    assert found.theory_elastic_N_per_mm == pytest.approx(elastic, abs=1e-3 * elastic)
+    assert found.note == "theory from the data sheet"
 
 
 @pytest.mark.parametrize("missing", list(SHEET)[:4])
 def test_without_a_data_sheet_theory_is_that_of_the_calibrated_values(missing):
-    found = row(sheet={k: v for k, v in SHEET.items() if k != missing})
-    assert found["note"] == "theory from the calibrated values"
-    assert found["theory_N_per_mm"] == pytest.approx(1.579 * math.exp(0.2 * math.pi))
+    found = stiffness(sheet={k: v for k, v in SHEET.items() if k != missing})
+    assert found.note == "theory from the calibrated values"
+    assert found.theory_N_per_mm == pytest.approx(1.579 * math.exp(0.2 * math.pi))
 
 
 def test_no_theory_without_friction_or_spring():
@@ -89,7 +85,5 @@ def test_the_table_leaves_out_what_is_not_known():
     (_, header, (line,)), *others = _tables(record, "parameters")
     assert header[:2] == ("run", "phase")
     assert line == ("a", "contraction", "2.35 [2.326, 2.374]", "2.338", "")
-    assert [title for title, _, _ in others] == [
-        "parameters",
-        "calibrated model against measurement",
-    ]
+    titles = [title for title, _, _ in others]
+    assert titles == ["parameters", "calibrated model against measurement"]

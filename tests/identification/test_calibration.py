@@ -1,6 +1,7 @@
 """Calibration on the independent rig: the truth is found, and what cannot be told is said."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification import calibration as c
-from tsas_cli.identification.calibration import calibrate_runs
+from tsas_cli.identification.calibration import calibrate_runs, with_preload_correction
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import CORRECTION, Model
 from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.recordings.manifest import Run
 from tsas_studies.challenge.rig.motions import sine, two_sines
@@ -16,13 +19,7 @@ from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
-OTHER = Rig(
-    friction_coefficient=0.135,
-    load_stiffness_N_per_mm=1.45,
-    preload_N=27.0,
-    total_bend_rad=math.pi / 2.0,
-    sheath_length_mm=100.0 * math.pi,
-)
+OTHER = replace(TRUE, total_bend_rad=math.pi / 2.0, sheath_length_mm=100.0 * math.pi)
 VALUES = {
     "friction_coefficient": 0.135,
     "load_stiffness_N_per_mm": 1.45,
@@ -73,14 +70,10 @@ def test_what_cannot_be_told_is_said():
 
 def test_a_right_model_is_not_accused_and_a_wrong_one_is():
     right = recorded(TRUE)
-    assert not any(
-        "wrong somewhere" in s for s in calibrate_runs(manifest(right), [right]).cannot_tell
-    )
+    said = calibrate_runs(manifest(right), [right]).cannot_tell
+    assert not any("wrong somewhere" in s for s in said)
     hidden = Rig(proximal_length_mm=200.0)
-    both = [
-        recorded(hidden),
-        recorded(Rig(sheath_length_mm=300.0, proximal_length_mm=200.0), run_id="b"),
-    ]
+    both = [recorded(hidden), recorded(replace(hidden, sheath_length_mm=300.0), run_id="b")]
     said = calibrate_runs(manifest(*both), both).cannot_tell
     assert any("wrong somewhere" in s for s in said)
     (widened,) = [s for s in said if s.startswith("The intervals are widened")]
@@ -89,11 +82,9 @@ def test_a_right_model_is_not_accused_and_a_wrong_one_is():
 
 def test_a_told_free_length_is_used():
     """With the free lengths on the data sheet the tendon's own stiffness is found."""
-    rigs = [
-        Rig(proximal_length_mm=150.0, distal_length_mm=60.0),
-        Rig(sheath_length_mm=300.0, proximal_length_mm=150.0, distal_length_mm=60.0),
-    ]
-    runs = [recorded(r, run_id=n, seed=k) for k, (r, n) in enumerate(zip(rigs, "ab", strict=True))]
+    long = Rig(proximal_length_mm=150.0, distal_length_mm=60.0)
+    short = replace(long, sheath_length_mm=300.0)
+    runs = [recorded(long, seed=0), recorded(short, run_id="b", seed=1)]
     told = manifest(*runs, proximal_length_mm=150.0, distal_length_mm=60.0)
     swapped = manifest(*runs, proximal_length_mm=60.0, distal_length_mm=150.0)
     right = found(calibrate_runs(told, runs))["tendon_stiffness_N", None]
@@ -158,21 +149,69 @@ def test_threads_change_no_bit(monkeypatch):
     assert models[0] == models[1]
 
 
-RUNS = [
-    SimpleNamespace(run=Run(id=name, file=f"{name}.parquet", sha256="0" * 64, **told), measured={})
-    for name, told in (
-        ("a", {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}),
-        ("b", {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}),
+BENT = {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}
+
+
+@pytest.mark.parametrize(
+    "missing",
+    [(), ("total_bend_rad",), ("sheath_length_mm",), ("total_bend_rad", "sheath_length_mm")],
+)
+def test_what_the_manifest_does_not_say_is_said(missing):
+    told = (BENT, {name: value for name, value in BENT.items() if name not in missing})
+    runs = [SimpleNamespace(run=Run(id="a", file="a", sha256="0" * 64, **of)) for of in told]
+    assert tuple(s.split()[0] for s in c._unknown_conditions(runs)) == missing
+
+
+STUDENT = {1: 12.7062, 2: 4.30265}  # 97.5 %, as tables have it
+
+
+def corrected(*pairs, stderr=0.1):
+    """Return what runs with these fitted and stated preloads say of others."""
+    runs = [
+        SimpleNamespace(run=SimpleNamespace(id=f"r{k}", preload_N=stated))
+        for k, (_, stated) in enumerate(pairs)
+    ]
+    told = tuple(
+        Estimate("preload_N", fitted, "N", "fitted", f"r{k}", stderr)
+        for k, (fitted, _) in enumerate(pairs)
+        if fitted is not None
     )
-]
+    model = Model((Estimate("friction_coefficient", 0.1, "1", "fitted", None, 0.01), *told))
+    return model, with_preload_correction(model, runs)
 
 
-def test_what_the_manifest_does_not_say_is_said():
-    def said(**told):
-        run = SimpleNamespace(run=Run(id="c", file="c.parquet", sha256="0" * 64, **told))
-        return [s.split()[0] for s in c._unknown_conditions([RUNS[0], run])]
+def test_two_runs_give_a_mean_and_how_far_a_third_may_lie_from_it():
+    """Off by 1 and 3: a mean of 2, a scatter of √2, for one more run √2·√(1 + 1/2) = √3."""
+    model, found = corrected((21.0, 20.0), (33.0, 30.0))
+    e = found.estimate(CORRECTION)
+    assert (e.value, e.unit, e.origin, e.run) == (2.0, "N", "fitted", None)
+    assert e.stderr == pytest.approx(math.sqrt(3.0))
+    assert e.interval_low == pytest.approx(2.0 - STUDENT[1] * math.sqrt(3.0), rel=1e-5)
+    assert e.interval_high == pytest.approx(2.0 + STUDENT[1] * math.sqrt(3.0), rel=1e-5)
+    assert set(model.estimates) == set(found.estimates) - {e}
 
-    assert said(total_bend_rad=1.0, sheath_length_mm=1.0) == []
-    assert said(total_bend_rad=1.0) == ["sheath_length_mm"]
-    assert said(sheath_length_mm=1.0) == ["total_bend_rad"]
-    assert said() == ["total_bend_rad", "sheath_length_mm"]
+
+def test_three_runs_have_two_degrees_of_freedom():
+    """Off by −1, 1 and 6: a mean of 2, squares of 9 + 1 + 16, so √13 · √(4/3)."""
+    _, found = corrected((19.0, 20.0), (31.0, 30.0), (46.0, 40.0))
+    e = found.estimate(CORRECTION)
+    assert e.value == pytest.approx(2.0)
+    assert e.stderr == pytest.approx(math.sqrt(52.0 / 3.0))
+    half = STUDENT[2] * math.sqrt(52.0 / 3.0)
+    assert e.interval_high - e.value == pytest.approx(half, rel=1e-5)
+
+
+def test_fewer_than_two_runs_give_none():
+    for pairs in ([], [(21.0, 20.0)], [(21.0, 20.0), (33.0, None)], [(21.0, 20.0), (None, 30.0)]):
+        model, found = corrected(*pairs)
+        assert found is model
+    model, found = corrected((21.0, 20.0), (33.0, 30.0), stderr=None)  # stated, not fitted
+    assert found is model
+
+
+def test_a_former_correction_is_replaced():
+    _, once = corrected((21.0, 20.0), (33.0, 30.0))
+    runs = [SimpleNamespace(run=SimpleNamespace(id=f"r{k}", preload_N=20.0)) for k in range(2)]
+    again = with_preload_correction(once, runs)
+    assert again.value(CORRECTION) == pytest.approx(7.0)  # 1 and 13
+    assert sum(e.name == CORRECTION for e in again.estimates) == 1

@@ -7,15 +7,14 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.lugre_rivals.references import FOLDER, problems
+from tests.identification.recorded import ran
 from tests.identification.test_odd_recordings import ran as of_the_rig
 from tests.identification.test_odd_recordings import recorded as by_the_rig
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.identification.calibration import calibrate_runs
-from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.rig import with_values
-from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.manifest import Manifest
 
 SHEET = {
     "friction_coefficient": 0.12,
@@ -24,13 +23,14 @@ SHEET = {
     "tendon_modulus_GPa": 60.0,
 }
 MODEL = problems()["speeds-50"].model
+VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
 TRUTH = {
     "friction_coefficient": MODEL.friction_coefficient,
     "load_stiffness_N_per_mm": MODEL.load_stiffness_N_per_mm,
     "tendon_stiffness_N": MODEL.tendon_stiffness_N,
     "bristles.stiffness_N_per_mm": MODEL.bristle_stiffness_N_per_mm,
     "bristles.damping_N_s_per_mm": MODEL.whole_bristle_damping,
-    "viscous_friction.coefficient_N_s_per_mm": MODEL.viscous_N_s_per_mm,
+    VISCOUS: MODEL.viscous_N_s_per_mm,
     "stribeck_friction.excess": MODEL.stribeck_excess,
     "stribeck_friction.velocity_mm_per_s": MODEL.stribeck_speed_mm_s,
 }
@@ -44,16 +44,8 @@ def recorded(name, *, noise_N, noise_mm, seed):
     for column in table.column_names[1:]:
         noise = noise_N if column.endswith("_N") else noise_mm
         columns[column] = table[column].to_numpy() + noise * rng.standard_normal(len(table))
-    run = Run(
-        id="a",
-        file="a.parquet",
-        sha256="0" * 64,
-        load="spring",
-        sheath_length_mm=model.length_mm,
-        total_bend_rad=model.total_bend_rad,
-        preload_N=25.0,
-    )
-    return prepare(Recording(run, columns))
+    bent = {"sheath_length_mm": model.length_mm, "total_bend_rad": model.total_bend_rad}
+    return ran(columns, load="spring", preload_N=25.0, **bent)
 
 
 def calibrated(run):
@@ -113,12 +105,8 @@ def test_a_stribeck_velocity_far_below_all_speeds_is_not_identifiable():
     (said,) = [s for s in result.cannot_tell if s.startswith("stribeck_friction.excess")]
     lowest = float(said.split("velocities of ")[1].split(" ")[0])
     assert 0.01 < lowest < 1.0
-    friction, viscous = (
-        found["friction_coefficient"],
-        found["viscous_friction.coefficient_N_s_per_mm"],
-    )
-    assert friction.interval_low <= 0.125 <= friction.interval_high
-    assert viscous.interval_low <= 0.02 <= viscous.interval_high
+    for name, true in (("friction_coefficient", 0.125), (VISCOUS, 0.02)):
+        assert found[name].interval_low <= true <= found[name].interval_high
 
 
 def test_a_rig_without_bristles_is_found_to_have_stiff_ones():
@@ -150,7 +138,7 @@ def f_in(rig, tolerance=3e-6, step_ends_s=OWN_STEPS):
         ("friction_coefficient", 3e-3),
         ("bristles.damping_N_s_per_mm", 4e-2),
         pytest.param("bristles.stiffness_N_per_mm", 1e-2, marks=pytest.mark.large),
-        pytest.param("viscous_friction.coefficient_N_s_per_mm", 5e-3, marks=pytest.mark.large),
+        pytest.param(VISCOUS, 5e-3, marks=pytest.mark.large),
         pytest.param("stribeck_friction.excess", 5e-3, marks=pytest.mark.large),
         ("stribeck_friction.velocity_mm_per_s", 1e-2),
     ],

@@ -106,93 +106,69 @@ def bench(monkeypatch):
     return make
 
 
-def test_a_bench_begins_where_the_fit_ended(bench):
-    made = bench()
-    assert [(u.name, u.run, u.initial) for u in made.free] == [(ZERO, 0, 1.0), (ZERO, 1, 2.0)]
-    assert [rig.x_in_zero_mm for rig in made.rigs] == [1.0, 2.0]
-    assert [rig.preload_N for rig in made.rigs] == [pytest.approx(30.0), GROUP_A.preload_N]
-    assert [run.name for run in made.meshed] == ["a 40", "b 40"]
-    assert [run.name for run in made.coarse] == ["a 12", "b 12"]
-    assert made.channels == ["a_N", "b_N", "f_in_N"]
-    assert made.errors_for(trial_of()) is made.closed
-    assert made.errors_for(trial_of(mesh=True)) is made.meshed
-
-
-def test_one_run_without_a_closed_form_is_enough_for_a_mesh(bench):
-    assert not bench().never_closed
-    assert bench((True, False)).never_closed
-    assert bench((False, False)).never_closed
-
-
-def solved_at(values):
-    """Return a fit that ends where it is told, and remembers what it was asked."""
+@pytest.fixture
+def asked(monkeypatch):
+    """Have fits end at 3 and 4 mm, and further values at 2 and 5; return what they are asked."""
     asked = {}
 
     def solve(unknowns, runs, residuals, *, tolerance, known, values_only):
-        asked.update(unknowns=unknowns, runs=runs, tolerance=tolerance, known=known)
-        found = [residuals(k, np.array(values)) for k in range(runs)]
-        asked["found"] = found
-        size = sum(f.size for f in found)
-        return Solution(
-            np.array(values), np.zeros(len(values), bool), np.zeros(size), None, True, "", 1
-        )
+        values = np.array([3.0, 4.0, 2.0, 5.0][: len(unknowns)])
+        found = [residuals(k, values) for k in range(runs)]
+        asked.update(found=found, known=known)
+        left = np.zeros(sum(f.size for f in found))
+        return Solution(values, np.zeros(values.size, bool), left, None, True, "", 1)
 
-    return solve, asked
-
-
-def test_an_effect_is_freed_beside_the_base(monkeypatch, bench):
-    solve, asked = solved_at([3.0, 4.0, 2.0, 5.0])
     monkeypatch.setattr(e, "solve", solve)
+    return asked
+
+
+def test_an_effect_is_freed_beside_the_base_from_where_its_fit_ended(asked, bench):
     made = bench()
+    assert [rig.preload_N for rig in made.rigs] == [pytest.approx(30.0), GROUP_A.preload_N]
+    assert made.channels == ["a_N", "b_N", "f_in_N"]
     trial = made.fit(["free_tendon"], {DISTAL: 3.0 * SIZE})
-    assert [u.name for u in trial.unknowns] == [ZERO, ZERO, PROXIMAL, DISTAL]
-    starts = [u.initial for u in trial.unknowns]
     other = QUANTITIES[DISTAL].size
-    assert starts == pytest.approx([1.0, 2.0, 0.0, 3.0 * SIZE / other])
-    assert asked["tolerance"] == pytest.approx(1e-5)
-    assert asked["runs"] == 2
+    assert [(u.name, u.run, u.initial) for u in trial.unknowns] == [
+        (ZERO, 0, 1.0),
+        (ZERO, 1, 2.0),
+        (PROXIMAL, None, 0.0),
+        (DISTAL, None, pytest.approx(3.0 * SIZE / other)),
+    ]
     first, second = asked["found"]
     assert first[:3] == pytest.approx([3.0, 2.0 * SIZE, 5.0 * other])
     assert second[:3] == pytest.approx([4.0, 2.0 * SIZE, 5.0 * other])
     assert trial.sizes == (5, 5)
-    assert (trial.effects, trial.on_mesh) == (("free_tendon",), False)
     assert made.rig(trial, 1).x_in_zero_mm == 4.0
 
 
-@pytest.mark.parametrize(
-    ("mean_square", "tolerance"), [(0.5, 1e-5), (4.0, 4e-5), (100.0, 1e-3), (1e4, 1e-3)]
-)
-def test_near_a_trial_it_begins_there_and_is_as_rough_as_that_missed(
-    monkeypatch, bench, mean_square, tolerance
-):
-    solve, asked = solved_at([3.0, 4.0, 2.0, 5.0])
-    monkeypatch.setattr(e, "solve", solve)
-    near = trial_of(
-        [zero_of(0), zero_of(1), unknown_of(PROXIMAL)],
-        [7.0, 8.0, 9.0],
-        np.full(3, np.sqrt(mean_square)),
-        J=np.arange(9.0).reshape(3, 3),
-    )
-    trial = bench().fit(["free_tendon"], near=near)
+def test_near_a_trial_it_begins_there_with_its_slopes(asked, bench):
+    J = np.arange(9.0).reshape(3, 3)
+    sought = [zero_of(0), zero_of(1), unknown_of(PROXIMAL)]
+    near = trial_of(sought, [7.0, 8.0, 9.0], np.zeros(3), J=J)
+    made = bench()
+    trial = made.fit(["free_tendon"], near=near)
     assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
-    assert asked["tolerance"] == pytest.approx(tolerance)
-    np.testing.assert_array_equal(asked["known"][:, :3], np.arange(9.0).reshape(3, 3))
-    assert np.isnan(asked["known"][:, 3]).all()
-    told = bench().fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
+    np.testing.assert_array_equal(asked["known"], np.column_stack((J, np.full(3, np.nan))))
+    told = made.fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
     assert told.unknowns[2].initial == pytest.approx(0.5)
 
 
-def test_a_mesh_is_used_where_it_is_asked_for_or_needed(monkeypatch, bench):
-    solve, _ = solved_at([3.0, 4.0])
-    monkeypatch.setattr(e, "solve", solve)
-    for made, on_mesh, meshed in (
-        (bench(), False, False), (bench(), True, True), (bench((True, False)), False, True),
-    ):  # fmt: skip
-        trial = made.fit(on_mesh=on_mesh)
-        assert trial.on_mesh == meshed
-        used, other = (made.meshed, made.closed) if meshed else (made.closed, made.meshed)
-        assert [run.asked.x_in_zero_mm for run in used] == [3.0, 4.0]
-        assert not any(hasattr(run, "asked") for run in other)
+@pytest.mark.parametrize(
+    ("closed", "on_mesh", "meshed"),
+    [
+        ((True, True), False, False),
+        ((True, True), True, True),  # asked for
+        ((True, False), False, True),  # one run without a closed form is enough
+    ],
+)
+def test_a_mesh_is_used_where_it_is_asked_for_or_needed(asked, bench, closed, on_mesh, meshed):
+    made = bench(closed)
+    trial = made.fit(on_mesh=on_mesh)
+    assert trial.on_mesh == meshed
+    used, other = (made.meshed, made.closed) if meshed else (made.closed, made.meshed)
+    assert made.errors_for(trial) is used
+    assert [run.asked.x_in_zero_mm for run in used] == [3.0, 4.0]
+    assert not any(hasattr(run, "asked") for run in other)
 
 
 def test_a_first_look_changes_some_values_and_keeps_the_others(bench):

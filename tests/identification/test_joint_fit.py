@@ -1,4 +1,4 @@
-"""What a joint fit finds, in units and intervals; what it misses; models beside it."""
+"""What a joint fit finds, in units and intervals; what it misses, and what is said of it."""
 
 import math
 from dataclasses import replace
@@ -7,13 +7,37 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.identification.fits import FRICTION, NOTHING, ZERO, fitted, problem_of, unknown
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import joint_fit as j
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.fit import Fitted, Unknown
+from tsas_cli.identification.fit_problem import FitProblem, rig_at
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
+
+FRICTION, ZERO = "friction_coefficient", "x_in_zero_mm"
+
+
+def fitted(values, stderr, t=2.0, at_bound=(), *, converged=True, message="done."):
+    n = len(values)
+    bound = np.array([k in at_bound for k in range(n)])
+    return Fitted(np.array(values), np.array(stderr), np.full(n, t), bound, converged, message, 1)
+
+
+def unknown(name, run=None, lower=None, upper=None):
+    q = QUANTITIES[name]
+    low = q.scaled(q.lower) if lower is None else lower
+    return Unknown(name, run, 0.0, low, q.scaled(q.upper) if upper is None else upper, 1.0)
+
+
+NOTHING = Model(())
+
+
+def problem_of(unknowns=(), runs="ab", initial=NOTHING, fixed=NOTHING):
+    """Return the problem of runs with these names, whose rigs differ by the zero of x_out."""
+    named = tuple(SimpleNamespace(run=SimpleNamespace(id=name)) for name in runs)
+    rigs = tuple(GROUP_A._replace(x_out_zero_mm=float(k)) for k in range(len(runs)))
+    return FitProblem(initial, fixed, named, rigs, tuple(unknowns), (), ())
 
 
 def test_an_estimate_is_in_its_own_unit():
@@ -88,20 +112,7 @@ def test_values_that_are_moved_stay_within_their_bounds():
     assert model.value("bristles.damping_N_s_per_mm") is None  # critical
     assert j.moved_model(made, np.array([9.0])).value(ZERO, "a") == 1.0
     assert j.moved_model(made, np.array([-9.0])).value(ZERO, "a") == -1.0
-    assert made.values.tolist()[:2] == [math.log(0.2), 0.5]
     assert {e.origin for e in model.estimates if e.name == ZERO} == {"default"}
-
-
-def test_what_is_fixed_at_its_critical_value_begins_at_the_initial_one():
-    sought = [unknown(FRICTION), unknown("bristles.damping_N_s_per_mm")]
-    assert j._finite(np.array([0.5, math.nan]), sought).tolist() == [0.5, 0.0]
-
-
-def test_each_unknown_has_its_value():
-    with pytest.raises(ValueError, match="longer"):
-        rig_at(GROUP_A, 0, [unknown(FRICTION)], np.zeros(2))
-    with pytest.raises(ValueError, match="longer"):
-        j.estimates_of([unknown(FRICTION)], fitted([0.0, 0.0], [1.0, 1.0]), [])
 
 
 class Runaway:
@@ -125,3 +136,58 @@ def test_a_zero_that_runs_to_its_bound_is_fixed_and_the_rest_fitted_again(monkey
     assert (
         note == f"{ZERO} is not identifiable from these recordings (runs a); it is fixed at 0 mm."
     )
+
+
+def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
+    return Estimate(name, value, QUANTITIES[name].unit, "fitted", run, stderr, low, high, at_bound)
+
+
+def doubts(*estimates, **how):
+    return j.doubts_of(estimates, fitted([0.0], [1.0], **how))
+
+
+def test_a_good_fit_leaves_no_doubt():
+    assert doubts(estimate(), estimate(ZERO, "a")) == []
+
+
+def test_what_ended_at_a_bound_is_said():
+    own, shared = doubts(estimate(ZERO, "a", at_bound=True), estimate(at_bound=True))
+    assert own == (
+        "x_in_zero_mm of run a converged to its plausible bound, 1.5: the estimate is unreliable."
+    )
+    assert shared.startswith("friction_coefficient converged to its plausible bound")
+
+
+def test_what_ended_where_it_does_nothing_is_no_bound():
+    name = "free_tendon.proximal_length_mm"
+    (said,) = doubts(estimate(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
+    assert said == f"{name} converged to zero: values up to 3.1 mm are not excluded."
+    assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
+
+
+def test_what_has_no_error_or_no_end_is_said():
+    (said,) = doubts(estimate(stderr=None))
+    assert said.startswith("friction_coefficient is not identifiable at the minimum")
+    (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
+    assert said.startswith("The fit did not converge (too many evaluations): its estimates")
+
+
+def test_what_is_fixed_is_said_once_for_each_reason():
+    unknowns = [unknown(FRICTION), unknown(ZERO, 0), unknown(ZERO, 1), unknown("preload_N", 1)]
+    problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
+    assert j.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
+        (
+            "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
+            "from these recordings (runs a, b); it is fixed at 0.25 mm."
+        ),
+        "friction_coefficient is not identifiable from these recordings; it is fixed at 0.1.",
+        "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
+    ]
+    assert problem.ids == ["a", "b"]
+
+
+def test_damping_that_nobody_knows_is_critical():
+    name = "bristles.damping_N_s_per_mm"
+    assert j._fixed_value(Model(()), name, "") == "its critical value"
+    known = Model((Estimate(name, 0.5, "N s/mm", "given"),))
+    assert j._fixed_value(known, name, "") == "0.5 N s/mm"

@@ -48,45 +48,29 @@ def test_so_many_samples_are_kept_that_they_fit_in_a_piece(pieces_of, rows, ever
     assert run_of(rows).every == every
 
 
-def test_a_fit_sees_the_first_twenty_every_fifth_the_turns_and_the_last(pieces_of):
-    pieces_of(20)
-    run = run_of(98)
-    assert run.every == 5
-    first, second = rows_of(0, 40, [22, 31]), rows_of(40, 58, [43, 96])
-    assert np.flatnonzero(run.seen(first)).tolist() == [*range(20), 20, 22, 25, 30, 31, 35]
-    seen = 40 + np.flatnonzero(run.seen(second))
-    assert seen.tolist() == [40, 43, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 96, 97]
-
-
 def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
+    """A fit sees the first twenty rows, every fifth, the turns and the last."""
     pieces_of(20)
     run = run_of(98)
     kept = [run.thin(rows_of(0, 40, [22, 31])), run.thin(rows_of(40, 58, [43, 96]))]
     first, second = ([*range(20), 20, 22, 25, 30, 31, 35], [40, 43, *range(45, 96, 5), 96, 97])
     for rows, at, turns in ((kept[0], first, [22, 31]), (kept[1], second, [43, 96])):
-        k = np.array(at)
-        assert rows.time_s.tolist() == (0.5 * k).tolist()
         part = rows.cleaned["x_in_mm"]
-        for values, hundred in zip(
-            (part.values, part.sd, part.unseen, part.apart_s), (100, 200, 300, 400), strict=True
-        ):
-            assert values.tolist() == (hundred + k).tolist()
+        assert part.apart_s.tolist() == (400 + np.array(at)).tolist()
         assert [at[place] for place in part.reversals] == turns
-        assert rows.measured["f_in_N"].tolist() == (500 + k).tolist()
-        assert rows.in_gap.tolist() == (k % 7 == 0).tolist()
     prepared = run.thinned(kept)
     whole = np.array([*first, *second])
     conditioned = prepared.conditioned["x_in_mm"]
-    assert conditioned.values.tolist() == (100 + whole).tolist()
-    assert conditioned.sd.tolist() == (200 + whole).tolist()
-    assert conditioned.unseen.tolist() == (300 + whole).tolist()
+    found = np.array([conditioned.values, conditioned.sd, conditioned.unseen])
+    assert (found - whole == [[100], [200], [300]]).all()
     assert whole[conditioned.reversals].tolist() == [0, 22, 31, 43, 96, 97]
-    assert (conditioned.window_s, conditioned.noise) == (0.25, 0.1)
-    assert conditioned.smallest_reversal == 0.3
+    told = conditioned.window_s, conditioned.noise, conditioned.smallest_reversal
+    assert told == (0.25, 0.1, 0.3)
     assert prepared.time_s.tolist() == (0.5 * whole).tolist()
     assert prepared.measured["f_in_N"].tolist() == (500 + whole).tolist()
     assert (prepared.every, prepared.all_rows, prepared.session_s) == (5, 98, 60.0)
     assert prepared.noise == {"f_in_N": 0.2}
+    assert prepared.in_gap.tolist() == (whole % 7 == 0).tolist()
 
 
 def test_a_cleaned_signal_is_handed_out_in_rows_as_asked():
@@ -102,28 +86,23 @@ def test_a_cleaned_signal_is_handed_out_in_rows_as_asked():
         assert together.tolist() == [hundred + k for k in range(15)]
 
 
-def thinned(every, samples, strokes):
-    return SimpleNamespace(
+@pytest.mark.parametrize(("samples", "few"), [(160, None), (155, "16"), (25, "2.5")])
+def test_what_a_fit_has_seen_is_said(samples, few):
+    """Of ten strokes."""
+    run = SimpleNamespace(
         run=SimpleNamespace(id="a"),
-        every=every,
+        every=2,
         all_rows=1000,
         time_s=np.zeros(samples),
         drive_column="x_in_mm",
-        conditioned={"x_in_mm": SimpleNamespace(reversals=np.arange(strokes + 1))},
+        conditioned={"x_in_mm": SimpleNamespace(reversals=np.arange(11))},
     )
-
-
-def test_what_a_fit_has_seen_is_said():
-    assert long.thinned_notes([thinned(1, 10, 5)]) == []
-    (said,) = long.thinned_notes([thinned(2, 160, 10)])
-    assert said == (
-        "Run a has 1000 samples: the fit uses one in 2 of them, and those at reversals "
-        "of the drive."
-    )
-    (said,) = long.thinned_notes([thinned(2, 155, 10)])
-    assert said.endswith("A stroke keeps 16 of its samples, too few to detect its phases.")
-    (said,) = long.thinned_notes([thinned(3, 25, 10)])
-    assert "A stroke keeps 2.5 of its samples" in said
+    (said,) = long.thinned_notes([run])
+    seen = "Run a has 1000 samples: the fit uses one in 2 of them, and those at reversals of the"
+    kept = f" A stroke keeps {few} of its samples, too few to detect its phases."
+    assert said == f"{seen} drive." + (kept if few else "")
+    run.every = 1
+    assert long.thinned_notes([run]) == []
 
 
 def test_noise_is_the_median_over_the_pieces_that_tell_it(monkeypatch):

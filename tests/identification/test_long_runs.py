@@ -81,10 +81,7 @@ def without_noise(load, rows=6000):
 def long(monkeypatch):
     """Make recordings of more than `PIECE` rows long ones."""
 
-    def set_rows(rows=PIECE):
-        monkeypatch.setattr(pieces, "MOST_ROWS", rows)
-
-    return set_rows
+    return lambda rows=PIECE: monkeypatch.setattr(pieces, "MOST_ROWS", rows)
 
 
 def answers(dataset, out, **how):
@@ -148,11 +145,8 @@ def test_the_calibration_finds_the_truth_and_says_what_it_has_seen(tmp_path, lon
     long()
     result = tsas.calibrate(dataset)
     told = {e.name: e for e in result.model.estimates}
-    for name, true in {
-        "friction_coefficient": 0.125,
-        "load_stiffness_N_per_mm": 1.579,
-        "preload_N": 25.0,
-    }.items():
+    truth = {"friction_coefficient": 0.125, "load_stiffness_N_per_mm": 1.579, "preload_N": 25.0}
+    for name, true in truth.items():
         assert told[name].value == pytest.approx(true, rel=2e-3)
         assert told[name].interval_low < true < told[name].interval_high
     said = f"Run a has {ROWS} samples: the fit uses one in 5 of them, and those at reversals"
@@ -169,7 +163,6 @@ def test_a_run_of_as_many_rows_as_a_piece_is_read_whole(tmp_path, long):
 
 def test_what_belongs_to_the_run_can_be_fitted_first(tmp_path, long):
     columns = recorded()
-    columns["f_out_N"] = columns["f_out_N"] + 0.0
     columns["x_in_mm"] = columns["x_in_mm"] + 0.7
     dataset = written(tmp_path / "d", columns, entry())
     long()
@@ -178,17 +171,17 @@ def test_what_belongs_to_the_run_can_be_fitted_first(tmp_path, long):
 
 
 @pytest.mark.parametrize(
-    ("how", "said"),
+    ("how", "factors", "said"),
     [
-        (
-            {"dynamics": "lugre"},
-            "12000 samples are too many to be simulated with the dynamic model",
-        ),
-        ({"out": None}, "12000 samples are too many to be returned in memory; give a folder"),
+        ({"dynamics": "lugre"}, {}, "12000 samples are too many to be simulated with the dynamic"),
+        ({"out": None}, {}, "12000 samples are too many to be returned in memory; give a folder"),
+        ({}, {"x_in_mm": np.nan}, "no numbers|is empty"),
+        ({}, dict.fromkeys(ANSWERS, np.nan), "nothing to compare a model with"),
     ],
 )
-def test_what_a_long_run_cannot_have_is_said(tmp_path, long, how, said):
-    dataset = written(tmp_path / "d", recorded(), entry())
+def test_what_a_long_run_cannot_have_is_refused(tmp_path, long, how, factors, said):
+    columns = {n: factors.get(n, 1.0) * v for n, v in recorded().items()}
+    dataset = written(tmp_path / "d", columns, entry())
     long()
     with pytest.raises(InputError, match=said):
         tsas.simulate(dataset, **({"out": tmp_path / "s"} | how))
@@ -196,25 +189,10 @@ def test_what_a_long_run_cannot_have_is_said(tmp_path, long, how, said):
 
 def test_a_channel_of_the_wrong_sign_is_refused(tmp_path, long):
     columns = recorded()
-    columns["x_out_mm"] = -columns["x_out_mm"]
-    dataset = written(tmp_path / "d", columns, entry())
+    dataset = written(tmp_path / "d", columns | {"x_out_mm": -columns["x_out_mm"]}, entry())
     long()
     with pytest.raises(InputError, match="x_out_mm moves opposite to x_in_mm"):
         tsas.calibrate(dataset)
-
-
-@pytest.mark.parametrize(
-    ("missing", "said"),
-    [("x_in_mm", "no numbers|is empty"), (ANSWERS, "nothing to compare a model with")],
-)
-def test_a_long_run_without_what_a_model_needs_is_refused(tmp_path, long, missing, said):
-    columns = recorded()
-    for name in [missing] if isinstance(missing, str) else missing:
-        columns[name][:] = np.nan
-    dataset = written(tmp_path / "d", columns, entry())
-    long()
-    with pytest.raises(InputError, match=said):
-        tsas.simulate(dataset, out=tmp_path / "s")
 
 
 @pytest.fixture(scope="module")

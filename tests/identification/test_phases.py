@@ -1,18 +1,14 @@
 """Phases against the rig's own knowledge of when the load end moves."""
 
 import math
-from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tests.identification.recorded import ALL, clean, prepared
+from tests.identification.recorded import ALL, clean, prepared, ran
 from tsas_cli.identification import phases as p
 from tsas_cli.identification.phases import segment
-from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.recording import Recording
 from tsas_studies.challenge.rig.motions import chirp, nested, sine, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -39,45 +35,30 @@ def truth(motion, rig):
     """Return what the load end does, and which way the drive goes."""
     columns = clean(rig, motion).columns
     up = np.gradient(columns["x_in_mm"]) > 0.0
-    moves = np.abs(np.gradient(columns["x_out_mm"])) > 0.02 * np.abs(
-        np.gradient(columns["x_in_mm"])
-    )
-    slip, dead = (
-        np.where(up, "contraction", "loosening"),
-        np.where(up, "dead_band_up", "dead_band_down"),
-    )
-    return np.where(moves, slip, dead)
+    x_out, x_in = (np.abs(np.gradient(columns[name])) for name in ("x_out_mm", "x_in_mm"))
+    moves = x_out > 0.02 * x_in
+    slip = np.where(up, "contraction", "loosening")
+    return np.where(moves, slip, np.where(up, "dead_band_up", "dead_band_down"))
 
 
-@pytest.mark.parametrize("sensors", [FINE, COARSE], ids=["fine", "coarse"])
-@pytest.mark.parametrize("make", [sine, triangle, two_sines, chirp])
-def test_phases_are_those_of_the_rig(make, sensors):
+@pytest.mark.parametrize(
+    ("make", "sensors", "channels", "part"),
+    [
+        *((make, FINE, ALL, 0.96) for make in (sine, triangle, two_sines, chirp)),
+        *((make, COARSE, ALL, 0.96) for make in (sine, triangle, two_sines, chirp)),
+        (
+            nested,
+            FINE,
+            ALL,
+            0.93,
+        ),  # where its loops turn in the dead band, nothing slips as a whole
+        *((sine, FINE, (name,), 0.95) for name in ALL),  # one channel is enough
+    ],
+)
+def test_phases_are_those_of_the_rig(make, sensors, channels, part):
     motion = make(rate_Hz=RATE_HZ)
-    run = prepared(Rig(), motion, sensors=sensors)
-    assert np.mean(labels(run) == truth(motion, Rig())) > 0.96
-
-
-@pytest.mark.parametrize("channels", [("f_in_N",), ("f_out_N",), ("x_out_mm",)])
-def test_one_channel_is_enough(channels):
-    motion = sine(rate_Hz=RATE_HZ)
-    run = prepared(Rig(), motion, channels=channels, sensors=FINE)
-    assert np.mean(labels(run) == truth(motion, Rig())) > 0.95
-
-
-def test_partial_loops_hold_no_slip():
-    """Where the nested loops turn back inside the dead band, nothing slips as a whole."""
-    motion = nested(rate_Hz=RATE_HZ)
-    found = labels(prepared(Rig(), motion, sensors=FINE))
-    true = truth(motion, Rig())
-    assert np.mean(found == true) > 0.93
-
-
-def test_segments_cover_the_run_without_overlap():
-    run = prepared(Rig(), two_sines(rate_Hz=RATE_HZ), sensors=FINE)
-    parts = segment(run)
-    assert parts[0].first == 0
-    assert parts[-1].end == run.time_s.size
-    assert all(a.end == b.first for a, b in pairwise(parts))
+    run = prepared(Rig(), motion, channels=channels, sensors=sensors)
+    assert np.mean(labels(run) == truth(motion, Rig())) > part
 
 
 def test_noise_does_not_make_phases_chatter():
@@ -100,17 +81,14 @@ def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band(seed):
     motion = sine(periods=1.0)
     run = prepared(Rig(), motion)
     top = int(np.argmax(motion.x_in_mm))
-    order = np.concatenate(
-        (np.arange(top), np.repeat(top, 1000), np.arange(top, motion.time_s.size))
-    )
+    order = np.r_[:top, np.repeat(top, 1000), top : motion.time_s.size]
     rests = slice(top, top + 1000)
     x_in = motion.x_in_mm[order] + np.random.default_rng(seed + 4).normal(0.0, 0.005, order.size)
     x_in[rests] += np.linspace(0.0, 1e-3, 1000)
     f_in = run.measured["f_in_N"][order]
     f_in[rests] -= np.linspace(0.0, 10.0, 1000)
-    entry = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0)
     columns = {"time_s": np.arange(order.size) / 1000.0, "x_in_mm": x_in, "f_in_N": f_in}
-    found = labels(prepare(Recording(entry, columns)))
+    found = labels(ran(columns, preload_N=25.0))
     assert np.mean(found[rests] == "dead_band_down") > 0.7
     assert np.mean(found[top - 700 : top - 50] == "contraction") > 0.9
 
@@ -120,9 +98,8 @@ def test_a_run_may_end_right_after_a_reversal(left):
     """The last stroke has fewer samples than a law is fitted to, and the tension has peaked."""
     x_in = np.concatenate((np.linspace(0.0, 5.0, 100), 5.0 - 0.3 * np.arange(1, left)))
     f_in = 20.0 + 4.0 * x_in + np.random.default_rng(1).normal(0.0, 0.01, x_in.size)
-    entry = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0)
     columns = {"time_s": np.arange(x_in.size) / 100.0, "x_in_mm": x_in, "f_in_N": f_in}
-    parts = segment(prepare(Recording(entry, columns)))
+    parts = segment(ran(columns, preload_N=25.0))
     assert [part.end for part in parts] == [*(part.first for part in parts[1:]), x_in.size]
     assert all(part.first < part.end for part in parts)
     assert abs(parts[-1].first - 99) <= 1
@@ -169,14 +146,8 @@ def test_a_stroke_that_is_cut_has_both_phases_of_its_way(cut_as):
 def test_a_whole_stroke_is_what_its_slope_says(cut_as):
     steep, gentle, just = ((None, (slope, math.nan)) for slope in (20.1, 19.9, 20.0))
     found = cut_as(BOTH, steep, steep, gentle, gentle, just)
-    assert [phase for *_, phase in found[2:]] == [
-        "dead_band_down",
-        "dead_band_up",
-        "loosening",
-        "contraction",
-        "loosening",
-    ]
-    assert [(a, b) for a, b, _ in found[2:]] == [(k, k + 10) for k in (10, 20, 30, 40, 50)]
+    phases = ("dead_band_down", "dead_band_up", "loosening", "contraction", "loosening")
+    assert found[2:] == [(10 * k, 10 * k + 10, phase) for k, phase in enumerate(phases, start=1)]
 
 
 def test_what_no_slope_tells_is_unknown(cut_as):

@@ -14,21 +14,24 @@ def test_means_of_blocks_the_last_one_shorter():
     assert p._block_means(np.arange(4.0), 1).tolist() == [0.0, 1.0, 2.0, 3.0]
 
 
-def resting(way=1.0, noise=0.05, *, channel=True):
+def run_of(x, turns=(), *, sd=0.01, noise=0.05, **measured):
+    x = np.asarray(x, dtype=float)
+    conditioned = SimpleNamespace(values=x, sd=np.full(x.size, sd), reversals=np.array(turns))
+    return SimpleNamespace(
+        conditioned={"x_in_mm": conditioned},
+        measured=measured,
+        noise=dict.fromkeys(measured, noise),
+        time_s=0.1 * np.arange(x.size),
+        drive_column="x_in_mm",
+    )
+
+
+def resting(way=1.0, noise=0.05, *, channel="f_in_N"):
     """A drive that goes, rests from sample 50 on and turns at 100; unloading begins at 70."""
     t = np.arange(140)
     x = way * np.interp(t, [0, 50, 100, 139], [0.0, 5.0, 5.0, 1.0])
     tension = way * np.interp(t, [0, 50, 70, 139], [25.0, 45.0, 45.0, 10.0])
-    conditioned = SimpleNamespace(
-        values=x, sd=np.full(140, 0.01), reversals=np.array([0, 100, 139])
-    )
-    return SimpleNamespace(
-        conditioned={"x_in_mm": conditioned},
-        measured={"f_in_N": tension} if channel else {"f_out_N": tension},
-        noise={"f_in_N": noise, "f_out_N": noise},
-        time_s=0.1 * t,
-        drive_column="x_in_mm",
-    )
+    return run_of(x, (0, 100, 139), noise=noise, **{channel: tension})
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
@@ -40,13 +43,19 @@ def test_a_resting_drive_has_turned_where_the_tension_does(way):
 
 
 def test_elsewhere_the_drive_turns_where_it_says():
-    assert p._start_of_unloading(resting(channel=False), 100) == 100
+    assert p._start_of_unloading(resting(channel="f_out_N"), 100) == 100
     assert p._start_of_unloading(resting(), 139) == 139
+    assert p._start_of_unloading(at_rest(1e-6, size=101), 100) == 100  # the last sample is no turn
     assert p._start_of_unloading(resting(), 0) == 0
+    unknown, rests_at_once = at_rest(), at_rest(1e-6)
+    unknown.measured["f_in_N"][60] = np.nan
+    rests_at_once.conditioned["x_in_mm"].values[:100] = 5.0
+    assert p._start_of_unloading(unknown, 100) == 100
+    assert p._start_of_unloading(rests_at_once, 100) == 100
 
 
 def test_strokes_go_from_turn_to_turn_and_cover_the_run():
-    run = resting(channel=False)
+    run = resting(channel="f_out_N")
     first, second = p._strokes(run)
     assert (first.first, first.end, second.first, second.end) == (0, 100, 100, 140)
     assert (first.up, second.up) == (True, False)
@@ -73,10 +82,7 @@ def at_rest(noise=0.05, sd=0.01, *, peak=70, size=140, turn=100):
     t = np.arange(size)
     x = np.interp(t, [0, 50, turn, turn + 39], [0.0, 5.0, 5.0, 1.0])
     tension = np.interp(t, [0, 40, peak, peak + 80], [25.0, 45.0, 45.0, 5.0])
-    conditioned = SimpleNamespace(values=x, sd=np.full(size, sd))
-    return SimpleNamespace(
-        conditioned={"x_in_mm": conditioned}, measured={"f_in_N": tension}, noise={"f_in_N": noise}
-    )
+    return run_of(x, sd=sd, noise=noise, f_in_N=tension)
 
 
 def margin(drop):
@@ -110,26 +116,13 @@ def test_eight_samples_are_looked_at_or_none():
     assert p._start_of_unloading(seven, 55) == 55
 
 
-def test_a_tension_that_is_not_known_tells_no_turn():
-    run = at_rest()
-    run.measured["f_in_N"][60] = np.nan
-    assert p._start_of_unloading(run, 100) == 100
-
-
 @pytest.mark.parametrize(("samples", "step"), [(1199, 2), (1200, 3), (799, 1), (800, 2)])
 def test_strokes_are_thinned_to_four_hundred_points_or_more(samples, step):
     x = np.arange(float(samples))
     values = np.where(np.isin(np.arange(samples), (0, samples - 1)), 3.0 * x, np.nan)
     once = np.where(np.arange(samples) == 7, 1.0, np.nan)
-    conditioned = SimpleNamespace(
-        values=x, sd=np.full(samples, 0.01), reversals=np.array([0, samples - 1])
-    )
-    run = SimpleNamespace(
-        conditioned={"x_in_mm": conditioned},
-        measured={"f_out_N": values, "x_out_mm": once, "f_in_N": 0.0 * x + 2.0},
-        noise={"f_out_N": 0.5, "x_out_mm": 1.0, "f_in_N": 0.0},
-        time_s=0.1 * x,
-    )
+    run = run_of(x, (0, samples - 1), f_out_N=values, x_out_mm=once, f_in_N=0.0 * x + 2.0)
+    run.noise = {"f_out_N": 0.5, "x_out_mm": 1.0, "f_in_N": 0.0}
     (found,) = p._strokes(run)
     assert set(np.diff(found.at)) == {step}
     assert set(found.channels) == {"f_out_N", "f_in_N"}  # of x_out a single sample is known
@@ -138,46 +131,18 @@ def test_strokes_are_thinned_to_four_hundred_points_or_more(samples, step):
     assert found.channels["f_in_N"][0] == pytest.approx(2e12)  # no noise counts as next to none
 
 
-def test_a_drive_that_comes_back_to_where_it_was_goes_up():
-    x = np.zeros(20)
-    conditioned = SimpleNamespace(values=x, sd=x, reversals=np.array([0, 19]))
-    run = SimpleNamespace(
-        conditioned={"x_in_mm": conditioned}, measured={}, noise={}, time_s=np.arange(20.0)
-    )
-    assert [s.up for s in p._strokes(run)] == [True]
-
-
-def test_a_rest_that_a_run_begins_with_tells_no_turn():
-    run = at_rest(1e-6)
-    run.conditioned["x_in_mm"].values[:100] = 5.0
-    assert p._start_of_unloading(run, 100) == 100
-
-
-def test_the_last_sample_is_no_turn_however_long_the_drive_rests():
-    assert p._start_of_unloading(at_rest(1e-6, size=101), 100) == 100
-
-
-def strokes_of(x, *turns):
-    conditioned = SimpleNamespace(values=x, sd=0.01 + 0.0 * x, reversals=np.array(turns))
-    run = SimpleNamespace(
-        conditioned={"x_in_mm": conditioned},
-        measured={},
-        noise={},
-        time_s=np.arange(float(x.size)),
-    )
-    return p._strokes(run)
+def test_a_tension_without_noise_has_turned_after_its_peak():
+    assert 50 <= p._start_of_unloading(at_rest(0.0), 100) <= 63
 
 
 def test_each_stroke_is_thinned_by_its_own_length():
-    x = np.concatenate((np.arange(1000.0), 1000.0 - np.arange(500.0)))
-    first, second = strokes_of(x, 0, 1000, 1499)
+    first, second = p._strokes(run_of([*range(1000), *range(1000, 500, -1)], (0, 1000, 1499)))
     assert (set(np.diff(first.at)), set(np.diff(second.at))) == ({2}, {1})
 
 
-def test_the_way_of_the_last_stroke_is_told_by_the_last_sample():
-    assert [s.up for s in strokes_of(np.array([0.0, -1.0, -2.0, 1.0]), 0, 3)] == [True]
-    assert [s.up for s in strokes_of(np.array([0.0, 1.0, 2.0, -1.0]), 0, 3)] == [False]
-
-
-def test_a_tension_without_noise_has_turned_after_its_peak():
-    assert 50 <= p._start_of_unloading(at_rest(0.0), 100) <= 63
+@pytest.mark.parametrize(
+    ("x", "up"), [([0, -1, -2, 1], True), ([0, 1, 2, -1], False), ([0, 1, 2, 0], True)]
+)
+def test_the_way_of_the_last_stroke_is_told_by_the_last_sample(x, up):
+    """A drive that comes back to where it was goes up."""
+    assert [s.up for s in p._strokes(run_of(x, (0, 3)))] == [up]

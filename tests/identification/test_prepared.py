@@ -18,26 +18,25 @@ def entry(**told):
     return Run(id="a", file="a.parquet", sha256="0" * 64, **told)
 
 
-def test_a_gap_is_longer_than_one_and_a_half_samples_and_holds_its_rows():
-    """Known at 0, 1, 2, 4, 5, 6, 7 s: from 2 to 4 it is twice as long as usual."""
+@pytest.mark.parametrize(("apart_s", "gap"), [(2.0, [3]), (1.49, []), (1.51, [3])])
+def test_a_gap_is_longer_than_one_and_a_half_samples_and_holds_its_rows(apart_s, gap):
     time_s = np.arange(8.0)
+    time_s[4:] += apart_s - 2.0
     values = np.array([1.0, 2.0, 3.0, NAN, 5.0, 6.0, 7.0, 8.0])
-    assert np.flatnonzero(p._in_gap(time_s, values)).tolist() == [3]
-    time_s[4:] -= 0.51  # 1.49 s
-    assert not p._in_gap(time_s, values).any()
-    time_s[4:] += 0.02  # 1.51 s
-    assert np.flatnonzero(p._in_gap(time_s, values)).tolist() == [3]
+    assert np.flatnonzero(p._in_gap(time_s, values)).tolist() == gap
 
 
-def test_before_the_first_and_after_the_last_value_there_is_a_gap():
-    values = np.array([NAN, NAN, 1.0, 2.0, 3.0, NAN])
-    assert np.flatnonzero(p._in_gap(np.arange(6.0), values)).tolist() == [0, 1, 5]
-
-
-def test_a_slow_column_has_no_gaps_between_its_samples():
+@pytest.mark.parametrize(
+    ("known", "gap"),
+    [
+        (slice(2, 5), [0, 1, *range(5, 12)]),  # before the first value and after the last
+        (slice(None, None, 3), [10, 11]),  # a slow column has none between its samples
+    ],
+)
+def test_where_a_column_is_known_there_is_no_gap(known, gap):
     values = np.full(12, NAN)
-    values[::3] = 1.0
-    assert np.flatnonzero(p._in_gap(np.arange(12.0), values)).tolist() == [10, 11]
+    values[known] = 1.0
+    assert np.flatnonzero(p._in_gap(np.arange(12.0), values)).tolist() == gap
 
 
 def test_noise_is_at_least_that_of_quantisation():
@@ -65,30 +64,27 @@ def test_a_run_begins_at_the_line_through_its_first_twenty_samples():
     assert p._start_value(time_s, values) == pytest.approx(3.0)
 
 
-def ready(**told):
-    n = 30
-    columns = {
-        "conditioned": {
-            "x_in_mm": SimpleNamespace(
-                values=np.arange(30.0), noise=0.1, window_s=0.25, reversals=np.array([0, 9, 29])
-            ),
-            "f_out_N": SimpleNamespace(
-                values=7.0 * np.ones(n), noise=0.0, window_s=0.0, reversals=np.array([0])
-            ),
-        },
-        "measured": {"f_in_N": 5.0 + 0.0 * np.arange(n)},
-        "run": entry(load="force"),
-        "drive_column": "x_in_mm",
-    } | told
+CONDITIONED = {
+    "x_in_mm": SimpleNamespace(
+        values=np.arange(30.0), noise=0.1, window_s=0.25, reversals=np.array([0, 9, 29])
+    ),
+    "f_out_N": SimpleNamespace(
+        values=7.0 * np.ones(30), noise=0.0, window_s=0.0, reversals=np.array([0])
+    ),
+}
+F_IN = {"f_in_N": 5.0 + np.zeros(30)}
+
+
+def ready(*, run=None, drive="x_in_mm", conditioned=CONDITIONED, measured=F_IN, noise=None):
     return p.Prepared(
-        columns["run"],
-        10.0 + 0.1 * np.arange(n),
-        columns["drive_column"],
-        columns["conditioned"],
-        columns["measured"],
-        np.zeros(n, bool),
+        run or entry(load="force"),
+        10.0 + 0.1 * np.arange(30),
+        drive,
+        conditioned,
+        measured,
+        np.zeros(30, bool),
         session_s=60.0,
-        all_noise=columns.get("noise"),
+        all_noise=noise,
     )
 
 
@@ -99,24 +95,11 @@ def test_what_drives_a_run():
     assert drive.load_values.tolist() == [7.0] * 30
     assert drive.start_f_in_N == pytest.approx(5.0)
     assert drive.time_s[[0, 1]] == pytest.approx([0.0, 0.1])
-    forced = ready(
-        drive_column="f_in_N",
-        run=entry(),
-        conditioned={"f_in_N": SimpleNamespace(values=np.ones(30))},
-        measured={"x_out_mm": np.ones(30)},
-    ).drive
+    by_force = {"f_in_N": SimpleNamespace(values=np.ones(30))}
+    forced = ready(run=entry(), drive="f_in_N", conditioned=by_force).drive
     assert (forced.kind, forced.load, forced.load_values) == ("force", "spring", None)
-    assert forced.start_f_in_N is None
+    assert forced.start_f_in_N is None  # a tension that drives tells no start
     assert ready(measured={"x_out_mm": np.ones(30)}).drive.start_f_in_N is None
-
-
-def test_a_tension_that_drives_tells_no_start():
-    time_s = np.arange(30.0)
-    how = {"load_values": None, "session_s": 0.0}
-    told = p.drive_of(entry(), time_s, time_s, by_force=True, f_in_N=time_s, **how)
-    assert told.start_f_in_N is None
-    told = p.drive_of(entry(), time_s, time_s, by_force=False, f_in_N=4.0 + time_s, **how)
-    assert told.start_f_in_N == pytest.approx(4.0)
 
 
 def test_a_column_is_as_measured_or_as_conditioned():
@@ -144,17 +127,16 @@ def test_noise_that_all_samples_have_told_is_taken():
 
 @pytest.mark.parametrize(
     ("noise", "tolerance"),
-    [(1.0, 1e-3), (1e-3, 6e-6), (1e-5, 1e-7), (0.0, 1e-3), (NAN, 1e-3)],
+    [(1.0, 1e-3), (1e-3, 6e-6), (1e-5, 1e-7), (0.0, 1e-3), (NAN, 1e-3), (None, 1e-3)],
 )
 def test_a_step_s_error_is_hidden_by_noise(monkeypatch, noise, tolerance):
     """3 % of the noise, over the largest tension of 5 N; between 1e-7 and the usual tolerance."""
     monkeypatch.setattr(p, "TOLERANCE", 1e-3)
     tension = np.where(np.arange(30) == 3, -5.0, 1.0)
     tension[4] = NAN
-    run = ready(noise={"f_in_N": noise}, measured={"f_in_N": tension})
+    channel, noise = ("x_out_mm", 1e-3) if noise is None else ("f_in_N", noise)
+    run = ready(noise={channel: noise}, measured={channel: tension})
     assert run.step_tolerance == pytest.approx(tolerance)
-    other = ready(noise={"x_out_mm": noise}, measured={"x_out_mm": tension})
-    assert other.step_tolerance == 1e-3
 
 
 def test_a_run_begins_seconds_after_the_first_of_its_dataset():

@@ -5,11 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from tests.identification.recorded import ran
 from tsas_cli.identification.fitted_to import fitted_to
-from tsas_cli.identification.prepared import prepare
 from tsas_cli.identification.repeatability import repeatability
-from tsas_cli.recordings.manifest import RigSheet, Run
-from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.manifest import RigSheet
 
 RATE_HZ, NOISE_N, NOISE_MM = 193, 0.1, 0.005  # samples that fall between those of other strokes
 
@@ -28,7 +27,7 @@ def run(amplitudes_mm=(10.0,) * 8, *, offsets_N=None, seed=0, stroke_s=2.0, run_
     f_N = 50.0 + 2.0 * x_mm + 10.0 * pulling + offsets[stroke]
     columns = {"time_s": time_s, "x_in_mm": x_mm, "f_in_N": f_N + rng.normal(0, NOISE_N, x_mm.size)}
     columns["x_out_mm"] = x_mm - 0.5 * pulling + rng.normal(0, NOISE_MM, x_mm.size)
-    return prepare(Recording(Run(id=run_id, file="a", sha256="0" * 64, **told), columns))
+    return ran(columns, run_id=run_id, **told)
 
 
 def found(*runs):
@@ -82,5 +81,5 @@ def test_a_run_that_is_driven_by_force_has_none():
     one = run()
     columns = {"time_s": one.time_s, "f_in_N": one.measured["f_in_N"]}
     columns |= {"x_out_mm": one.conditioned["x_in_mm"].values}
-    driven = prepare(Recording(one.run, columns))
+    driven = ran(columns)
     assert repeatability([driven], [fitted_to(RigSheet(), [driven])]) == [{"x_out_mm": None}]

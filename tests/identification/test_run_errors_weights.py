@@ -98,9 +98,9 @@ def test_noise_and_what_moves_the_drive_count_by_their_squares(model):
 def test_a_load_that_is_driven_has_its_own_error(model):
     """It moves f_out by k times 0.4 N and f_in by nothing; f_out is not compared then."""
     run = run_of(load_sd=0.4)
-    run.measured["x_out_mm"], run.noise["x_out_mm"] = np.zeros(N), 0.3
     run.conditioned["f_out_N"].unseen = np.full(N, 5.0)
-    run.noise["f_out_N"], run.measured["f_out_N"] = 1.0, np.zeros(N)
+    run.noise |= {"x_out_mm": 0.3, "f_out_N": 1.0}
+    run.measured |= {"x_out_mm": np.zeros(N), "f_out_N": np.zeros(N)}
     found = errors_of(run)
     np.testing.assert_allclose(found.weights["f_in_N"], np.sqrt(4.0 + 0.09))
     np.testing.assert_allclose(found.weights["x_out_mm"], np.sqrt(0.09 + 0.01))
@@ -113,24 +113,27 @@ def test_a_load_that_is_driven_has_its_own_error(model):
 def test_a_channel_without_noise_has_next_to_none(model):
     run = run_of(sd=0.0)
     run.noise["f_in_N"] = 0.0
-    found = errors_of(run)
-    np.testing.assert_allclose(found.weights["f_in_N"], 1e-9)
+    np.testing.assert_allclose(errors_of(run).weights["f_in_N"], 1e-9)
 
 
 def test_what_is_before_a_turn_is_added_for_each_end(monkeypatch, model):
-    added = []
-
     def before(square, change, conditioned):
-        added.append((change.copy(), conditioned))
+        np.testing.assert_allclose(change, 0.3 * WAY)
+        assert conditioned is run.conditioned["x_in_mm"]
         square += 100.0
 
     monkeypatch.setattr(r, "_before_reversals", before)
     run = run_of()
-    found = errors_of(run)
-    np.testing.assert_allclose(found.weights["f_in_N"], np.sqrt(4.0 + 0.09 + 100.0))
-    for change, of in added:
-        np.testing.assert_allclose(change, 0.3 * WAY)
-        assert of is run.conditioned["x_in_mm"]
+    np.testing.assert_allclose(errors_of(run).weights["f_in_N"], np.sqrt(4.0 + 0.09 + 100.0))
+
+
+def test_a_run_is_answered_as_it_is_asked_for(model):
+    """From rest, with the steps of its own tolerance, on no mesh but where nodes are asked for."""
+    r.meshed(errors_of(run_of()), 12).errors(3.0)
+    (_, drive, _, first), *_, (_, _, _, last) = model.asked
+    assert drive.start_f_in_N is None
+    assert (first["on_mesh"], first["nodes"], first["tolerance"]) == (False, None, 1e-5)
+    assert (last["on_mesh"], last["nodes"]) == (True, 12)
 
 
 LATER = np.arange(1, N)  # a fit never holds the first sample: nothing is forgotten there
@@ -159,54 +162,16 @@ def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(mo
     np.testing.assert_allclose(found.predict(2.0)["f_in_N"], 2.0 * X)
 
 
-@pytest.mark.parametrize(("samples", "rigs"), [(2**19, 32), (2 * X.size, 2), (0, 2)])
-def test_the_predictions_of_the_last_rigs_are_cached(model, monkeypatch, samples, rigs):
-    """Of 32, or of as many as hold so many samples; of two at least."""
-    monkeypatch.setattr(rs, "CACHED_SAMPLES", samples)
-    found = errors_of(run_of())
-    model.asked.clear()
-    asked = [10.0 + k for k in range(rigs)]
-    for rig in [*asked, *asked]:
-        found.errors(rig)
-    assert [rig for rig, *_ in model.asked] == asked
-    found.errors(1.0)
-    model.asked.clear()
-    found.errors(asked[-1])
-    assert not model.asked
-    found.errors(asked[0])
-    assert [rig for rig, *_ in model.asked] == asked[:1]
-
-
-def test_a_run_is_answered_as_it_is_asked_for(model):
-    """From rest, with the steps of its own tolerance, on no mesh but where nodes are asked for."""
-    found = errors_of(run_of())
-    _, drive, dynamics, how = model.asked[0]
-    assert drive.start_f_in_N is None
-    assert dynamics == "slip"
-    assert (how["on_mesh"], how["nodes"], how["tolerance"]) == (False, None, 1e-5)
-    assert how["step_ends_s"] is rs.OWN_STEPS
-    model.asked.clear()
-    meshed = r.meshed(found, 12)
-    assert meshed.weights is found.weights
-    meshed.errors(3.0)
-    ((_, _, _, how),) = model.asked
-    assert (how["on_mesh"], how["nodes"]) == (True, 12)
-    assert found.simulation.nodes is None
-
-
 def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(model):
     found = errors_of(run_of(), dynamics="lugre")
-    steps = [how["step_ends_s"] for *_, how in model.asked]
-    own = [s is rs.OWN_STEPS for s in steps]
+    own = [how["step_ends_s"] is rs.OWN_STEPS for *_, how in model.asked]
     assert own == [True, False, True, True]  # its steps, its answer, both errors of the drive
-    assert steps[1].tolist() == [0.25, 0.5]
     model.asked.clear()
     found.errors(9.0)
     assert [how["step_ends_s"].tolist() for *_, how in model.asked] == [[0.25, 0.5]]
     model.asked.clear()
-    other = r.reweighted(found, 9.0)
+    r.reweighted(found, 9.0)
     assert len(model.asked) == 4  # its old predictions had other steps
-    assert other.simulation is not found.simulation
 
 
 def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, model):
@@ -223,28 +188,6 @@ def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, mo
     assert drive.values.tolist() == [0.0, 4.0, 0.0]
     assert drive.load_values.tolist() == [0.0, 8.0, 0.0]
     assert drive.time_s == pytest.approx([0.0, 0.4, 1.0])
-
-
-def test_the_closed_form_answers_at_every_sample(monkeypatch, model):
-    """It costs next to nothing; a chain, which somebody asks for, follows some."""
-    monkeypatch.setattr(rs, "points", lambda run: np.array([0, 4, 10]))
-    monkeypatch.setattr(rs, "is_closed", lambda rig, drive: rig == 3.0)
-    found = errors_of(run_of())
-    assert sizes(model) == {N}
-    assert found.predict(3.0)["f_in_N"].tolist() == (3.0 * X).tolist()
-    assert found.predict(2.0)["f_in_N"][:5].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
-    assert sizes(model) == {3}
-    r.meshed(found, 12).predict(3.0)
-    assert sizes(model) == {3}
-    errors_of(run_of(), dynamics="lugre").predict(3.0)
-    assert sizes(model) == {3}
-
-
-def sizes(model):
-    """Return of how many samples the runs were that the model has been asked for since."""
-    found = {drive.values.size for _, drive, _, _ in model.asked}
-    model.asked.clear()
-    return found
 
 
 @pytest.mark.parametrize(
@@ -268,15 +211,6 @@ def test_a_block_is_longer_than_the_memory_of_errors(
     assert found.blocks(3.0, longest).tolist() == expected
 
 
-def test_blocks_leave_eight_of_all_runs(monkeypatch):
-    asked = []
-
-    def made(length):
-        return SimpleNamespace(
-            length=length, blocks=lambda rig, longest: asked.append((rig, longest)) or rig
-        )
-
-    assert r.blocks_of([made(30), made(50)], ["a", "b"]) == ["a", "b"]
-    assert asked == [("a", 10), ("b", 10)]
-    with pytest.raises(ValueError, match="shorter"):
-        r.blocks_of([made(30), made(50)], ["a"])
+def test_blocks_leave_eight_of_all_runs():
+    made = [SimpleNamespace(length=n, blocks=lambda rig, longest: (rig, longest)) for n in (30, 50)]
+    assert r.blocks_of(made, ["a", "b"]) == [("a", 10), ("b", 10)]

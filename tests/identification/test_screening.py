@@ -62,17 +62,11 @@ def test_the_amounts_are_those_that_take_the_residual_away():
     residual = -(2.0 * OWN[:, 0] + 0.5 * OWN[:, 1]) + FREE @ [1.0, -2.0, 0.5]
     basis = projector(trial_of())
     residual -= basis @ (basis.T @ residual)  # as a fit leaves it
-    trial = trial_of(residual)
-    found = screen(Bench(FREE_TENDON), trial, FREE_TENDON, basis)
+    found = screen(Bench(FREE_TENDON), trial_of(residual), FREE_TENDON, basis)
     assert found.part == pytest.approx(1.0, abs=1e-6)
-    proximal, distal = FREE_TENDON.parameters
-    assert found.initial == pytest.approx(
-        {
-            f"free_tendon.{proximal.name}": 2.0 * proximal.start,
-            f"free_tendon.{distal.name}": 0.5 * distal.start,
-        },
-        rel=1e-4,
-    )
+    starts = {f"free_tendon.{p.name}": p.start for p in FREE_TENDON.parameters}
+    amounts = dict(zip(starts, (2.0, 0.5), strict=True))
+    assert found.initial == pytest.approx({n: amounts[n] * starts[n] for n in starts}, rel=1e-4)
     own = OWN - basis @ (basis.T @ OWN)
     np.testing.assert_allclose(found.signatures, own, atol=1e-9)
 

@@ -22,15 +22,6 @@ def test_each_phase_has_its_own_slope():
     assert found["loosening"].value == pytest.approx(1.1)
 
 
-def test_each_occurrence_has_its_own_intercept():
-    x = np.tile(np.linspace(0.0, 5.0, 500), 2)
-    f = 2.0 * x + np.repeat([10.0, 30.0], 500)
-    parts = [Segment(0, 500, "contraction"), Segment(500, 1000, "contraction")]
-    (found,) = slopes(x, f, parts)
-    assert found.value == pytest.approx(2.0)
-    assert found.occurrences == 2
-
-
 def test_gaps_are_left_out():
     f = 2.3 * X
     f[100:200] = np.nan

@@ -73,20 +73,15 @@ def test_gaps_are_left_out():
 
 def test_what_does_not_tell_it():
     run, segments = run_of()
-    del run.channels["f_in_N"]
-    assert told((run, segments)) == {}
-    assert told((run_of()[0], run_of()[1][::2])) == {}  # one direction alone
-    assert told((run_of()[0], run_of()[1][:3])) == {}  # a single stroke down
-    assert told(run_of(span=(20.0, 20.9))) == {}  # no more than ten times the noise
-    assert told(run_of(span=(20.0, 21.1))) != {}
-    few, parts = run_of(strokes=4)
-    short = [Segment(s.first, s.first + 12, s.phase) for s in parts]
-    assert told((few, short)) == {}  # 24 samples each way
+    assert told((run, segments[::2])) == {}  # one direction alone
+    assert told((run, segments[:3])) == {}  # a single stroke down
 
 
-def test_a_tension_that_falls_as_the_other_rises_is_no_capstan():
+@pytest.mark.parametrize("factors", [(-1.0, -1.0), (1.0, -1.0), (0.0, 0.0)])
+def test_a_ratio_that_is_not_positive_is_no_capstan(factors):
     run, segments = run_of()
-    run.channels["f_in_N"] *= -1.0
+    for k, s in enumerate(segments):
+        run.channels["f_in_N"][s.first : s.end] *= factors[k % 2]
     assert told((run, segments)) == {}
 
 
@@ -167,7 +162,6 @@ def test_how_much_is_enough():
         run, segments = run_of(strokes=4)
         cut = [Segment(s.first, s.first + sizes[k // 2], s.phase) for k, s in enumerate(segments)]
         assert bool(told((run, cut))) == enough
-    assert told(run_of(span=(20.0, 21.05))) != {}
     assert told(run_of(span=(20.0, 21.0))) != {}  # ten times 0.1, to the last bit
     assert told(run_of(span=(20.0, 20.95))) == {}
     constant, segments = run_of(span=(20.0, 20.0))
@@ -195,19 +189,6 @@ def test_a_run_without_both_forces_is_passed_over():
     without, segments = run_of("b")
     without.channels["f_in_N"][:] = np.nan
     assert told((without, segments)) == {}
-
-
-def test_a_ratio_that_is_negative_one_way_alone_is_no_capstan():
-    run, segments = run_of()
-    for s in segments[1::2]:
-        run.channels["f_in_N"][s.first : s.end] *= -1.0
-    assert told((run, segments)) == {}
-
-
-def test_a_sensor_that_reads_nothing_is_no_capstan():
-    run, segments = run_of()
-    run.channels["f_in_N"] *= 0.0
-    assert told((run, segments)) == {}
 
 
 def test_one_stroke_each_way_is_too_few_however_long_it_is():

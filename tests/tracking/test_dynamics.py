@@ -7,17 +7,13 @@ import pytest
 from tsas_cli.stages.track import track
 from tsas_cli.support.errors import InputError
 
-SETTINGS = """
-[reference]
-duration_s = 7.0
-"""
 DAMPING = "bristles.damping_N_s_per_mm"  # 15.8 is the paper's, 80 times critical
 
 
 @pytest.fixture
 def settings(tmp_path):
     path = tmp_path / "settings.toml"
-    path.write_text(SETTINGS)
+    path.write_text("reference.duration_s = 7.0\n")
     return path
 
 

@@ -4,8 +4,6 @@ import math
 
 import pytest
 
-from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.controllers.laws import ADAPTIVE, OBSERVER, PID, SLIDING
 from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
 
@@ -20,12 +18,6 @@ def test_the_drive_is_that_of_the_paper():
         0.002,
         3000.0,
     )
-
-
-def test_every_controller_has_its_place_in_the_kernel():
-    kinds = dict(zip(CONTROLLERS, (PID, SLIDING, ADAPTIVE, OBSERVER), strict=True))
-    for name, kind in kinds.items():
-        assert Settings().controllers.laws(name, 0.02).kind == kind
 
 
 def test_gains_are_those_of_the_paper_and_come_to_their_places():

@@ -27,7 +27,12 @@ from tsas_cli.tracking.track import feedforward
 
 SILENT = {"noise_mm": 0.0, "step_mm": 0.0}
 RATE = {"rate_Hz": 500.0}
+
 every_controller = pytest.mark.parametrize("controller", CONTROLLERS)
+
+
+def plant():
+    return loop_of(settings_of())[3]
 
 
 @every_controller
@@ -73,8 +78,7 @@ def test_more_steps_between_samples_change_ever_less():
 @pytest.mark.parametrize("drift_per_s", [0.0, 0.2])
 def test_the_tensions_are_those_of_the_model_moved_along_x_in(drift_per_s):
     """Sample by sample, and at its time: what is recorded belongs together."""
-    _, _, _, plant = loop_of(settings_of())
-    rig = with_values(plant.rig, {"friction_drift.rate_per_s": drift_per_s})
+    rig = with_values(plant().rig, {"friction_drift.rate_per_s": drift_per_s})
     one = run(rig=rig, sensor=RATE | SILENT)
     c = one.columns
     there = simulate(rig, DriveInput(c[X_IN], time_s=one.time_s), on_mesh=True, nodes=8)
@@ -124,8 +128,7 @@ def test_the_motor_is_asked_within_its_limit_and_follows_with_its_lag():
 
 
 def test_a_change_of_the_rig_shows_only_from_then_on():
-    _, _, _, plant = loop_of(settings_of())
-    rubbing = with_values(plant.rig, {"friction_coefficient": 0.2})
+    rubbing = with_values(plant().rig, {"friction_coefficient": 0.2})
     plain, changed = run(), run(later=rubbing, change_s=1.0)
     at = 500
     np.testing.assert_array_equal(plain.columns[:, : at + 1], changed.columns[:, : at + 1])
@@ -137,8 +140,7 @@ def test_a_change_of_the_rig_shows_only_from_then_on():
 
 def test_a_stiffer_tendon_from_a_time_on_is_another_chain():
     """What gives in the chain belongs to the rig, and changes with it."""
-    _, _, _, plant = loop_of(settings_of())
-    soft = with_values(plant.rig, {"free_tendon.proximal_length_mm": 2000.0})
+    soft = with_values(plant().rig, {"free_tendon.proximal_length_mm": 2000.0})
     late = run(later=soft, change_s=0.5).columns
     late, always = late[:, 700:], run(rig=soft).columns[:, 700:]
     np.testing.assert_allclose(late[F_OUT], always[F_OUT], atol=0.3)
@@ -146,16 +148,15 @@ def test_a_stiffer_tendon_from_a_time_on_is_another_chain():
 
 
 def test_a_change_after_the_end_is_refused():
-    _, _, _, plant = loop_of(settings_of())
     with pytest.raises(InputError, match=r"changes at 2\.1 s; expected .* 2 s"):
-        run(later=plant.rig, change_s=2.1)
+        run(later=plant().rig, change_s=2.1)
 
 
 def test_the_feedforward_is_the_speed_of_the_motor_that_the_path_needs():
-    _, path, known, plant = loop_of(settings_of())
+    _, path, known, _ = loop_of(settings_of())
     rpm = feedforward(path, known.actuator)
     np.testing.assert_allclose(rpm * known.actuator.gain_mm_per_s_rpm, path.drive[1])
-    lagging = plant.actuator._replace(motor_lag_s=0.03)
+    lagging = plant().actuator._replace(motor_lag_s=0.03)
     more = (feedforward(path, lagging) - rpm) * lagging.gain_mm_per_s_rpm
     np.testing.assert_allclose(more, 0.03 * path.drive[2], atol=1e-9)
 
