@@ -15,7 +15,7 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Location
-from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
+from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.comparison import ErrorRow
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps

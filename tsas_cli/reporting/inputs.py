@@ -13,7 +13,7 @@ from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location, recorded_location
-from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
+from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile

@@ -4,8 +4,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.noise import quantisation_step
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Mask
 
+_MOST_IN_A_ROW = 3
+_NOISE, _STEPS, _SPAN = 20.0, 10.0, 0.05  # least deviation, in noise, in steps and in the span
+_NEIGHBOURS = 16  # samples on either side that the steepness is compared with
+_STEEPER = 10.0  # than those: a motion that reverses within a few samples has steep neighbours
+_COMMON = 0.02  # of all samples: more frequent deviations are the signal
 _FEWEST = 16  # samples for an estimate of the noise
 
 
@@ -55,3 +60,63 @@ def plateaus(values: Floats, shortest: int) -> list[slice]:
     edges = np.concatenate(([0], changes, [values.size]))
     long = np.flatnonzero(np.diff(edges) >= shortest)
     return [slice(int(edges[i]), int(edges[i + 1])) for i in long]
+
+
+def outlying(
+    time_s: Floats, values: Floats, *, most: float, noise: float, step: float, span: float
+) -> Mask:
+    """Return which samples are outliers, shape (n,).
+
+    An outlier is an implausible value, or one of up to three consecutive samples that deviate from
+    the samples before and after them to the same side by far more than noise, quantisation and the
+    neighbouring motion explain. A lasting step is none. The first and the last samples have one
+    neighbour only, so they have to deviate by more than the span.
+
+    Times and values have the shape (n,), gaps are NaN; `most` is the largest plausible magnitude.
+    Noise (NaN if it is unknown), step and span are those of the whole channel, in its unit.
+    """
+    with np.errstate(all="ignore"):  # a stray 1e300 may overflow
+        found = np.abs(values) > most
+        if not span > 0.0:  # a single other value in a constant channel may be its step
+            return found
+        valid = np.flatnonzero(np.isfinite(values) & ~found)
+        # With an outlier of 1e9, all other levels count as one and the step is the outlier.
+        steps = _STEPS * step if step <= span else 0.0
+        least = max(_SPAN * span, steps, _NOISE * np.nan_to_num(noise))
+        found[valid[_deviating(time_s[valid], values[valid], least, span)]] = True
+    return found
+
+
+def _deviating(time_s: Floats, values: Floats, least: float, span: float) -> Mask:
+    """Return which of the finite samples deviate from both neighbours, shape (n,)."""
+    found = np.zeros(values.size, dtype=np.bool_)
+    if values.size <= 2 * _MOST_IN_A_ROW:
+        return found
+    apart = 1.5 * float(np.median(np.diff(time_s)))
+    change = np.abs(np.diff(values))
+    # The missing neighbour of the first and the last sample is taken as equal to the other one.
+    before, after = np.r_[np.nan, values[:-1]], np.r_[values[1:], np.nan]
+    lowest = highest = values  # of so many in a row
+    for count in range(1, _MOST_IN_A_ROW + 1):
+        if count > 1:
+            lowest = np.minimum(lowest[:-1], values[count - 1 :])
+            highest = np.maximum(highest[:-1], values[count - 1 :])
+        left, right = before[: lowest.size], after[count - 1 :]
+        above = lowest - np.fmax(left, right)
+        below = np.fmin(left, right) - highest
+        off = np.maximum(above, below)
+        needed = np.full(off.size, least)
+        needed[[0, -1]] = max(least, span)
+        starts = np.flatnonzero(off > needed)
+        if starts.size > _COMMON * values.size:
+            continue
+        for start in starts.tolist():
+            stop = start + count
+            long = np.diff(time_s[max(start - 1, 0) : stop + 1]) > apart
+            beside = np.r_[
+                change[max(start - 1 - _NEIGHBOURS, 0) : max(start - 1, 0)],
+                change[stop : stop + _NEIGHBOURS],
+            ]
+            if not long.any() and off[start] > _STEEPER * beside.max(initial=0.0):
+                found[start:stop] = True
+    return found

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import csv
 
-from tsas_cli.recordings.arrow_columns import floats_from
+from tsas_cli.recordings.parquet_files import floats_from
 from tsas_cli.recordings.readers.layout import (
     DoubtfulMarkError,
     Layout,

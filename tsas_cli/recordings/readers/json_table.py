@@ -6,8 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.offered import Column, Offered
-from tsas_cli.recordings.readers.records import flat
+from tsas_cli.recordings.readers.offered import Column, Offered, flat
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.readers.offered import Column
-from tsas_cli.recordings.readers.records import flat
+from tsas_cli.recordings.readers.offered import Column, flat
 from tsas_cli.recordings.readers.table import optional
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError

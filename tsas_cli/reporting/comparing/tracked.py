@@ -11,7 +11,7 @@ from tsas_cli.comparing.tracked import (
     notes,
     tables,
 )
-from tsas_cli.recordings.written import columns_of, result_file
+from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.reporting.comparing.page import repeat_section
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tsas_cli.recordings.written import columns_of, result_file
+from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.records.tracking import ADAPTIVE, ConditionChange, TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.support.arrays import Floats
