@@ -1,4 +1,7 @@
-"""From a drawing function to inline SVG that follows the page's colours and never changes."""
+"""From a drawing function to inline SVG that follows the page's colours and never changes.
+
+Below it is what several figures have in common: thinned curves over time, bounds, legends.
+"""
 
 import io
 import json
@@ -12,6 +15,8 @@ from markupsafe import Markup
 
 from tsas_cli.reporting.colours import STAND_IN, themed
 from tsas_cli.reporting.content import Picture, anchor
+from tsas_cli.reporting.decimation import POINTS, kept_samples
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import printable
 
 WIDTH_IN = 4.6  # a phone shows this at about its own size, so that the text stays readable
@@ -177,3 +182,30 @@ def _own(name: str, value: str, key: str) -> str:
     if name == "style":  # the page has letters of its own
         value = re.sub(r"font-family: [^;]*; ", "", value)
     return value.replace("url(#", f"url(#{key}-")
+
+
+def line(axes: Any, time_s: Floats, values: Floats, *, points: int = POINTS, **style: Any) -> None:
+    """Draw values over time, with as many points as the plot can show."""
+    kept = kept_samples(values, points=points)
+    axes.plot(time_s[kept], values[kept], **style)
+
+
+def bound(axes: Any, value: float, **style: Any) -> None:
+    """Draw a bound, dashed."""
+    look = {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
+    axes.axhline(value, **look, **style)
+
+
+def noise_bounds(axes: Any, noise: float | None) -> None:
+    """Draw twice the noise to both sides of zero, where it is known."""
+    if noise is not None:
+        bound(axes, 2.0 * noise, label="± 2 × noise")
+        bound(axes, -2.0 * noise)
+
+
+def legend(figure: Any, axes: Any = None, *, ncols: int = 2, handlelength: float = 1.6) -> None:
+    """Name above the plot what is drawn; of `axes` alone where all panels show the same."""
+    named = () if axes is None else axes.get_legend_handles_labels()
+    figure.legend(
+        *named, loc="outside upper left", ncols=ncols, handlelength=handlelength, columnspacing=1.2
+    )

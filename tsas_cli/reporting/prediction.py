@@ -15,8 +15,7 @@ from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import MODELS, STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table
 from tsas_cli.reporting.decimation import POINTS, kept_samples, shared_points
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import legend, noise_bounds
+from tsas_cli.reporting.drawing import legend, noise_bounds, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.arrays import Floats

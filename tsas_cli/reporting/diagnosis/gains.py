@@ -8,8 +8,7 @@ from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut
 from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, Table
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import legend
+from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.numbers import ABSENT, plain
 
 _BOUNDS = (

@@ -1,16 +1,24 @@
 """What the diagnosis says: the verdict, its causes, the evidence, and what to measure next."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from tsas_cli.records.diagnosis import DiagnosisFile
-from tsas_cli.reporting.content import Section, missing
-from tsas_cli.reporting.diagnosis import candidates, causes, gains, maps, similarity
+from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause, TriedHypothesis
+from tsas_cli.reporting.content import Section, Table, missing
+from tsas_cli.reporting.diagnosis import causes, gains, maps, similarity
 from tsas_cli.reporting.diagnosis.words import signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
 from tsas_cli.support.wording import listed
 
+_TRIED = "What was tried"
+_SHOWN = 10  # and what is named, and its rivals
+_HYPOTHESES = (
+    "Each of these was fitted together with all parameters of the nominal model. Reduction: by how "
+    "much the normalised residual on held-out data falls; what is named was fitted again for it. "
+    "Test statistic: how many standard deviations the reduction is above what chance gives."
+)
+_NOTHING_TRIED = "Screening left no effect that could explain enough of the error to be fitted."
 _TITLE = "Diagnosis"
 
 
@@ -21,7 +29,9 @@ def section(inputs: Inputs) -> Section:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
     evidence = (
         gains.part(diagnosis, inputs.held_out),
-        *(part.part(diagnosis) for part in (maps, candidates, similarity)),
+        maps.part(diagnosis),
+        candidates_part(diagnosis),
+        similarity.part(diagnosis),
     )
     return Section(
         "diagnosis",
@@ -72,3 +82,51 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
     if left.depends_on:
         signals = listed([signal_in_words(name) for name in left.depends_on])
         yield f"What is left depends on {signals}."
+
+
+def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
+    """Return the part, None where it was undecided before anything was tried."""
+    tried = diagnosis.candidates
+    if not tried:
+        if diagnosis.verdict == "undecided":
+            return None
+        return Section("diagnosis-candidates", _TRIED, (_NOTHING_TRIED,))
+    standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
+    shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
+    of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
+    header = (
+        "effects",
+        "reduction [%]",
+        "test statistic",
+        "convincing",
+        "remark",
+    )
+    table = Table(
+        f"Hypotheses{of}",
+        header,
+        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
+        numeric=frozenset({1, 2}),
+    ).without_empty()
+    return Section("diagnosis-candidates", _TRIED, (_HYPOTHESES,), tables=(table,))
+
+
+def _standing(candidate: TriedHypothesis, named: Sequence[NamedCause]) -> str:
+    """Say whether a hypothesis is what is named, or has a rival in place of a cause."""
+    causes = {cause.effect for cause in named}
+    if not causes:
+        return ""
+    if set(candidate.effects) == causes:
+        return "named"
+    rivals = [causes - {c.effect} | {rival} for c in named for rival in c.rivals]
+    return "rival" if set(candidate.effects) in rivals else ""
+
+
+def _row(candidate: TriedHypothesis, standing: str) -> tuple[str, ...]:
+    gain = candidate.gain_percent
+    return (
+        " + ".join(candidate.effects),
+        "none" if gain is not None and gain < 0.0 else fixed(gain, 1),
+        fixed(candidate.test_statistic, 1),
+        "yes" if candidate.convincing else "no",
+        standing if candidate.converged else "did not converge",
+    )

@@ -11,10 +11,10 @@ from tsas_cli.reporting.stream.channels import (
     FORCE,
     SPEED,
     STATES,
+    faults_of,
     residuals_of,
     series_of,
 )
-from tsas_cli.reporting.stream.events import faults_of
 from tsas_cli.reporting.stream.loops import view_of
 from tsas_cli.reporting.stream.recorder import Entity, T, path_of
 from tsas_cli.reporting.stream.seen import MEASURED, WANTED, X_IN, SeenRun
