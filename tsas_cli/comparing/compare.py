@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from tsas_cli.comparing.predictions import Both, ComparedRun, Predictions, error_rows, matched
-from tsas_cli.comparing.sides import Side, read_side
-from tsas_cli.comparing.values import Overlap, overlap, pairs
+from tsas_cli.comparing.sides import Overlap, Side, overlap, pairs, read_side
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
 from tsas_cli.identification.model import Model

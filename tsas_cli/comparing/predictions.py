@@ -5,8 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tsas_cli.comparing.sides import Side
-from tsas_cli.comparing.values import same_runs
+from tsas_cli.comparing.sides import Side, same_runs
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import compare as simulated
 from tsas_cli.identification.model import Model

@@ -14,8 +14,7 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
-from tsas_cli.reporting.decimation import kept_samples
-from tsas_cli.reporting.drawing import legend, noise_bounds, picture
+from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.simulation import X_IN, diagnosed_models, rms

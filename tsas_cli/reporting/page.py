@@ -27,7 +27,7 @@ from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking import section as tracking
 from tsas_cli.support.wording import count_of
-from tsas_cli.verifying.changed import change_notes
+from tsas_cli.verifying.claims import change_notes
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,

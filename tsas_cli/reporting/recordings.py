@@ -19,8 +19,7 @@ from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table
-from tsas_cli.reporting.decimation import POINTS, kept_samples, shared_points
-from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.drawing import POINTS, kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples

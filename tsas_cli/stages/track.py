@@ -43,7 +43,7 @@ from tsas_cli.tracking.track import (
     plan,
     run_loop,
 )
-from tsas_cli.verifying.changed import change_notes
+from tsas_cli.verifying.claims import change_notes
 
 DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")
 COMPARED_SEEDS = 10

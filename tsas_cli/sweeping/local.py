@@ -8,8 +8,7 @@ from threading import local
 
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.worker_process import WorkerProcess
-from tsas_cli.sweeping.outcome import TaskOutcome, run_task, worker_death
-from tsas_cli.sweeping.versions import ONE_THREAD
+from tsas_cli.sweeping.outcome import ONE_THREAD, TaskOutcome, run_task, worker_death
 
 TRIES = 2  # of a task whose worker dies
 

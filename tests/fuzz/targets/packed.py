@@ -8,7 +8,7 @@ import zipfile
 from collections.abc import Iterable
 
 from tests.fuzz.rules import Scratch, answer
-from tsas_cli.recordings.readers import json_lines, names, packed, read  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import json_table, names, packed, read  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
 SUFFIXES = (".csv.gz", ".csv.bz2", ".csv.xz", ".zip", ".jsonl")

@@ -7,9 +7,8 @@ import numpy as np
 
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.guess.columns import FileColumn
+from tsas_cli.recordings.guess.columns import Certainty, FileColumn, Proposed, with_unit
 from tsas_cli.recordings.guess.looks import increases, is_even
-from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.arrays import Floats

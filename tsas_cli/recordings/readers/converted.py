@@ -15,8 +15,8 @@ from tsas_cli.support.files import state_of
 SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _PACKED = (".gz", ".bz2", ".xz", ".zip")
 _CONVERTERS = dict.fromkeys(_PACKED, "packed") | {
-    ".jsonl": "json_lines",
-    ".ndjson": "json_lines",
+    ".jsonl": "json_table",
+    ".ndjson": "json_table",
     ".lvm": "labview",
     **dict.fromkeys(SHEETS, "spreadsheet"),
 }

@@ -17,7 +17,7 @@ import rerun.blueprint as rrb
 
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.drawing import kept_samples
 from tsas_cli.reporting.numbers import as_printed
 from tsas_cli.reporting.phases import BY_KEY, phase_of_samples
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, path_of

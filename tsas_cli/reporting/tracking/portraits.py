@@ -11,8 +11,7 @@ from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.tracking import StatedSettings
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section
-from tsas_cli.reporting.decimation import kept_cells
-from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.drawing import kept_cells, picture
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.runs import X_IN, X_INV, RunsUnderCondition, TrackedRun
 from tsas_cli.support.arrays import Floats
