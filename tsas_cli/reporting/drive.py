@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.drive.tables import tables
+from tsas_cli.drive.json import tables
 from tsas_cli.records.drive import BodeCurve, DriveFile, FrequencyResponses, MeasuredResponse, Pole
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table
