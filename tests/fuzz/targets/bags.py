@@ -7,10 +7,10 @@ from tempfile import TemporaryDirectory
 from tests.fuzz.foreign import Offering, ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers.bags import save_mcap, save_ros1, save_ros2
-from tsas_cli.recordings.readers import mcap_file, ros1_bag, ros2_bag  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import bags  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.table import ReadOptions
 
-FORMATS = (("mcap_file", ".mcap"), ("ros1_bag", ".bag"), ("ros2_bag", ".db3"))
+SUFFIXES = (".mcap", ".bag", ".db3")
 SHARE = 0.1
 MOST_BYTES = 50_000
 WORDS = (
@@ -26,8 +26,8 @@ _scratch = Scratch()
 
 def one(data: bytes) -> None:
     """The rest is the file."""
-    module, suffix = FORMATS[data[0] % 3 if data else 0]
-    ask(Offering(module), _scratch.file(f"a{suffix}", data[1:]), ReadOptions())
+    suffix = SUFFIXES[data[0] % 3 if data else 0]
+    ask(Offering("bags"), _scratch.file(f"a{suffix}", data[1:]), ReadOptions())
 
 
 def seeds() -> Iterable[bytes]:

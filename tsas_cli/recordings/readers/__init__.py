@@ -33,40 +33,22 @@ _PANDAS_READERS = {
 }
 _R = "write.csv(readRDS({file}), {made}, row.names = FALSE)"
 _COPIES = {".nc": ".h5", ".nc4": ".h5", ".log": ".txt", ".out": ".txt", ".prn": ".txt"}
-_READERS = {
-    ".csv": "delimited",
-    ".tsv": "delimited",
-    ".txt": "delimited",
-    ".dat": "delimited",
-    ".asc": "delimited",
-    ".mat": "matlab",
-    ".mf4": "mdf",
-    ".mdf": "mdf",
-    ".json": "json_table",
-    ".parquet": "parquet",
-    ".feather": "feather",
-    ".arrow": "feather",
-    ".npy": "numpy_file",
-    ".npz": "numpy_file",
-    ".h5": "hdf5",
-    ".hdf5": "hdf5",
-    ".tdms": "tdms",
-    ".mcap": "mcap_file",
-    ".bag": "ros1_bag",
-    ".db3": "ros2_bag",
-    ".join": "joined",
-}
-_ISOLATED = {  # their libraries crash on damaged files
-    "matlab": "a MATLAB file",
-    "mdf": "MDF",
-    "feather": "Feather",
-    "numpy_file": "a NumPy file",
-    "hdf5": "HDF5",
-    "tdms": "TDMS",
-    "mcap_file": "MCAP",
-    "ros1_bag": "a bag of ROS 1",
-    "ros2_bag": "a bag of ROS 2",
-}
+_FORMATS = (  # suffixes, reader, and what they are if its library crashes on damaged files
+    ((".csv", ".tsv", ".txt", ".dat", ".asc"), "delimited", ""),
+    ((".mat",), "matlab", "a MATLAB file"),
+    ((".mf4", ".mdf"), "mdf", "MDF"),
+    ((".json",), "json_table", ""),
+    ((".parquet",), "parquet", ""),
+    ((".feather", ".arrow"), "feather", "Feather"),
+    ((".npy", ".npz"), "numpy_file", "a NumPy file"),
+    ((".h5", ".hdf5"), "hdf5", "HDF5"),
+    ((".tdms",), "tdms", "TDMS"),
+    ((".mcap",), "bags", "MCAP"),
+    ((".bag",), "bags", "a bag of ROS 1"),
+    ((".db3",), "bags", "a bag of ROS 2"),
+    ((".join",), "joined", ""),
+)
+_READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
 _WITHOUT_OFFERED = ("delimited", "parquet", "mdf")  # they have `read` and `names`
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
@@ -136,10 +118,10 @@ def _suffix(path: Path) -> str:
 
 def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    name, kind = f"{__name__}.{module}", _ISOLATED.get(module)
+    name, kind = f"{__name__}.{module}", _READERS[_suffix(path)][1]
     if module not in _WITHOUT_OFFERED and function != "tables":
         name, rest = offered.__name__, (name, kind or "a table", *rest)
-    if kind is not None:
+    if kind:
         return in_another_process(name, function, path, *rest, kind=kind)
     return getattr(import_module(name), function)(path, *rest)
 
@@ -161,7 +143,7 @@ def _checked(
             _check(file)
             file = converted.converted(file, options, frozenset(_READERS))
         _check(file)
-        yield _READERS.get(_suffix(file), "spreadsheet"), file
+        yield _READERS.get(_suffix(file), ("spreadsheet",))[0], file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))
