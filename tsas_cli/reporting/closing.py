@@ -98,13 +98,9 @@ def _said(case: str, row: Row) -> str:
     return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
 
 
-def _median_gain(rows: dict[str, Row]) -> float:
-    return median(row.gain for row in rows.values())
-
-
 def _gain(rows: dict[str, Row]) -> str:
     """Return in sentences how much the extended model lowers the error of the data sheet's."""
-    middle = _median_gain(rows)
+    middle = median(row.gain for row in rows.values())
     said = f"the better model {_matters(middle)}. RMSE data sheet / extended is {plain(middle, 2)}"
     if len(rows) == 1:
         return f"{said}."

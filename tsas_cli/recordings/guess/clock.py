@@ -112,7 +112,7 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
         stated = f"its stated unit {column.unit} means {_rate(seconds)} and "
         stated += f"{seconds * column.values.size:.3g} s in total"
         return QUESTION, f"{stated}; {_listed(step)}", ()
-    likely = [unit for unit in _UNITS if _usual(step, unit)]
+    likely = [unit for unit in _UNITS if (_USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1])]
     since_1970 = [unit for unit in _UNITS if _is_date(float(column.values[0]), unit)]
     likely = [unit for unit in likely if unit in since_1970] or likely
     counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
@@ -127,10 +127,6 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
 def _implausible(interval_s: float, rows: float) -> bool:
     slow = interval_s >= _USUAL_S[1] and interval_s * rows > _STROKE_S[1]
     return interval_s < _FASTEST_S or interval_s * rows < _STROKE_S[0] or slow
-
-
-def _usual(step: float, unit: str) -> bool:
-    return _USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1]
 
 
 def _is_date(value: float, unit: str) -> bool:
