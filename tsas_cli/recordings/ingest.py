@@ -12,9 +12,8 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.conditions import run_conditions
 from tsas_cli.recordings.dataset import read_from
-from tsas_cli.recordings.ingest_map import IngestMap
+from tsas_cli.recordings.ingest_map import IngestMap, run_conditions
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
 from tsas_cli.recordings.readers.joined import joined_by

@@ -24,7 +24,7 @@ from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
-from tsas_cli.support.memory import out_of_memory
+from tsas_cli.support.limits import out_of_memory
 
 ParquetSource: TypeAlias = Path | pa.NativeFile
 REQUEST_BYTES = 16 * 1024 * 1024

@@ -20,11 +20,10 @@ from tsas_cli.reporting import (
     repeat,
     simulation,
 )
-from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.content import Section, rendered
 from tsas_cli.reporting.diagnosis import section as diagnosis
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking import section as tracking
 from tsas_cli.support.wording import count_of
 from tsas_cli.verifying.claims import change_notes

@@ -37,13 +37,13 @@ from tsas_cli.tracking.recorded import (
     table_of,
 )
 from tsas_cli.tracking.references import reference as reference_of
-from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import Settings, known_drive, printed_gains, read_settings
 from tsas_cli.tracking.track import (
     Known,
     Plant,
     TendonDynamics,
     Tracked,
+    over_seeds,
     plan,
     run_loop,
 )

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import out_of_memory
+from tsas_cli.support.limits import out_of_memory
 
 
 class EncryptedError(InputError):

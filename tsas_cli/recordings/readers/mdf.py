@@ -25,7 +25,7 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import out_of_memory
+from tsas_cli.support.limits import out_of_memory
 
 _FIRST = 64  # where the header block is
 _VERSION_4 = 400

@@ -15,11 +15,10 @@ from tsas_cli.comparing.stage import differs, tables
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.comparison import ParameterPair, shared_name
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table
+from tsas_cli.reporting.content import Group, Picture, Section, Table, rendered
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 _MOST = 8  # strips of a picture

@@ -13,10 +13,9 @@ from tsas_cli.comparing.tracked import (
 )
 from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.reporting.comparing.page import repeat_section
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, Table, rendered
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import with_spread
-from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 

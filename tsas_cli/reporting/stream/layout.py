@@ -14,8 +14,8 @@ from tsas_cli.reporting.stream.channels import (
     faults_of,
     residuals_of,
     series_of,
+    view_of,
 )
-from tsas_cli.reporting.stream.loops import view_of
 from tsas_cli.reporting.stream.recorder import Entity, T, path_of
 from tsas_cli.reporting.stream.seen import MEASURED, WANTED, X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon import view_of_tendon

@@ -25,8 +25,7 @@ from tsas_cli.reporting.stream.channels import (
     record_tracking,
 )
 from tsas_cli.reporting.stream.layout import OVERVIEW, layout_of
-from tsas_cli.reporting.stream.opened import is_finished, to_file
-from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder import Recorder, is_finished, to_file
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tendon import record_tendon
 from tsas_cli.support.errors import InputError, printable

@@ -15,8 +15,15 @@ import numpy as np
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.agreement import RunSamples, agreement, joined, stretches
-from tsas_cli.recordings.quality.copies.copy import Copy, RowSpan, contradictions
+from tsas_cli.recordings.quality.copies.agreement import (
+    Copy,
+    RowSpan,
+    RunSamples,
+    agreement,
+    contradictions,
+    joined,
+    stretches,
+)
 from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
 from tsas_cli.recordings.quality.copies.reader import Reader, side_by_side
