@@ -7,7 +7,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.progress import progress
 
 
 def simulate(
@@ -39,7 +38,7 @@ def simulate(
     """Simulate every run with a model, and compute its residual."""
     data = tsas.read(dataset, runs=common.names(runs))
     with common.watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
-        with progress("simulate", quiet=quiet) as step, common.with_stream(rrd, step):
+        with common.progress("simulate", quiet=quiet) as step, common.with_stream(rrd, step):
             result = tsas.simulate(
                 data,
                 out=out,

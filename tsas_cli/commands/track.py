@@ -8,7 +8,6 @@ import typer
 import tsas_cli as tsas
 from tsas_cli.commands import common
 from tsas_cli.commands.completion import controllers, references
-from tsas_cli.commands.progress import progress
 
 
 def track(
@@ -72,7 +71,7 @@ def track(
 ) -> None:
     """Track a reference of the distal tension with controllers that measure x_in only."""
     with common.watched(live, "tracking", quiet=quiet) as stream:
-        with progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
+        with common.progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
             result = tsas.track(
                 out=out,
                 model=model,

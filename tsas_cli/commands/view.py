@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Json, Quiet, show
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Json, Quiet, progress, show
 
 _HOW_TO_END = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
 

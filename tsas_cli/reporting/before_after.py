@@ -11,11 +11,11 @@ import numpy as np
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
 from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.simulation import X_IN, diagnosed_models, rms
 from tsas_cli.support.arrays import Floats, Indices, Mask

@@ -14,8 +14,8 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import legend, picture, shortened
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import BY_KEY, PHASES, label_of
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
-from tsas_cli.reporting.phases import BY_KEY, PHASES, label_of
 
 _PARAMETERS_TITLE = "Parameters"
 Shown = TypeVar("Shown", ParameterValue, Estimate)

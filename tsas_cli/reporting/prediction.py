@@ -11,7 +11,6 @@ from tsas_cli.recordings.columns import name_by
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.prediction import PredictedChannel, PredictionFile
 from tsas_cli.records.result import Table as Printed
-from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import MODELS, STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table
 from tsas_cli.reporting.drawing import (
@@ -23,6 +22,7 @@ from tsas_cli.reporting.drawing import (
     shared_points,
 )
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import at_axis, in_words
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.arrays import Floats
 

@@ -16,13 +16,12 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
-from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table
 from tsas_cli.reporting.drawing import POINTS, kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import PHASES, Phase, at_axis, in_words, phase_of_samples
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
-from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
 from tsas_cli.support.arrays import Floats, Mask
 
 _TENSIONS = ("f_in_N", "f_out_N")

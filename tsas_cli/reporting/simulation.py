@@ -15,11 +15,11 @@ from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.recordings.columns import BY_NAME, nominal_name
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
-from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import legend, line, noise_bounds, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import sha256_of

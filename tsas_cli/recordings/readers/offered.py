@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.guards.damaged import foreign
 from tsas_cli.recordings.guards.expansion import Expanded
-from tsas_cli.recordings.readers.stamps import Seconds, is_stamp
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
@@ -21,7 +20,7 @@ from tsas_cli.recordings.readers.table import (
     floats,
     resolve,
 )
-from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.recordings.readers.timebase import TIME, Seconds, is_stamp, on_one_clock
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
 from tsas_cli.recordings.readers.feather import to_numpy
-from tsas_cli.recordings.readers.stamps import Seconds
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
@@ -17,6 +16,7 @@ from tsas_cli.recordings.readers.table import (
     in_batches,
     resolve,
 )
+from tsas_cli.recordings.readers.timebase import Seconds
 
 
 def batches(

@@ -6,13 +6,12 @@ from functools import partial
 from typing import Any
 
 from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause, TriedHypothesis
-from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.diagnosis import causes, maps, similarity
-from tsas_cli.reporting.diagnosis.words import signal_in_words
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import called, signal_in_words
 from tsas_cli.reporting.numbers import ABSENT, fixed, plain
 from tsas_cli.support.wording import listed
 

@@ -18,11 +18,10 @@ import rerun.blueprint as rrb
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.check import CheckFile
-from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import dark, role_of_controller
 from tsas_cli.reporting.drawing import kept_samples
+from tsas_cli.reporting.names import BY_KEY, PHASES, at_axis, in_words, phase_of_samples
 from tsas_cli.reporting.numbers import as_printed
-from tsas_cli.reporting.phases import BY_KEY, PHASES, phase_of_samples
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, path_of
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, X_IN, Channel, SeenRun
 from tsas_cli.reporting.tracking import runs as tracked

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 import rerun.blueprint as rrb
 from rerun.blueprint import Blueprint, Container, Grid, Horizontal, Tabs, Vertical, View
 
-from tsas_cli.reporting.channels import at_axis
+from tsas_cli.reporting.names import at_axis
 from tsas_cli.reporting.stream.channels import (
     ERROR,
     FORCE,

@@ -12,8 +12,7 @@ from tsas_cli.reporting.colours import of_controller
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import bound, line, picture
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.tracking.curves import mark_change
-from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun
+from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun, mark_change
 from tsas_cli.support.arrays import Floats
 
 _WHAT = (

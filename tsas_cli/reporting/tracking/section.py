@@ -15,13 +15,14 @@ from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import kept_cells, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_spread
-from tsas_cli.reporting.tracking import adaptation, curves
+from tsas_cli.reporting.tracking import adaptation
 from tsas_cli.reporting.tracking.runs import (
     WANTED,
     X_IN,
     X_INV,
     RunsUnderCondition,
     TrackedRun,
+    curve_parts,
     read_conditions,
 )
 from tsas_cli.support.arrays import Floats
@@ -44,7 +45,7 @@ def section(inputs: Inputs) -> Section | None:
     if tracking is None:
         return None
     conditions = read_conditions(inputs, tracking)
-    force, error, effort = curves.parts(conditions)
+    force, error, effort = curve_parts(conditions)
     portrait = portraits_part(conditions, tracking.settings)
     adapted = adaptation.part(conditions, tracking.settings.controllers.adaptive)
     return Section(
