@@ -2,7 +2,7 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
@@ -144,15 +144,20 @@ def rendered(
     name: str,
     about: str,
     summary: str,
-    sections: Sequence[Section],
+    sections: Iterable[Section],
     glance: Glance | None = None,
+    advance: Callable[[], None] = lambda: None,
 ) -> str:
     """Return a page as HTML.
 
     `about` follows the name in the window's title; what stands between backticks in the summary
     becomes code. Each of the sections is in the contents, and so are its parts; `glance` stands
-    above all.
+    above all. `advance` is called after each section.
     """
+    made = []
+    for section in sections:
+        made.append(section)
+        advance()
     environment = Environment(
         loader=PackageLoader("tsas_cli.reporting"),
         autoescape=True,
@@ -167,7 +172,7 @@ def rendered(
         name=name,
         about=about,
         summary=summary,
-        sections=sections,
+        sections=made,
         glance=glance,
         version=__version__,
         script=Markup(script),  # noqa: S704  our own, and the one that the page allows

@@ -2,7 +2,6 @@
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -30,36 +29,14 @@ _VALUES = (
 )
 
 
-@dataclass(frozen=True)
-class IntervalMark:
-    """A value and its 95 % interval in the parameter's unit, None where it has none."""
-
-    value: float
-    low: float | None
-    high: float | None
-
-
-@dataclass(frozen=True)
-class Strip:
-    """One parameter: its name, what both say of it, and whether that differs."""
-
-    label: str
-    a: IntervalMark
-    b: IntervalMark
-    differs: bool
-
-
 def comparison_page(it: Comparison, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each section."""
-    sections = []
-    for section in _sections(it):
-        sections.append(section)
-        advance()
     return rendered(
         name="A and B, side by side",
         about=f"{it.a.path} and {it.b.path}",
         summary=" ".join(findings(it)[:_SAID]) or "There is nothing that both sides hold.",
-        sections=sections,
+        sections=_sections(it),
+        advance=advance,
     )
 
 
@@ -129,7 +106,7 @@ _NOTHING = "Over no signal does the error of either side stand out of the noise.
 
 
 def _maps(it: Comparison) -> Section:
-    """Return the _maps of the residual maps."""
+    """Return the section of the residual maps."""
     panels = [
         Panel(channel, signal, bins, it.maps["b"][channel][signal])
         for channel, signals in it.maps["a"].items()
@@ -145,7 +122,7 @@ _MOST_RUNS = 10
 
 
 def _residuals(it: Comparison) -> Section:
-    """Return the _residuals of the residuals, one group per run that both answer to."""
+    """Return the section of the residuals, one group per run that both answer to."""
     left = len(it.shared) - _MOST_RUNS
     more = f" The first {_MOST_RUNS} of {len(it.shared)} runs are shown." if left > 0 else ""
     groups = tuple(
@@ -190,13 +167,14 @@ def value_pictures(it: Comparison) -> Iterator[Picture]:
     """Yield the picture of fitted values, differing ones first, those of single runs last."""
     shown = [p for p in it.pairs if p.a and p.b and "fitted" in (p.a.origin, p.b.origin)]
     shown.sort(key=lambda pair: (pair not in it.differing, pair.run != "all"))
-    strips = [_strip(pair) for pair in shown[:_MOST]]
+    strips = shown[:_MOST]
     if not strips:
         return
     said = "; ".join(
-        f"{s.label}: A {plain(s.a.value)}, B {plain(s.b.value)}"
-        f"{', which differs' if s.differs else ''}"
-        for s in strips
+        f"{_label(pair)}: A {plain(pair.a.value)}, B {plain(pair.b.value)}"
+        f"{', which differs' if differs(pair) == 'yes' else ''}"
+        for pair in strips
+        if pair.a and pair.b
     )
     star = " A star marks a difference beyond both uncertainties." if it.tested else ""
     yield picture(
@@ -208,26 +186,23 @@ def value_pictures(it: Comparison) -> Iterator[Picture]:
     )
 
 
-def _strip(pair: ParameterPair) -> Strip:
-    a, b = (
-        IntervalMark(e.value, e.interval_low, e.interval_high)
-        for e in (pair.a, pair.b)
-        if e is not None and e.value is not None
-    )
-    run = "" if pair.run == "all" else f"\nrun {pair.run}"
-    return Strip(f"{pair.name.rpartition('.')[2]}{run}", a, b, differs(pair) == "yes")
+def _label(pair: ParameterPair) -> str:
+    return pair.name.rpartition(".")[2] + ("" if pair.run == "all" else f"\nrun {pair.run}")
 
 
-def draw_values(figure: Any, strips: Sequence[Strip]) -> None:
+def draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
     """Draw the strips below each other, A above B in each; a star marks those that differ."""
     rows = figure.subplots(len(strips), 1, squeeze=False)[:, 0]
-    for axes, strip in zip(rows, strips, strict=True):
-        for name, value, role, y in (("A", strip.a, "before", 1.0), ("B", strip.b, "after", 0.0)):
-            low, high = (value.value if end is None else end for end in (value.low, value.high))
+    for axes, pair in zip(rows, strips, strict=True):
+        for name, side, role, y in (("A", pair.a, "before", 1.0), ("B", pair.b, "after", 0.0)):
+            if side is None or side.value is None:
+                continue
+            ends = side.interval_low, side.interval_high
+            low, high = (side.value if end is None else end for end in ends)
             axes.errorbar(
-                value.value,
+                side.value,
                 y,
-                xerr=[[value.value - low], [high - value.value]],
+                xerr=[[side.value - low], [high - side.value]],
                 marker="o",
                 markersize=5,
                 capsize=3,
@@ -240,7 +215,7 @@ def draw_values(figure: Any, strips: Sequence[Strip]) -> None:
         axes.margins(x=0.08)
         axes.locator_params(axis="x", nbins=4)
         axes.ticklabel_format(axis="x", useOffset=False)
-        star = " *" if strip.differs else ""
-        axes.set_ylabel(strip.label + star, rotation=0, ha="right", va="center")
+        star = " *" if differs(pair) == "yes" else ""
+        axes.set_ylabel(_label(pair) + star, rotation=0, ha="right", va="center")
         axes.spines["left"].set_visible(False)
     legend(figure, rows[0])

@@ -25,15 +25,12 @@ def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
 
     InputError: a run cannot be read.
     """
-    sections = []
-    for section in _sections(it):
-        sections.append(section)
-        advance()
     return rendered(
         name="A and B, side by side",
         about=" and ".join(str(path) for path in it.paths.values()),
         summary=" ".join(findings(it)) or "There is no controller and condition that both have.",
-        sections=sections,
+        sections=_sections(it),
+        advance=advance,
     )
 
 
