@@ -53,12 +53,8 @@ def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.Par
 
     `where` is the location in error messages; default: the source.
 
-    Raises
-    ------
-    InputError
-        It is no regular file, or its columns or its footer exceed a limit.
-    ArrowException, OSError, UnicodeDecodeError
-        The file cannot be read.
+    InputError: it is no regular file, or its columns or its footer exceed a limit.
+    ArrowException, OSError, UnicodeDecodeError: the file cannot be read.
     """
     path = where or source
     if isinstance(source, Path):
@@ -216,11 +212,8 @@ def changed(path: Location, run: Run) -> InputError:
 def fetched(address: Address, sha256: str) -> mmap.mmap | None:
     """Return a recording's bytes, mapped from disk; None if the checksum differs.
 
-    Raises
-    ------
-    InputError
-        There is no such object (`NotThereError`), the storage fails, or the disk has no room for
-        the recording.
+    InputError: there is no such object (`NotThereError`), the storage fails, or the disk has no
+    room for the recording.
     """
     key = address, sha256
     with _LOCK:

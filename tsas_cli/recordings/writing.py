@@ -35,12 +35,8 @@ class WrittenRuns(Mapping[str, Recording]):
     def __getitem__(self, run: str) -> Recording:
         """Return a run.
 
-        Raises
-        ------
-        KeyError
-            There is no such run.
-        InputError
-            Its file is missing or damaged.
+        KeyError: there is no such run.
+        InputError: its file is missing or damaged.
         """
         return Recording(self.runs[run], read_columns(self.folder / f"{run}.parquet"))
 

@@ -40,12 +40,8 @@ def is_packed(path: Path) -> bool:
 def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     """Return the temporary file of a `known` format that `path` is converted to.
 
-    Raises
-    ------
-    InputError
-        It is damaged, or holds no such file.
-    OSError
-        A file cannot be read or written.
+    InputError: it is damaged, or holds no such file.
+    OSError: a file cannot be read or written.
     """
     key = (path.absolute(), state_of(path), options.table, options.encoding)
     if key not in _made:

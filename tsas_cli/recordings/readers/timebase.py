@@ -76,11 +76,8 @@ def on_one_clock(
         Interpolate different times linearly onto those of the channel with the most samples,
         within the interval that all channels cover.
 
-    Raises
-    ------
-    InputError
-        There is no channel; the times differ and `resample` is not set, do not increase, or never
-        overlap.
+    InputError: there is no channel; the times differ and `resample` is not set, do not increase, or
+    never overlap.
     """
     if not series:
         raise InputError("the map has no channel besides the time", where=path)
