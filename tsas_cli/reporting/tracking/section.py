@@ -1,7 +1,6 @@
 """How well a wanted force is followed, by whom, and at what cost."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -28,15 +27,6 @@ from tsas_cli.reporting.tracking.runs import (
 from tsas_cli.support.arrays import Floats
 
 _ACROSS = 2
-
-
-@dataclass(frozen=True)
-class Orbit:
-    """A curve in the plane of one controller, shape (n,) each."""
-
-    name: str
-    x: Floats
-    y: Floats
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -156,13 +146,13 @@ def portraits_part(conditions: tuple[RunsUnderCondition, ...], settings: StatedS
 
 
 def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:
-    orbits = [Orbit(run.name, *_error_and_rate(run, settings)) for run in condition.runs]
+    orbits = [(run.name, *_error_and_rate(run, settings)) for run in condition.runs]
     said = "; ".join(
-        f"{o.name} error up to {plain(_most(o.x), 3)} mm, rate up to {plain(_most(o.y), 3)} mm/s"
-        for o in orbits
+        f"{name} error up to {plain(_most(x), 3)} mm, rate up to {plain(_most(y), 3)} mm/s"
+        for name, x, y in orbits
     )
     return picture(
-        partial(draw_portraits, orbits=orbits, labels=("e [mm]", "de/dt [mm/s]")),
+        partial(draw_portraits, orbits=orbits),
         key=f"tracking-phase-{condition.number}",
         alt=f"Phase portraits of the drive's error, {condition.name}: {said}.",
         caption=f"{condition.name.capitalize()}: rate of the drive's error over the error.",
@@ -190,20 +180,20 @@ def portraits_in(orbits: int) -> float:
     return 0.5 + 2.0 * -(-orbits // _ACROSS) if orbits > 1 else 3.5
 
 
-def draw_portraits(figure: Any, *, orbits: Sequence[Orbit], labels: tuple[str, str]) -> None:
-    """Draw each orbit in a panel with scales of its own, zero as a cross; labels of both axes."""
+def draw_portraits(figure: Any, *, orbits: Sequence[tuple[str, Floats, Floats]]) -> None:
+    """Draw each controller's error and its rate in a panel with its own scales, zero as a cross."""
     across = min(_ACROSS, len(orbits))
     panels = figure.subplots(-(-len(orbits) // across), across, squeeze=False)
     for axes in panels.flat[len(orbits) :]:
         axes.set_axis_off()
-    for axes, orbit in zip(panels.flat, orbits, strict=False):
+    for axes, (name, x, y) in zip(panels.flat, orbits, strict=False):
         axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
         axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.9)
-        kept = kept_cells(orbit.x, orbit.y)
-        axes.plot(orbit.x[kept], orbit.y[kept], color=of_controller(orbit.name), linewidth=0.8)
-        axes.set_title(orbit.name, loc="left", fontsize=9.0, pad=3.0)
+        kept = kept_cells(x, y)
+        axes.plot(x[kept], y[kept], color=of_controller(name), linewidth=0.8)
+        axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
         axes.locator_params(nbins=5)
     for axes in panels[-1]:
-        axes.set_xlabel(labels[0])
+        axes.set_xlabel("e [mm]")
     for axes in panels[:, 0]:
-        axes.set_ylabel(labels[1])
+        axes.set_ylabel("de/dt [mm/s]")

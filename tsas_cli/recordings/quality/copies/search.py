@@ -229,12 +229,12 @@ def _common_stretches(
     both = side_by_side(reader.parts(other.run), reader.parts(source.run), names, shift.seconds)
     found = (
         stretches(
-            part.row,
-            part.samples.moved(-shift.seconds),
-            agreement(part.source, part.samples, tolerance, spline=shift.spline),
+            row,
+            samples.moved(-shift.seconds),
+            agreement(around, samples, tolerance, spline=shift.spline),
             information,
         )
-        for part in both
+        for row, samples, around in both
     )
     against = contradictions(other.run, source.run)
     for span, every in joined(stretch for part in found for stretch in part):
