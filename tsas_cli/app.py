@@ -15,7 +15,8 @@ from tsas_cli.commands.check import check
 from tsas_cli.commands.compare import compare
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.doctor import doctor
-from tsas_cli.commands.effects import effects, explain
+from tsas_cli.commands.effects import effects
+from tsas_cli.commands.explain import explain
 from tsas_cli.commands.export import export
 from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.commands.ingest import ingest
