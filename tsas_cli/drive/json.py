@@ -8,8 +8,8 @@ import numpy as np
 
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
-from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import DriveValues, lag_coefficients
+from tsas_cli.drive.runs import FrequencyResponse
 from tsas_cli.drive.search import DriveSearch, structures
 from tsas_cli.drive.sentences import name_of
 from tsas_cli.identification.estimate import Estimate
