@@ -46,7 +46,7 @@ class SimulationResult(Result):
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
-        """Return the compared to a run."""
+        """Return a simulated run."""
         return recording_of(self.runs, run)
 
     def tables(self) -> list[Table]:
