@@ -17,9 +17,8 @@ from tsas_cli.support.errors import InputError
 
 FEWEST_SAMPLES = 500
 UNEVEN = 0.02  # of a sampling step, by which another one may differ
-STRETCHES = (
-    40  # of a run, for the noise level; the median one is not where the drive swings fastest
-)
+# Of a run, for the noise level; the median one is not where the drive swings fastest.
+STRETCHES = 40
 AT_REST = 0.01  # of the largest speed
 MOVED = 5.0  # times the noise, that x_in has to travel
 RPM_PER_RAD_S = 30.0 / math.pi

@@ -200,9 +200,8 @@ def _by_file(folders: Sequence[Location], several: Set[str]) -> dict[str, list[L
     known = (MANIFEST_FILE, *(kind.FILE for kind in STAGES))
     found: dict[str, list[Location]] = {}
     for folder in folders:
-        looked_for = (
-            known if isinstance(folder, Path) else (MANIFEST_FILE,)
-        )  # stages write to local folders
+        # Stages write to local folders.
+        looked_for = known if isinstance(folder, Path) else (MANIFEST_FILE,)
         files = [file for file in looked_for if (folder / file).is_file()]
         if not files:
             raise InputError(

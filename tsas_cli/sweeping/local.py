@@ -33,9 +33,7 @@ def in_processes(
     finally:
         crew.stopped = True
         pool.shutdown(wait=False, cancel_futures=True)
-        while any(
-            future.running() for future in numbers
-        ):  # a thread may be about to start a worker
+        while any(future.running() for future in numbers):  # it may be about to start a worker
             crew.kill()
             time.sleep(0.05)
         pool.shutdown()

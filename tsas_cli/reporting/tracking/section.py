@@ -107,7 +107,7 @@ _COLUMNS = (
 
 
 def _scores(tracking: TrackingFile) -> Table:
-    """Return the _scores, with its spread where there is more than one seed."""
+    """Return the scores, with their spread where there is more than one seed."""
     seeds = tracking.seeds[1] - tracking.seeds[0] + 1
     over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
     rows = tuple(
