@@ -23,7 +23,7 @@ from tests.sweeping.clusters import cluster
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.support.steps import Steps
-from tsas_cli.sweeping.versions import ONE_THREAD
+from tsas_cli.sweeping.outcome import ONE_THREAD
 
 DATASET = Path(__file__).parents[1] / "datasets" / "paper-groups"
 OPTIONS: dict[str, Any] = {"dynamics": "lugre", "nodes": 300}

@@ -10,10 +10,8 @@ from typing import Any
 
 from docs.examples import ROOT, output_of
 from docs.manual.colours import palettes
-from tsas_cli.reporting.before_after import draw_loop, draw_residuals
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import legend
-from tsas_cli.reporting.fits import best_fits, near
+from tsas_cli.reporting.before_after import best_fits, draw_loop, draw_residuals, near
+from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import read_inputs
 
 OUT = Path(__file__).parent / "before-after.svg"

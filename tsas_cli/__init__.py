@@ -17,9 +17,8 @@ if TYPE_CHECKING:
     from tsas_cli.stages.compare import compare
     from tsas_cli.stages.diagnose import diagnose
     from tsas_cli.stages.export import export
-    from tsas_cli.stages.guess import guess
     from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
-    from tsas_cli.stages.ingest import ingest
+    from tsas_cli.stages.ingest import guess, ingest
     from tsas_cli.stages.plan import plan
     from tsas_cli.stages.predict import predict
     from tsas_cli.stages.read import read, read_drive, read_model
@@ -69,6 +68,7 @@ _ELSEWHERE = {
     "Steps": "tsas_cli.support.steps",
     "close_loop": "tsas_studies.closing.close_loop",
     "explain": "tsas_cli.stages.catalogue",
+    "guess": "tsas_cli.stages.ingest",
     "read_drive": "tsas_cli.stages.read",
     "read_model": "tsas_cli.stages.read",
     "reproduce": "tsas_studies.reproduction.reproduce",

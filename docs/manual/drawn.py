@@ -14,8 +14,7 @@ from tsas_cli.physics.response import Prediction, simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
-from tsas_cli.reporting.decimation import kept_cells
-from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.drawing import kept_cells, picture
 from tsas_studies.reproduction.rig import quasi_static_rig
 
 Floats = npt.NDArray[np.float64]

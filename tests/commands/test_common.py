@@ -2,8 +2,7 @@ import json
 
 import pytest
 
-from tsas_cli.commands.common import show
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import progress, show
 
 TABLES = [
     ("two runs", ("run", "noise"), [("a", "0.1 N"), ("b\x1b[2J", "12.5 N")]),

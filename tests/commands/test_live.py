@@ -22,8 +22,7 @@ from tests.commands.viewing import (
     started,
 )
 from tests.reporting.made_folders import make_dataset
-from tsas_cli.reporting.viewer.child import program
-from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.child import LOOPBACK, free_ports, program
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 DONE = "all runs are shown and written"

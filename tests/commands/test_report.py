@@ -7,7 +7,7 @@ import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
 from tsas_cli.reporting.pdf import PDF_MARK
-from tsas_cli.verifying.seal import sealed
+from tsas_cli.verifying.claims import sealed
 
 
 @pytest.fixture(scope="module")

@@ -36,7 +36,7 @@ OTHERS = ("doctor", "init", "view")  # commands about the program itself and its
 STAGES = [name for name in CALLS if name not in OTHERS]
 BAR = """
 import time
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import progress
 with progress("fit", quiet={quiet}) as step:
     step.ahead(2)
     step.say("f_in is not recorded")
@@ -225,7 +225,7 @@ def test_under_make_the_first_stop_stops_a_search(searched, tmp_path):
 
 def test_kernels_that_are_compiled_are_said(tmp_path):
     program = """
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import progress
 with progress("fit", quiet=False):
     from tsas_cli.numerics.elementary import exponential
     exponential(1.0)

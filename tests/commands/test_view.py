@@ -23,8 +23,8 @@ from tests.commands.viewing import (
 )
 from tests.reporting.made_folders import make_dataset, make_simulation
 from tests.reporting.viewer.streams import make_stream
+from tsas_cli.reporting.viewer.child import free_ports
 from tsas_cli.reporting.viewer.open import SCREENS
-from tsas_cli.reporting.viewer.ports import free_ports
 
 LOOPBACK = "0100007F"  # 127.0.0.1, as /proc/net writes it
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")

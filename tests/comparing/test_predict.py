@@ -11,7 +11,7 @@ import tomlkit
 import tsas_cli as tsas
 from tests.comparing.made import NOMINAL, ROUGH, calibrated, recorded
 from tests.counted import Counted
-from tsas_cli.recordings.written import columns_of
+from tsas_cli.recordings.writing import columns_of
 
 CHANNELS = ["f_in_N", "f_out_N", "x_out_mm"]
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tsas_cli.comparing.sides import Side
-from tsas_cli.comparing.values import difference, overlap, pairs, same_runs
+from tsas_cli.comparing.sides import Side, difference, overlap, pairs, same_runs
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 

@@ -12,10 +12,13 @@ from tsas_cli.drive.fit import (
     replace_defaults,
     response_at,
 )
-from tsas_cli.drive.frequency_response import FrequencyResponse, frequency_response
-from tsas_cli.drive.harmonic_drive import DriveValues, gear_response, linear_response
-from tsas_cli.drive.runs import DriveRun
-from tsas_cli.drive.transfer_function import bode_curve, poles
+from tsas_cli.drive.harmonic_drive import (
+    DriveValues,
+    gear_response,
+    linear_response,
+)
+from tsas_cli.drive.json import bode_curve, poles
+from tsas_cli.drive.runs import DriveRun, FrequencyResponse, frequency_response
 from tsas_cli.numerics.linear_response import sampled
 
 STEP_S = 5e-3

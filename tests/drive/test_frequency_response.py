@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.drive.frequency_response import FrequencyResponse, frequency_response
-from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.runs import DriveRun, FrequencyResponse, frequency_response
 from tsas_cli.numerics.linear_response import sampled
 
 

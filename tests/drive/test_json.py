@@ -8,9 +8,9 @@ import pytest
 from tests.drive.verdicts import TOLD, cause, verdict
 from tsas_cli.drive import json as dj
 from tsas_cli.drive.estimates import DataSheet
-from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import DriveValues
-from tsas_cli.drive.tables import tables
+from tsas_cli.drive.json import tables
+from tsas_cli.drive.runs import FrequencyResponse
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records.base import parameters_of
 from tsas_cli.records.drive import DriveFile, DriveRunErrors, Kinematics, TriedStructure

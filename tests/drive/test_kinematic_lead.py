@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tsas_cli.drive.estimates import DataSheet, drive_sheet
-from tsas_cli.drive.kinematic_lead import lead_notes
+from tsas_cli.drive.sentences import lead_notes
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.errors import InputError

@@ -120,7 +120,7 @@ def serve() -> None:
     import scipy.io  # noqa: F401
 
     import tsas_studies.commands  # noqa: F401
-    from tsas_cli.stages import calibrate, check, compare, guess, ingest, report  # noqa: F401
+    from tsas_cli.stages import calibrate, check, compare, ingest, report  # noqa: F401
 
     pint.UnitRegistry()
     for line in sys.stdin:

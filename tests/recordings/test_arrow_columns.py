@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tsas_cli.recordings.arrow_columns import column_of, floats_from
+from tsas_cli.recordings.parquet_files import column_of, floats_from
 
 NAN = float("nan")
 
@@ -51,7 +51,7 @@ def test_text_is_refused():
 def test_pandas_is_not_loaded_for_it():
     call = (
         "import sys, numpy as np, pyarrow as pa\n"
-        "from tsas_cli.recordings.arrow_columns import *\n"
+        "from tsas_cli.recordings.parquet_files import *\n"
         "column = column_of(np.array([1.0, np.nan]))\n"
         "floats_from(pa.chunked_array([column]))\n"
         "assert 'pandas' not in sys.modules"

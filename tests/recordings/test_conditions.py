@@ -3,8 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from tsas_cli.recordings.conditions import run_conditions
-from tsas_cli.recordings.ingest_map import RunMap
+from tsas_cli.recordings.ingest_map import RunMap, run_conditions
 from tsas_cli.support.errors import InputError
 
 PATH = Path("/rig/L_4/bend180_0,5Hz.csv")
@@ -104,7 +103,7 @@ def test_what_is_wrong_is_reported(content, message):
 
 
 def test_a_pattern_that_would_look_for_ever_is_given_up(monkeypatch):
-    monkeypatch.setattr("tsas_cli.recordings.conditions.SEARCH_TIMEOUT_S", 0.2)
+    monkeypatch.setattr("tsas_cli.recordings.ingest_map.SEARCH_TIMEOUT_S", 0.2)
     with pytest.raises(
         InputError, match=r"has not finished searching 'rig/a+' after 0.2 s; nested"
     ):

@@ -5,10 +5,9 @@ import pytest
 
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.guess.text import map_text
-from tsas_cli.recordings.ingest import ingest_files
+from tsas_cli.recordings.ingest import ingest_files, merged
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.recordings.readers.table import ColumnTable, whole
-from tsas_cli.recordings.repeated_times import merged
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.support.errors import InputError
 

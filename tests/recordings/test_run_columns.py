@@ -5,7 +5,7 @@ import pytest
 
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run, read_recording
-from tsas_cli.recordings.written import columns_of
+from tsas_cli.recordings.writing import columns_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 

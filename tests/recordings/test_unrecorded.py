@@ -1,8 +1,8 @@
 """What cannot be judged without a channel is said once, with the runs that lack it."""
 
 from tests.counted import Counted
-from tsas_cli.recordings.unrecorded import unrecorded
 from tsas_cli.stages.calibrate import calibrate
+from tsas_cli.stages.check import unrecorded
 
 ALL = ("time_s", "x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 

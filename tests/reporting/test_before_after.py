@@ -15,10 +15,9 @@ from tests.reporting.made_folders import (
     off_at_the_end,
     write_predictions,
 )
-from tsas_cli.reporting import fits
-from tsas_cli.reporting.before_after import draw_before_after, pictures
+from tsas_cli.reporting import before_after
+from tsas_cli.reporting.before_after import ShownFit, draw_before_after, pictures
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.fits import ShownFit
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import read_inputs
 
@@ -88,11 +87,11 @@ def test_of_many_cycles_those_with_the_largest_gain_are_taken():
     time_s = np.arange(8000) / 100.0
     x = np.sin(2.0 * np.pi * time_s / 8.0)  # ten cycles
     off = np.where((time_s > 50.0) & (time_s < 54.0), 1.0, 0.0)
-    start, end = fits._cycles(fit_of(x, x, x + off, x))
+    start, end = before_after._cycles(fit_of(x, x, x + off, x))
     assert start < 50.0
     assert end > 54.0
     assert end - start == pytest.approx(24.0, abs=0.1)
-    whole = fits._cycles(fit_of(x[:2000], x[:2000], x[:2000], x[:2000]))
+    whole = before_after._cycles(fit_of(x[:2000], x[:2000], x[:2000], x[:2000]))
     assert whole == (-np.inf, np.inf)
 
 

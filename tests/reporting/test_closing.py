@@ -18,9 +18,8 @@ from tests.reporting.made_folders import (
 from tests.reporting.test_page import Outline, headings
 from tests.reporting.test_tracking import cells
 from tsas_cli.records.closing import ClosingFile
-from tsas_cli.reporting import colours
-from tsas_cli.reporting.closing import call
-from tsas_cli.reporting.closing.errors import MODELS, draw_dots
+from tsas_cli.reporting import colours, repeat
+from tsas_cli.reporting.closing import MODELS, draw_dots
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
@@ -143,7 +142,7 @@ def test_the_command_asks_for_the_same_cases(tmp_path, hide, option):
     names = ["backlash"] if hide else ["backlash", "free_tendon"]
     made = {("hidden" if hide else name): CASES[name] for name in names}
     inputs = read_inputs([make_closing(tmp_path / "loop", made)])
-    options = list(call.options(inputs.get(ClosingFile)))
+    options = list(repeat.closing_options(inputs.get(ClosingFile)))
     assert options == [*option, "--seeds", "5", "--seed", "3"]
     again = chosen(None, [option[1]]) if hide else chosen(option[1].split(","), [])
     assert [case.name for case in again] == list(made)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.reporting.decimation import kept_cells, kept_samples
+from tsas_cli.reporting.drawing import kept_cells, kept_samples
 
 
 def test_a_single_spike_and_the_last_sample_are_kept():

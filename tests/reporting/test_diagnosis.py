@@ -14,8 +14,8 @@ from tests.reporting.test_page import Outline, headings
 from tsas_cli.effects import EFFECTS
 from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.diagnosis.gains import draw_gains
 from tsas_cli.reporting.diagnosis.maps import Panel, draw_residual_map
+from tsas_cli.reporting.diagnosis.section import draw_gains
 from tsas_cli.reporting.diagnosis.similarity import draw_similarity
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.numbers import plain
@@ -78,7 +78,7 @@ def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
         "Each of 4 runs is predicted",
         "What was tried",
     ]
-    places = [text.index(part) for part in order]
+    places = [text.index(gains_part) for gains_part in order]
     assert places == sorted(places)
     assert "indistinguishable from" not in text
 

@@ -23,11 +23,10 @@ from tests.reporting.pages import chromium
 from tests.reporting.test_page import without_script
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, anchor
+from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, anchor, rendered
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.reporting.rendered import rendered
 
 RUN = "\"><img src=x onerror=hit()> '`$(touch x)`;&amp; $x$"  # a run's id cannot hold a slash
 EVIL = (

@@ -1,7 +1,7 @@
 import numpy as np
 
 from tsas_cli.records.base import PhaseSegment
-from tsas_cli.reporting.phases import phase_of_samples
+from tsas_cli.reporting.names import phase_of_samples
 
 
 def test_each_sample_has_the_phase_of_its_segment_up_to_and_with_its_end():

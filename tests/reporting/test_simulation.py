@@ -19,9 +19,9 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
 from tsas_cli.records.diagnosis import EXTENDED_MODEL
 from tsas_cli.reporting import simulation
-from tsas_cli.reporting.calibration import parameters
+from tsas_cli.reporting.calibration import parameters_section
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.simulated import rms, simulated_models
+from tsas_cli.reporting.simulation import rms, simulated_models
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def test_the_parameters_of_the_extended_model_stand_with_interval_unit_and_bound
     dataset, diagnosed, tmp_path
 ):
     inputs = read_inputs([diagnosed, make_calibration(dataset, tmp_path / "cal", ["Mind."])])
-    made = parameters.section(inputs)
+    made = parameters_section(inputs)
     assert [table.caption for table in made.tables] == [
         "The extended model",
         "The calibrated model",

@@ -16,7 +16,7 @@ from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels
+from tsas_cli.reporting.tracking.runs import TimeCurve, draw_panels
 from tsas_cli.support.errors import InputError
 
 PICTURES = ("force", "error", "phase", "adaptation", "effort")

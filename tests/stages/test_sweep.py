@@ -13,8 +13,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.support.files import sha256_of
 from tsas_cli.sweeping.folder import sweep_folder
-from tsas_cli.sweeping.outcome import run_task
-from tsas_cli.sweeping.versions import ONE_THREAD
+from tsas_cli.sweeping.outcome import ONE_THREAD, run_task
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors

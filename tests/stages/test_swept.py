@@ -5,13 +5,12 @@ import shutil
 
 import pytest
 
-from tsas_cli.stages.swept import WORK, options_of
+from tsas_cli.stages.sweep import WORK, options_of
 from tsas_cli.support.files import sha256_of
 from tsas_cli.sweeping.folder import sweep_folder, what_is_done
-from tsas_cli.sweeping.outcome import run_task
+from tsas_cli.sweeping.outcome import ONE_THREAD, run_task
 from tsas_cli.sweeping.plan import read_plan
 from tsas_cli.sweeping.tasks import tasks_of
-from tsas_cli.sweeping.versions import ONE_THREAD
 
 
 @pytest.fixture

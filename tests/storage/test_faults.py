@@ -9,7 +9,7 @@ import pytest
 import tsas_cli as tsas
 from tests.storage.conftest import HOST, forget
 from tests.storage.faults import FaultyWire
-from tsas_cli.recordings import checked, storage
+from tsas_cli.recordings import parquet_files, storage
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.storage_failures import TIMEOUT
 from tsas_cli.recordings.writing import write_dataset
@@ -82,7 +82,7 @@ def test_a_shorter_answer_than_asked_for_is_asked_again(broken, bucket, dataset,
     broken.faulty("lie", 2, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
     assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
     forget()
-    checked._CACHE.clear()
+    parquet_files._CACHE.clear()
     broken.faulty("lie", 1000, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
     with pytest.raises(InputError, match="breaks off"):
         tsas.read(f"{bucket}/bench")["a"]

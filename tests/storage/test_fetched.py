@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
-from tsas_cli.recordings import checked, storage
+from tsas_cli.recordings import parquet_files, storage
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run
 from tsas_cli.recordings.storage import location_of
@@ -80,7 +80,9 @@ def test_a_recording_is_fetched_once_and_whole(large, wire):
 
 def test_of_what_was_fetched_the_latest_is_kept(large, tmp_path, bucket, wire, monkeypatch):
     folder, address = large
-    monkeypatch.setattr(checked, "CACHE_BYTES", 1.5 * (folder / "runs/a.parquet").stat().st_size)
+    monkeypatch.setattr(
+        parquet_files, "CACHE_BYTES", 1.5 * (folder / "runs/a.parquet").stat().st_size
+    )
     tsas.upload(folder, f"{bucket}/other")
     for _ in range(2):
         wire.reset()
@@ -92,7 +94,7 @@ def test_of_what_was_fetched_the_latest_is_kept(large, tmp_path, bucket, wire, m
 
 def test_a_recording_larger_than_one_request_is_whole(large, wire, monkeypatch):
     folder, address = large
-    monkeypatch.setattr(checked, "REQUEST_BYTES", 1_000_000)
+    monkeypatch.setattr(parquet_files, "REQUEST_BYTES", 1_000_000)
     there, here = (read_dataset(place)["a"].columns for place in (address, folder))
     np.testing.assert_array_equal(there["f_out_N"], here["f_out_N"])
     size = (folder / "runs/a.parquet").stat().st_size
@@ -117,10 +119,10 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
 
 def test_where_there_is_no_room_it_is_said(monkeypatch):
     """Of a small recording it was said when the file was flushed: that the output has no room."""
-    assert checked._fetch(Object(), sha256(b"content").hexdigest())[:] == b"content"
-    monkeypatch.setattr(checked.tempfile, "TemporaryFile", Full)
+    assert parquet_files._fetch(Object(), sha256(b"content").hexdigest())[:] == b"content"
+    monkeypatch.setattr(parquet_files.tempfile, "TemporaryFile", Full)
     with pytest.raises(InputError, match="cannot be stored while it is read") as caught:
-        checked._fetch(Object(), sha256(b"content").hexdigest())
+        parquet_files._fetch(Object(), sha256(b"content").hexdigest())
     assert caught.value.where == tempfile.gettempdir()
 
 

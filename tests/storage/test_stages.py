@@ -6,7 +6,7 @@ import pytest
 import tsas_cli as tsas
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.reporting.viewer.stream_of import stream_of
+from tsas_cli.reporting.stream.stream import shown_stream
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.replacing import SUMS
 
@@ -73,7 +73,7 @@ def test_report_and_view_find_the_dataset_again(both, tmp_path):
         )
         assert address in there
         assert there.replace(address, str(local)).replace("/b/", "/a/") == here
-    with stream_of([location_of(address), tmp_path / "b" / "simulate"]) as (stream, notes):
+    with shown_stream([location_of(address), tmp_path / "b" / "simulate"]) as (stream, notes):
         assert stream.stat().st_size > 0
         assert notes == []
 

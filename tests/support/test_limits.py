@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
-from tsas_cli.support import limits, memory
+from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -75,9 +75,9 @@ def test_columns_are_counted_and_their_names_measured(tmp_path):
 
 
 def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 1_000_000_000)
-    memory.fits(tmp_path / "a.mat", 1_000_000_000)
-    line = refusal(memory.fits, tmp_path / "a.mat", 2_000_000_000)
+    monkeypatch.setattr(limits, "available", lambda: 1_000_000_000)
+    limits.fits(tmp_path / "a.mat", 1_000_000_000)
+    line = refusal(limits.fits, tmp_path / "a.mat", 2_000_000_000)
     assert line.endswith(
         "needs 2 GB of memory, and 1 GB are free; use a larger machine, or export it as CSV or "
         "Parquet"
@@ -85,7 +85,7 @@ def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
 
 
 def test_the_memory_that_is_there_is_some(tmp_path):
-    assert 10_000_000 < memory.available() < 1 << 50
+    assert 10_000_000 < limits.available() < 1 << 50
 
 
 @pytest.mark.parametrize("packed", ["snappy", "zstd"])

@@ -18,7 +18,7 @@ import pytest
 import tsas_cli as tsas
 from tests.sweeping.clusters import HERE, ROOT, cluster, wait_for
 from tsas_cli.sweeping.cluster import _refuse, _refuse_workers, on_cluster
-from tsas_cli.sweeping.versions import versions
+from tsas_cli.sweeping.outcome import versions
 
 pytestmark = [
     pytest.mark.skipif(

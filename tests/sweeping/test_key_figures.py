@@ -9,7 +9,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.records.calibration import CalibrationFile, ChannelError, NominalFit
 from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.sweeping.key_figures import estimates, figures
-from tsas_cli.sweeping.tables import printed, write_rows
+from tsas_cli.sweeping.sweep import printed, write_rows
 
 FRICTION = Estimate("friction_coefficient", 0.12, "1", "fitted", None, 0.005, 0.11, 0.13)
 GIVEN = Estimate("tendon_stiffness_N", 5e4, "N", "data sheet")

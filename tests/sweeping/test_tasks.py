@@ -7,7 +7,7 @@ import pytest
 
 from tests.sweeping.test_plan import SIMULATE
 from tsas_cli.recordings.dataset import CONDITIONS
-from tsas_cli.stages.swept import options_of
+from tsas_cli.stages.sweep import options_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping import tasks as module
 from tsas_cli.sweeping.plan import read_plan

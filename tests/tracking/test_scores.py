@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.tracking.scores import over_seeds, score
+from tsas_cli.tracking.track import over_seeds, score
 
 WANTED = np.array([30.0, 40.0, 50.0, 40.0])
 ACTUAL = np.array([30.3, 39.0, 50.0, 42.0])

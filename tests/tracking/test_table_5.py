@@ -1,9 +1,8 @@
 """What the paper prints stands beside a run only where the run is made as the paper's is."""
 
 from tsas_cli.controllers.pid import PidSettings
-from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
+from tsas_cli.tracking.conditions import Condition, disturbed, printed_rmse, proximal_spring
 from tsas_cli.tracking.settings import ReferenceSettings, Settings, printed_gains
-from tsas_cli.tracking.table_5 import printed_rmse
 
 QUIET = Condition("undisturbed")
 

@@ -8,7 +8,7 @@ import pytest
 
 import tsas_cli as tsas
 from tests.verifying.test_verify import chain, made  # noqa: F401 # fixtures
-from tsas_cli.verifying.changed import change_notes
+from tsas_cli.verifying.claims import change_notes
 
 TOLD = "Changed since it was written: model/simulation.json."
 

@@ -1,23 +1,27 @@
 """The entry of one manifest or one diagnosis in the index."""
 
-from collections.abc import Callable, Mapping, Sequence
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from glob import escape
 from pathlib import Path
+from typing import NamedTuple
 
 import duckdb
 import pyarrow as pa
 import pyarrow.parquet as pq
 from duckdb import DuckDBPyConnection
 
-from tsas_cli.collection.found import DIAGNOSIS, MANIFEST
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import RigSheet, Run, parse, read_manifest
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
+from tsas_cli.support.limits import is_text
 
+MANIFEST, DIAGNOSIS = "dataset.toml", "diagnosis.json"
+_MOST = 2**63 - 1  # of an integer in the index; as a time, the year 2262
 Entry = dict[str, object]  # by the names of `SCHEMA`, which checks it
 RIG = tuple(RigSheet.model_fields)
 TEXTS = pa.list_(pa.string())
@@ -58,7 +62,6 @@ SCHEMA = pa.schema(
         "causes": TEXTS,
     }
 )
-
 # pyarrow provides these numbers too, but ends the process if the footer is damaged.
 TIMES = """
 SELECT file_name,
@@ -70,6 +73,21 @@ SELECT file_name,
     )
 FROM parquet_metadata($files) GROUP BY file_name
 """
+
+
+class FileKey(NamedTuple):
+    """Location of a file: number of the root folder, folder relative to it, and name."""
+
+    root: int
+    folder: str
+    file: str
+
+
+class Stamp(NamedTuple):
+    """Evidence of a change of a file: time of its last modification [ns] and size [bytes]."""
+
+    mtime_ns: int
+    size: int
 
 
 def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> Entry:
@@ -196,3 +214,47 @@ _KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
 def _utc(at: datetime) -> datetime:
     """Return a time without zone: converted to UTC if it has one, else unchanged."""
     return at if at.tzinfo is None else at.astimezone(UTC).replace(tzinfo=None)
+
+
+def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]:
+    """Return the manifests and diagnoses below folders, and the folders that cannot be read.
+
+    Hidden folders, links to folders and the `runs` of a dataset are skipped.
+    """
+    found: dict[FileKey, Stamp] = {}
+    problems: list[str] = []
+    for number, root in enumerate(roots):
+        if not is_text(root):
+            problems.append(f"{root}: its name is not UTF-8; rename it")
+            continue
+        pending = [""]
+        while pending:
+            folder = pending.pop()
+            try:
+                pending += _scanned(root, number, folder, found, problems)
+            except OSError as error:
+                problems.append(f"{root / folder}: cannot be read ({error.strerror})")
+    return found, problems
+
+
+def _scanned(
+    root: Path, number: int, folder: str, found: dict[FileKey, Stamp], problems: list[str]
+) -> Iterator[str]:
+    """Add the files of one folder to `found`; return its subfolders."""
+    here = f"{folder}/" if folder else ""
+    inner = []
+    with os.scandir(f"{root}/{folder}") as entries:
+        for entry in entries:
+            name = entry.name
+            if name in (MANIFEST, DIAGNOSIS):
+                if entry.is_file():
+                    state = entry.stat()
+                    changed_ns = max(-_MOST, min(state.st_mtime_ns, _MOST))
+                    found[FileKey(number, folder, name)] = Stamp(changed_ns, state.st_size)
+            elif not name.startswith(".") and entry.is_dir(follow_symlinks=False):
+                if name.isprintable():
+                    inner.append(name)
+                else:
+                    problems.append(f"{root / folder / name}: a name with control characters")
+    dataset = FileKey(number, folder, MANIFEST) in found
+    return (f"{here}{name}" for name in inner if not (dataset and name == "runs"))

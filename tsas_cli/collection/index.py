@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tsas_cli.collection.found import FileKey, Stamp, files_below
+from tsas_cli.collection.entries import FileKey, Stamp, files_below
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import own_file, sha256_of
 from tsas_cli.support.steps import Steps

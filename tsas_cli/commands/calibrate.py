@@ -7,7 +7,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.progress import progress
 
 
 def calibrate(
@@ -29,7 +28,7 @@ def calibrate(
     as_json: common.Json = False,
 ) -> None:
     """Fit the nominal model and the stiffness km of each phase to a dataset."""
-    with progress("calibrate", quiet=quiet) as step, common.with_stream(rrd, step):
+    with common.progress("calibrate", quiet=quiet) as step, common.with_stream(rrd, step):
         result = tsas.calibrate(
             dataset,
             out=out,

@@ -7,7 +7,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.progress import progress
 from tsas_cli.support.errors import InputError
 
 
@@ -25,6 +24,6 @@ def check(
     """Check recordings for faults before a model is fitted."""
     if rrd and out is None:
         raise InputError("--rrd has no folder to write to", remedy="set --out")
-    with progress("check", quiet=quiet) as step, common.with_stream(rrd, step):
+    with common.progress("check", quiet=quiet) as step, common.with_stream(rrd, step):
         result = tsas.check(dataset, out=out, runs=common.names(runs), force=force, step=step)
     common.present(result, quiet=quiet, as_json=as_json)

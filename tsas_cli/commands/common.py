@@ -1,22 +1,36 @@
-"""Common options of the subcommands, and the printing of results and hints."""
+"""Common options of the subcommands, their progress bar, and the printing of results and hints."""
 
+import logging
+import os
 import shutil
 import sys
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tsas_cli.commands.completion import run_ids
-from tsas_cli.support.errors import printable
+from tsas_cli.support.errors import InputError, printable
+from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.support.stopping import asked_first
 from tsas_cli.support.text_table import table_text
 
 if TYPE_CHECKING:
-    from tsas_cli.records.result import Result
-    from tsas_cli.support.steps import Steps
+    from rich.progress import Progress
 
+    from tsas_cli.records.result import Result
+    from tsas_cli.reporting.stream.live import LiveStream
+
+ENDS = (
+    "Ctrl-C: the search ends after this step, and what it has found is written; "
+    "Ctrl-C again stops at once and writes nothing"
+)
+Live = Annotated[
+    bool, typer.Option("--live", help="Show each run in the viewer as soon as it is computed.")
+]
 DatasetFolder = Annotated[
     str, typer.Argument(metavar="DATASET", help="A dataset's folder, or its address (s3://…).")
 ]
@@ -42,6 +56,67 @@ Force = Annotated[bool, typer.Option("--force", help="Replace an existing output
 Rrd = Annotated[bool, typer.Option("--rrd", help="Also write DIR/stream.rrd for tsas view.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+
+
+class Bar(Steps):
+    """A progress bar, whose total grows with the announced steps.
+
+    The remaining time is that of the steps that were announced together, at their pace: those
+    before may have been of another kind.
+    """
+
+    def __init__(self, shown: "Progress", label: str) -> None:
+        self.shown, self.label, self.total, self.done = shown, label, 0, 0
+        self.before, self.since_s = 0, 0.0  # steps, and time, before those that are under way
+        self.task = shown.add_task(label, total=None, left="")
+
+    def ahead(self, pieces: int) -> None:
+        """Add steps to the total."""
+        self.before, self.since_s = self.done, self._elapsed_s()
+        self.total += pieces
+        self._show()
+
+    def __call__(self) -> None:
+        """Count one completed step."""
+        self.done += 1
+        self._show()
+
+    def doing(self, what: str) -> None:
+        """Show what is done from now on."""
+        self.shown.update(self.task, description=printable(f"{self.label}: {what}"))
+
+    def say(self, sentence: str) -> None:
+        """Print a sentence above the bar."""
+        self.shown.console.print(printable(sentence), markup=False, highlight=False)
+
+    def end(self) -> None:
+        """Ask a search to end at its next step."""
+        self.ended = True
+        self.say(ENDS)
+
+    def _elapsed_s(self) -> float:
+        return self.shown.tasks[0].elapsed or 0.0
+
+    def _show(self) -> None:
+        """Draw the bar, with the remaining time at the pace so far."""
+        rest, left = self.total - self.done, ""
+        if self.done > self.before and rest > 0:
+            pace_s = (self._elapsed_s() - self.since_s) / (self.done - self.before)
+            left = f"about {timedelta(seconds=round(pace_s * rest))} left"
+            left += " of these" if self.before else ""
+        self.shown.update(self.task, total=self.total or None, completed=self.done, left=left)
+
+
+class _Said(logging.Handler):
+    """What the package logs, above the bar."""
+
+    def __init__(self, bar: Bar) -> None:
+        super().__init__()
+        self.bar = bar
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a record."""
+        self.bar.say(record.getMessage())
 
 
 def names(listed: str | None) -> list[str] | None:
@@ -109,3 +184,87 @@ def hint(text: str, *, quiet: bool, as_json: bool) -> None:
     """Print a hint on standard error, if it is a terminal."""
     if sys.stderr.isatty() and not (quiet or as_json):
         print(text, file=sys.stderr)
+
+
+def not_shown(*run: object) -> None:
+    """Ignore a run."""
+    del run
+
+
+@contextmanager
+def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | None"]:
+    """Open the viewer, yield its stream, and wait until it is closed; yield None without `live`.
+
+    Messages go to standard error: standard output holds the stage's result only.
+    """
+    if not live:
+        yield None
+        return
+    from tsas_cli.reporting.stream.live import live_stream
+    from tsas_cli.reporting.viewer.open import has_screen, note_once, opened
+    from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
+
+    with cleaned_up_when_stopped(), opened(in_browser=not has_screen()) as viewer:
+        _report(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
+        computed, failure = False, None
+        try:
+            with live_stream(viewer.proxy, name) as stream:
+                yield stream
+                failure = stream.failure
+                computed = True
+        except InputError as error:
+            if not computed:
+                raise
+            failure = error
+        if failure is not None:
+            _report(f"some runs were not shown, but all are written: {failure.line()}", quiet=quiet)
+            return
+        sys.stdout.flush()
+        end = "Ctrl-C" if viewer.page else "close the window or press Ctrl-C"
+        _report(f"all runs are shown and written; {end} to end the viewer", quiet=quiet)
+        with until_stopped():
+            viewer.child.wait()
+
+
+def _report(*sentences: str, quiet: bool) -> None:
+    for sentence in sentences:
+        if sentence and not quiet:
+            print(f"- {sentence}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def progress(label: str, *, quiet: bool, endable: bool = False) -> Iterator[Steps]:
+    """Show a bar while a stage runs, unless it is quiet; yield the receiver of its steps.
+
+    Where the stage is `endable`, the first Ctrl-C ends its search; not under make, which removes
+    the target of a recipe that is stopped.
+    """
+    if quiet:
+        logging.getLogger("tsas").setLevel(logging.ERROR)
+    if quiet or not sys.stderr.isatty():
+        yield NO_PROGRESS
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=20),
+        MofNCompleteColumn(separator=" of "),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
+        bar = Bar(shown, label)
+        log, said = logging.getLogger("tsas"), _Said(bar)
+        level = log.level
+        log.setLevel(logging.INFO)
+        log.addHandler(said)
+        try:
+            with (
+                asked_first(bar.end) if endable and "MAKELEVEL" not in os.environ else nullcontext()
+            ):
+                yield bar
+        finally:
+            log.removeHandler(said)
+            log.setLevel(level)

@@ -4,7 +4,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.progress import progress
 from tsas_cli.support.stopping import EXIT_CODE
 
 
@@ -21,7 +20,7 @@ def diagnose(
 ) -> None:
     """Locate the residuals of the simulation, name their cause, and fit the extended model."""
     with (
-        progress("diagnose", quiet=quiet, endable=True) as step,
+        common.progress("diagnose", quiet=quiet, endable=True) as step,
         common.with_stream(rrd, step),
     ):
         result = tsas.diagnose(

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from tsas_cli.commands.common import Json, Quiet, show
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Json, Quiet, progress, show
 
 if TYPE_CHECKING:
     from tsas_cli.installation.machine import Ability

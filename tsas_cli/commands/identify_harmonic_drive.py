@@ -6,7 +6,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.progress import progress
 
 
 def identify_harmonic_drive(
@@ -27,7 +26,7 @@ def identify_harmonic_drive(
     as_json: common.Json = False,
 ) -> None:
     """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
-    with progress("identify", quiet=quiet) as step, common.with_stream(rrd, step):
+    with common.progress("identify", quiet=quiet) as step, common.with_stream(rrd, step):
         result = tsas.identify_harmonic_drive(
             dataset, out=out, speed=speed, runs=common.names(runs), force=force, step=step
         )

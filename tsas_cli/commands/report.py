@@ -6,8 +6,7 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Force, Json, Quiet, present
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Force, Json, Quiet, present, progress
 
 
 def report(

@@ -6,9 +6,8 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Json, Quiet, names, present
+from tsas_cli.commands.common import Json, Quiet, names, present, progress
 from tsas_cli.commands.completion import run_columns, sort_columns
-from tsas_cli.commands.progress import progress
 from tsas_cli.support.errors import InputError
 
 

@@ -7,8 +7,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.live import Live, not_shown, watched
-from tsas_cli.commands.progress import progress
 
 
 def simulate(
@@ -32,15 +30,15 @@ def simulate(
     ] = None,
     runs: common.ChosenRuns = None,
     rrd: common.Rrd = False,
-    live: Live = False,
+    live: common.Live = False,
     force: common.Force = False,
     quiet: common.Quiet = False,
     as_json: common.Json = False,
 ) -> None:
     """Simulate every run with a model, and compute its residual."""
     data = tsas.read(dataset, runs=common.names(runs))
-    with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
-        with progress("simulate", quiet=quiet) as step, common.with_stream(rrd, step):
+    with common.watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
+        with common.progress("simulate", quiet=quiet) as step, common.with_stream(rrd, step):
             result = tsas.simulate(
                 data,
                 out=out,
@@ -50,6 +48,6 @@ def simulate(
                 nodes=nodes,
                 force=force,
                 step=step,
-                each=partial(stream.simulated, data) if stream else not_shown,
+                each=partial(stream.simulated, data) if stream else common.not_shown,
             )
         common.present(result, quiet=quiet, as_json=as_json)

@@ -7,8 +7,7 @@ from typing import Annotated, Any
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Json, OutFolder, Quiet, present
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Json, OutFolder, Quiet, present, progress
 from tsas_cli.support.errors import InputError
 
 WRONG, DEFECT = 2, 1  # exit codes

@@ -8,8 +8,6 @@ import typer
 import tsas_cli as tsas
 from tsas_cli.commands import common
 from tsas_cli.commands.completion import controllers, references
-from tsas_cli.commands.live import Live, not_shown, watched
-from tsas_cli.commands.progress import progress
 
 
 def track(
@@ -66,14 +64,14 @@ def track(
     seeds: Annotated[int | None, typer.Option(min=1, help="Number of noise seeds.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
     rrd: common.Rrd = False,
-    live: Live = False,
+    live: common.Live = False,
     force: common.Force = False,
     quiet: common.Quiet = False,
     as_json: common.Json = False,
 ) -> None:
     """Track a reference of the distal tension with controllers that measure x_in only."""
-    with watched(live, "tracking", quiet=quiet) as stream:
-        with progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
+    with common.watched(live, "tracking", quiet=quiet) as stream:
+        with common.progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
             result = tsas.track(
                 out=out,
                 model=model,
@@ -90,6 +88,6 @@ def track(
                 first_seed=seed,
                 force=force,
                 step=step,
-                each=stream.tracked if stream else not_shown,
+                each=stream.tracked if stream else common.not_shown,
             )
         common.present(result, quiet=quiet, as_json=as_json)

@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Json, Quiet, show
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Json, Quiet, progress, show
 
 _HOW_TO_END = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
 
@@ -31,15 +30,15 @@ def view(
     opens; without a screen, a page is served and its address printed.
     """
     from tsas_cli.recordings.storage import location_of
+    from tsas_cli.reporting.stream.stream import shown_stream
     from tsas_cli.reporting.viewer.open import has_screen, note_once, opened
-    from tsas_cli.reporting.viewer.stream_of import stream_of
     from tsas_cli.support.stopping import until_stopped
 
     in_browser = web or not has_screen()
     with until_stopped(), ExitStack() as stack:
         with progress("stream", quiet=quiet) as step:
             stream, notes = stack.enter_context(
-                stream_of([location_of(path) for path in paths], step)
+                shown_stream([location_of(path) for path in paths], step)
             )
         viewer = stack.enter_context(opened(stream, in_browser=in_browser, port=port))
         talk = () if quiet else (*notes, note_once(), _HOW_TO_END[in_browser])

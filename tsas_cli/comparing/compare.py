@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from tsas_cli.comparing.predictions import Both, ComparedRun, Predictions, error_rows, matched
-from tsas_cli.comparing.sides import Side, read_side
-from tsas_cli.comparing.values import Overlap, overlap, pairs
+from tsas_cli.comparing.sides import Overlap, Side, overlap, pairs, read_side
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
 from tsas_cli.identification.model import Model
@@ -119,7 +118,7 @@ def residual_maps(recordings: list[Both]) -> dict[str, Maps]:
     """Return under `a` and `b`, per channel and signal, bins with mean and scatter of the error.
 
     The error is measured less simulated, in units of the channel's noise; the bins hold about as
-    many samples of both sides together. Taken are the recordings that both sides one to; where
+    many samples of both sides together. Taken are the recordings that both sides answer to; where
     there is none, each side's own. A channel or signal that one side lacks is left out.
     """
     shared = [both for both in recordings if both.a and both.b] or recordings

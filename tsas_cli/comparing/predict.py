@@ -1,9 +1,14 @@
-"""What models predict of recordings: errors by channel, and which runs lie in a model's range."""
+"""What models predict of recordings: errors by channel, and which runs lie in a model's range.
 
-from collections.abc import Iterator, Mapping, Sequence
+Below it is what `tsas predict` writes and prints of that: tables and sentences.
+"""
+
+import math
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import ascii_uppercase
+from typing import TypeVar
 
 import numpy as np
 
@@ -11,14 +16,26 @@ from tsas_cli.comparing.predictions import ComparedRun, Predictions
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.identification.fitted_to import FittedTo, departures, fitted_to, not_stated
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.model_file import read_fitted_to
+from tsas_cli.identification.model_file import IN_MEMORY, read_fitted_to, source_of
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.identification.repeatability import repeatability
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.records.prediction import PredictedChannel, QuantityOutside, RangeOfRun
+from tsas_cli.records.base import number_text
+from tsas_cli.records.prediction import (
+    PredictedChannel,
+    PredictingModel,
+    PredictionFile,
+    QuantityOutside,
+    RangeOfRun,
+)
+from tsas_cli.records.result import Table
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.support.wording import count_of, listed
+
+Said = TypeVar("Said", bound=Hashable)
+ALIKE = 1.01  # ratio of RMSE up to which two models predict alike
 
 
 @dataclass(frozen=True)
@@ -129,3 +146,158 @@ def _range(run: str, model: str, here: FittedTo, fitted: FittedTo | None) -> Ran
         outside=outside,
         not_stated=not_stated(here, fitted),
     )
+
+
+def models_of(it: Predicted, out: Path | None) -> tuple[PredictingModel, ...]:
+    """Return the models as `predict.json` in `out` holds them."""
+    return tuple(
+        PredictingModel(
+            **source_of(side.model_file or IN_MEMORY, out),
+            name=name,
+            kind=side.kind,
+            dynamics=side.dynamics,
+            path=side.path.as_posix(),
+            recordings=side.recordings,
+        )
+        for name, side in it.models.items()
+    )
+
+
+def tables(record: PredictionFile, title: str = "predictions") -> list[Table]:
+    """Return what is printed: the models, the errors under their title, and the ranges."""
+    models = [
+        (one.name, one.kind, one.path, _count(one.recordings), one.dynamics)
+        for one in record.models
+    ]
+    errors = [
+        (
+            row.run,
+            row.channel,
+            row.model,
+            number_text(row.rmse, ".4g"),
+            row.unit,
+            number_text(row.share_percent, ".2f"),
+            number_text(row.normalised_residual),
+            number_text(row.ratio),
+            number_text(row.repeatability, ".2g") or "unknown",
+            {True: "seen by the fit", False: "", None: "unknown"}[row.seen],
+        )
+        for row in record.channels
+    ]
+    header = ("run", "channel", "model", "RMSE", "unit", "% of range", "RMSE / noise", "RMSE / A")
+    return [
+        ("models", ("model", "kind", "path", "fitted to", "dynamics"), models),
+        (title, (*header, "repeatability", "seen"), errors),
+        ("ranges that the models were fitted to", ("run", "model", "range", "by"), _ranges(record)),
+    ]
+
+
+def _count(recordings: dict[str, str] | None) -> str:
+    return "unknown" if recordings is None else count_of(len(recordings), "recording")
+
+
+def _ranges(record: PredictionFile) -> list[tuple[str, ...]]:
+    """Return a row for each run and the models of whose ranges the same is to be said."""
+    rows: dict[tuple[str, str, str], list[str]] = {}
+    for row in record.ranges:
+        what = "; ".join(one.text() for one in row.outside)
+        rows.setdefault((row.run, row.verdict, what), []).append(row.model)
+    return [(run, ", ".join(of), verdict, what) for (run, verdict, what), of in rows.items()]
+
+
+def findings(it: Predicted) -> Iterator[str]:
+    """Yield which model predicts best, what is no prediction, and what lies outside a range."""
+    seen = {(row.run, row.model) for row in it.channels if row.seen}
+    runs = list(dict.fromkeys(row.run for row in it.channels))
+    new = [run for run in runs if not any(run == known for known, _ in seen)]
+    for channel in CHANNELS:
+        rows = [row for row in it.channels if row.channel == channel and row.run in new]
+        if any(row.rmse is not None for row in rows):
+            yield _best(channel, rows)
+    for known, who in _by_models(it, lambda n: listed([r for r in runs if (r, n) in seen])):
+        if known:
+            yield f"Seen by the fit of {who}, and no prediction: {known}."
+    if not new:
+        yield "No run is new to every model."
+    yield from _outside(it)
+
+
+def _best(channel: str, rows: Sequence[PredictedChannel]) -> str:
+    """Return which model predicts a channel best over runs that no fit has seen."""
+    by_model: dict[str, list[float]] = {}
+    for row in rows:
+        if row.rmse is not None:
+            by_model.setdefault(row.model, []).append(row.rmse)
+    rmse = {name: math.sqrt(sum(v * v for v in of) / len(of)) for name, of in by_model.items()}
+    least = min(rmse.values())
+    best = [name for name, value in rmse.items() if value <= ALIKE * least]
+    of = [row for row in rows if row.model == best[0]]
+    unit, runs = rows[0].unit, count_of(len(by_model[best[0]]), "run")
+    others = ", ".join(f"{n} {v:.3g} {unit}" for n, v in rmse.items() if n not in best)
+    who = f"{listed(best)} predict{'s' if len(best) == 1 else ''}"
+    how = " alike" if len(best) > 1 else " best" if others else ""
+    said = f"{channel}: {who}{how}, RMSE {least:.3g} {unit} over {runs} that no fit has seen"
+    said += f" ({others})" if others else ""
+    noise, repeated = (
+        _span(getattr(row, name) for row in of) for name in ("normalised_residual", "repeatability")
+    )
+    said += f"; {noise} × the noise level" if noise else ""
+    return f"{said}; repeatability {f'{repeated} {unit}' if repeated else 'unknown'}."
+
+
+def _span(values: Iterable[float | None]) -> str:
+    known = [value for value in values if value is not None]
+    if not known:
+        return ""
+    return " to ".join(dict.fromkeys(number_text(end) for end in (min(known), max(known))))
+
+
+def _outside(it: Predicted) -> Iterator[str]:
+    """Yield which runs lie outside of what each model was fitted to, and by what."""
+    for (verdict, said), who in _by_models(it, lambda name: _range_of(it, name)):
+        if verdict == "outside":
+            yield f"Outside the model's range ({who}): {said}."
+        elif verdict == "inside":
+            yield f"Every run lies in the model's range ({who})."
+        else:
+            yield f"It is not known what ranges the model was fitted to ({who})."
+
+
+def _range_of(it: Predicted, model: str) -> tuple[str, str]:
+    """Return whether any run lies outside a model's range, and which by what."""
+    rows = [row for row in it.ranges if row.model == model]
+    out = [row for row in rows if row.verdict == "outside"]
+    if not out:
+        return rows[0].verdict, ""
+    what = dict.fromkeys(one.quantity for row in out for one in row.outside)
+    return "outside", f"{listed([row.run for row in out])}, by {listed([*what])}"
+
+
+def _by_models(it: Predicted, said_of: Callable[[str], Said]) -> Iterator[tuple[Said, str]]:
+    """Yield each thing that is to be said of models, and their letters."""
+    models: dict[Said, list[str]] = {}
+    for name in it.models:
+        models.setdefault(said_of(name), []).append(name)
+    yield from ((said, listed(names)) for said, names in models.items())
+
+
+def notes(it: Predicted) -> Iterator[str]:
+    """Yield what to keep in mind."""
+    yield (
+        "Each run's own preload and zeros are fitted to it, and nothing else."
+        if it.own_fitted
+        else "Nothing is fitted to these runs."
+    )
+    for unknown, who in _by_models(it, lambda n: _not_stated(it, n)):
+        if unknown:
+            yield f"Not known of the recordings behind {who}, and not compared: {unknown}."
+    for name, side in it.models.items():
+        if side.recordings is None:
+            yield f"{name} does not say what it was fitted to: it may have seen these runs."
+        if side.not_converged:
+            yield f"The fit of {name} did not converge ({side.not_converged.rstrip('.')})."
+
+
+def _not_stated(it: Predicted, model: str) -> str:
+    rows = [row for row in it.ranges if row.model == model]
+    return listed([*dict.fromkeys(quantity for row in rows for quantity in row.not_stated)])

@@ -5,8 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tsas_cli.comparing.sides import Side
-from tsas_cli.comparing.values import same_runs
+from tsas_cli.comparing.sides import Side, same_runs
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import compare as simulated
 from tsas_cli.identification.model import Model
@@ -15,7 +14,7 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Location
-from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
+from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.comparison import ErrorRow
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 
 from tsas_cli.comparing.compare import Comparison
-from tsas_cli.comparing.values import FALSE_CLAIMS, rounded
+from tsas_cli.comparing.sides import FALSE_CLAIMS, rounded
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.records.diagnosis import INCOMPLETE
 from tsas_cli.support.wording import count_of
-from tsas_cli.verifying.changed import change_notes
+from tsas_cli.verifying.claims import change_notes
 
 SHOWN = 4  # names that are listed
 ALIKE = 0.01  # relative difference of two RMSE that makes none of them better

@@ -2,8 +2,7 @@
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
-from tsas_cli.comparing.sides import Side
-from tsas_cli.comparing.values import rounded
+from tsas_cli.comparing.sides import Side, rounded
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import (

@@ -12,7 +12,7 @@ from tsas_cli.records.result import Table
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
-from tsas_cli.verifying.changed import change_notes
+from tsas_cli.verifying.claims import change_notes
 
 TRACKING_FILE = TrackingFile.FILE
 SCORES = {  # those that are better the smaller they are, with their units

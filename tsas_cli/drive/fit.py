@@ -11,7 +11,6 @@ from functools import cached_property
 
 import numpy as np
 
-from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import (
     DriveValues,
     free_motion,
@@ -20,7 +19,7 @@ from tsas_cli.drive.harmonic_drive import (
     lag_coefficients,
     linear_response,
 )
-from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.runs import DriveRun, FrequencyResponse
 from tsas_cli.effects.backlash import BACKLASH
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
 from tsas_cli.identification.extension import MOST_LOOSENING

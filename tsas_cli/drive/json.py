@@ -1,20 +1,23 @@
-"""What `drive.json` says of an identified drive (docs/formats.md)."""
+"""What `drive.json` says of an identified drive (docs/formats.md), and what is printed of it."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
-from tsas_cli.drive.frequency_response import FrequencyResponse
-from tsas_cli.drive.harmonic_drive import DriveValues
+from tsas_cli.drive.harmonic_drive import DriveValues, lag_coefficients
+from tsas_cli.drive.runs import FrequencyResponse
 from tsas_cli.drive.search import DriveSearch, structures
 from tsas_cli.drive.sentences import name_of
-from tsas_cli.drive.transfer_function import bode_curve, poles
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records import drive as records
-from tsas_cli.support.arrays import Floats
+from tsas_cli.records.base import number_text
+from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.result import Table
+from tsas_cli.support.arrays import Complex, Floats
 
 CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
@@ -113,3 +116,82 @@ def run_rows(
 
 def _rms(error: Floats) -> float:
     return float(np.sqrt(np.nanmean(error**2)))
+
+
+def transfer_function(values: DriveValues) -> Any:
+    """Return G(s) without its delay, a `control.TransferFunction`; Yang 2025, Eqs. (46), (47)."""
+    from control import tf
+
+    denominator = np.polymul([1.0, values.leak_per_s], lag_coefficients(values)[::-1])
+    return tf([values.gain_mm_per_s_rpm], denominator, inputs="motor speed", outputs="x_in")
+
+
+def bode_curve(values: DriveValues, frequency_Hz: Floats) -> tuple[Floats, Floats]:
+    """Return magnitude [mm per rpm s] and phase [°] of G e^{−Ts}, shapes (m,)."""
+    w = 2.0 * math.pi * frequency_Hz
+    response = transfer_function(values).frequency_response(w)
+    phase = np.unwrap(np.atleast_1d(response.phase.squeeze())) - w * values.delay_s
+    return np.atleast_1d(response.magnitude.squeeze()), np.degrees(phase)
+
+
+def poles(values: DriveValues) -> Complex:
+    """Return the poles of G [rad/s], shape (order,)."""
+    return np.asarray(transfer_function(values).poles(), dtype=np.complex128)
+
+
+def tables(drive: DriveFile, title: str) -> Iterator[Table]:
+    """Yield the tables of an identified drive; the title is that of the parameters."""
+    structures = [
+        (
+            s.name,
+            str(s.parameters),
+            number_text(s.held_out_times_noise),
+            "chosen" if s.chosen else "" if s.converged else "not converged",
+        )
+        for s in drive.structures
+    ]
+    header = ("structure", "parameters", "error", "")
+    yield "structures of G(s), error on held-out data in times the noise", header, structures
+    lead = drive.kinematics.kinematic_lead_rpm_s_per_mm
+    rows = [(p.name, p.text(), p.unit) for p in drive.parameters]
+    if lead is not None:
+        rows.append(("60 im/(2π r1), kinematic", f"{lead:.5g}", "rpm s/mm"))
+    yield title, ("name", "value [95 %]", "unit"), rows
+    runs = [
+        (
+            name,
+            number_text(run.rmse, ".4g"),
+            number_text(run.rmse_nominal, ".4g"),
+            number_text(run.noise, ".2g"),
+        )
+        for name, run in drive.runs.items()
+    ]
+    yield "x_in against measurement [mm]", ("run", "RMSE", "nominal", "noise"), runs
+    named = [
+        (
+            cause.effect,
+            name,
+            value.text(),
+            value.unit,
+            number_text(cause.gain_percent, ".1f"),
+            ", ".join(cause.rivals),
+        )
+        for cause in drive.diagnosis.named
+        for name, value in cause.parameters.items()
+    ]
+    if named:
+        yield (
+            "causes",
+            ("effect", "parameter", "value [95 %]", "unit", "reduction [%]", "rivals"),
+            named,
+        )
+    errors = [
+        (
+            name,
+            *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)),
+            c.unit,
+        )
+        for name, c in drive.diagnosis.channels.items()
+    ]
+    columns = ("channel", "before", "after", "noise", "attainable", "unit")
+    yield "error on held-out data", columns, errors

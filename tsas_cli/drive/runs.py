@@ -1,7 +1,7 @@
-"""Recordings of a drive, checked: motor speed in, position of the tendon's end out."""
+"""Recordings of a drive, checked: motor speed in, end of the tendon out; and their response (H1)."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,14 +12,13 @@ from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
 from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
-from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.arrays import Complex, Floats, Mask
 from tsas_cli.support.errors import InputError
 
 FEWEST_SAMPLES = 500
 UNEVEN = 0.02  # of a sampling step, by which another one may differ
-STRETCHES = (
-    40  # of a run, for the noise level; the median one is not where the drive swings fastest
-)
+# Of a run, for the noise level; the median one is not where the drive swings fastest.
+STRETCHES = 40
 AT_REST = 0.01  # of the largest speed
 MOVED = 5.0  # times the noise, that x_in has to travel
 RPM_PER_RAD_S = 30.0 / math.pi
@@ -169,3 +168,59 @@ def _without_line(time: Floats, values: Floats) -> Floats:
     centred = values - values.mean()
     line: Floats = centred - time * float(time @ centred) / float(time @ time)
     return line
+
+
+SEGMENTS = 10.0  # of the longest run: long ones show low frequencies, many show coherence
+LONGEST_S = 5.0
+COHERENT = 0.8
+POWER = 1e-5  # of the largest power of the input, below which it says nothing
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """H1 = S_ux/S_uu over frequency [mm per rpm s], its coherence, and where both tell, (m,)."""
+
+    frequency_Hz: Floats
+    response: Complex
+    coherence: Floats
+    excited: Mask
+
+    @property
+    def band(self) -> tuple[float, float] | None:
+        """Lowest and highest frequency that the input shows, None where there is none."""
+        at = self.frequency_Hz[self.excited]
+        return (float(at[0]), float(at[-1])) if at.size else None
+
+
+def frequency_response(runs: Sequence[DriveRun]) -> FrequencyResponse:
+    """Return the response that all runs show together, in segments that overlap by half.
+
+    x_in drifts while the motor turns one way: each segment loses its straight line. Of a run that
+    shares samples with another one the longest stretch that counts is taken, if that is long enough
+    for a run.
+    """
+    from scipy.signal import csd, welch
+
+    whole = [
+        (run, stretch)
+        for run, stretch in ((run, run.longest) for run in runs)
+        if run.counts.all() or stretch.stop - stretch.start >= FEWEST_SAMPLES
+    ]
+    lasts_s = [run.u.step_s * (s.stop - s.start - 1) for run, s in whole]
+    segment_s = min(LONGEST_S, max(lasts_s) / SEGMENTS, *(lasts / 2.0 for lasts in lasts_s))
+    sums: list[Complex] = []
+    bins = min(round(segment_s / run.u.step_s) for run, _ in whole) // 2
+    for (run, stretch), lasts in zip(whole, lasts_s, strict=True):
+        n = round(segment_s / run.u.step_s)
+        how = {"fs": 1.0 / run.u.step_s, "nperseg": n, "detrend": "linear"}
+        u, x_in = run.u.values[stretch], run.x_in[stretch]
+        spectra = (welch(u, **how)[1], csd(u, x_in, **how)[1], welch(x_in, **how)[1])
+        sums.append(lasts * np.array([s[1:bins] for s in spectra]))
+    uu, ux, xx = np.sum(sums, axis=0)
+    frequency = np.arange(1, bins) / segment_s
+    coherence = np.abs(ux) ** 2 / np.maximum(np.abs(uu * xx), 1e-300)
+    excited = (coherence > COHERENT) & (np.abs(uu) > POWER * np.abs(uu).max())
+    # One bin that is coherent by chance is no band.
+    excited &= np.convolve(excited, np.ones(3), mode="same") > 1.0
+    response = ux / np.where(np.abs(uu) > 0.0, uu, 1.0)
+    return FrequencyResponse(frequency, response, np.real(coherence), excited)

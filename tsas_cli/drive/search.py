@@ -20,8 +20,7 @@ from tsas_cli.diagnosis.evidence import (
 from tsas_cli.diagnosis.held_out import STRETCHES, Folds, held_out_squares
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import LINEAR, DriveBench, DriveTrial, Terms, quantities_of
-from tsas_cli.drive.frequency_response import frequency_response
-from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.runs import DriveRun, frequency_response
 from tsas_cli.numerics.covariance import block_length, block_numbers
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps

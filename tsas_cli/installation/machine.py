@@ -9,8 +9,7 @@ from pathlib import Path
 from tsas_cli.numerics.compiled import cache_folder
 from tsas_cli.numerics.side_by_side import THREADS, threads
 from tsas_cli.reporting.pdf import browser
-from tsas_cli.reporting.viewer.child import program
-from tsas_cli.reporting.viewer.drawing import drawn_with
+from tsas_cli.reporting.viewer.child import drawn_with, program
 from tsas_cli.reporting.viewer.open import SCREENS, has_screen
 from tsas_cli.support.errors import InputError
 

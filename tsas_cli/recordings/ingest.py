@@ -1,26 +1,31 @@
 """Ingest: raw files to a dataset."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from itertools import chain
 from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.conditions import run_conditions
 from tsas_cli.recordings.dataset import read_from
-from tsas_cli.recordings.ingest_map import IngestMap
+from tsas_cli.recordings.ingest_map import IngestMap, run_conditions
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
 from tsas_cli.recordings.readers.joined import joined_by
-from tsas_cli.recordings.readers.table import ColumnTable
-from tsas_cli.recordings.repeated_times import merged
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, sha256_of, state_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+
+How = Literal["first", "last", "mean"]
 
 
 @dataclass(frozen=True)
@@ -170,3 +175,55 @@ def _ingest(
     if rows < 2:
         raise InputError("all rows are identical", where=path, expected="at least two samples")
     return Ingested(run, path, rows, duration_s, (rows - 1) / duration_s, tuple(columns))
+
+
+def merged(parts: Iterable[ColumnTable], time: ColumnSource, how: How) -> Iterator[ColumnTable]:
+    """Yield the parts of a file with one row for each time, which may be repeated across parts.
+
+    Parameters
+    ----------
+    time
+        The source of the clock; rows of one time follow each other.
+    how
+        The row that stays, or the mean of each column, gaps left out.
+    """
+    held: ColumnTable | None = None  # the rows of the last time
+    for part in parts:
+        whole = part if held is None else _joined(held, part)
+        begins = np.flatnonzero(np.diff(whole.columns[time], prepend=np.nan) != 0.0)
+        if begins.size > 1:
+            yield _one_each(_rows(whole, slice(0, int(begins[-1]))), begins[:-1], how)
+        held = _rows(whole, slice(int(begins[-1]) if begins.size else 0, None))
+    if held is not None:
+        yield _one_each(held, np.zeros(1, dtype=np.intp), how)
+
+
+def _joined(one: ColumnTable, other: ColumnTable) -> ColumnTable:
+    columns = {s: np.concatenate([one.columns[s], v]) for s, v in other.columns.items()}
+    numbers = np.concatenate([one.row_numbers, other.row_numbers])
+    return replace(other, columns=columns, numbers=numbers)
+
+
+def _rows(table: ColumnTable, rows: slice) -> ColumnTable:
+    columns = {source: values[rows] for source, values in table.columns.items()}
+    return replace(table, columns=columns, numbers=table.row_numbers[rows])
+
+
+def _one_each(table: ColumnTable, begins: npt.NDArray[np.intp], how: How) -> ColumnTable:
+    rows = table.row_numbers.size
+    if not rows:
+        return table
+    chosen = begins if how != "last" else np.append(begins[1:], rows) - 1
+    columns = {
+        source: _means(values, begins) if how == "mean" else values[chosen]
+        for source, values in table.columns.items()
+    }
+    return replace(table, columns=columns, numbers=table.row_numbers[chosen])
+
+
+def _means(values: Floats, begins: npt.NDArray[np.intp]) -> Floats:
+    finite = np.isfinite(values)
+    counts = np.add.reduceat(finite.astype(np.float64), begins)
+    sums = np.add.reduceat(np.where(finite, values, 0.0), begins)
+    means: Floats = np.divide(sums, counts, out=np.full(counts.size, np.nan), where=counts > 0)
+    return means

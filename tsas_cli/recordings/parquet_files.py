@@ -1,23 +1,36 @@
-"""Parquet files, opened only if their footers are within the limits."""
+"""Parquet files: fetched, verified, and opened only if their footers are within the limits."""
 
+import hashlib
 import io
+import mmap
 import struct
+import tempfile
+from collections import OrderedDict
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, cast
+from threading import Lock
+from typing import IO, TypeAlias, cast
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.checked import ParquetSource
 from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.expansion import Expanded
-from tsas_cli.recordings.storage import Location
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.storage import Address, Location, NotThereError, check_inside
 from tsas_cli.support import limits
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import out_of_memory
+from tsas_cli.support.files import sha256_of
+from tsas_cli.support.limits import out_of_memory
 
+ParquetSource: TypeAlias = Path | pa.NativeFile
+REQUEST_BYTES = 16 * 1024 * 1024
+CACHE_BYTES = 1024 * 1024 * 1024  # on disk, for recordings that are read again
+_CACHE: OrderedDict[tuple[Address, str], mmap.mmap] = OrderedDict()  # each report section reads
+_LOCK = Lock()
 BUFFER_BYTES = 1 << 20  # read at a time: a row group need not fit into memory
 _TRAILER_BYTES = 8  # at the end: the footer's length and PAR1
 
@@ -40,12 +53,8 @@ def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.Par
 
     `where` is the location in error messages; default: the source.
 
-    Raises
-    ------
-    InputError
-        It is no regular file, or its columns or its footer exceed a limit.
-    ArrowException, OSError, UnicodeDecodeError
-        The file cannot be read.
+    InputError: it is no regular file, or its columns or its footer exceed a limit.
+    ArrowException, OSError, UnicodeDecodeError: the file cannot be read.
     """
     path = where or source
     if isinstance(source, Path):
@@ -116,3 +125,127 @@ def check_size(
 def is_number(kind: pa.DataType) -> bool:
     """Return whether a column's type is numeric, or null throughout."""
     return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_null(kind))
+
+
+def floats_from(column: pa.ChunkedArray) -> Floats:
+    """Return a column of numbers as float64, shape (n,), null as NaN.
+
+    pyarrow's own conversion loads pandas, which takes a third of a second.
+
+    ArrowInvalid, ArrowNotImplementedError: the column is not numeric.
+    """
+    whole = column.cast(pa.float64(), safe=False).combine_chunks()
+    if not len(whole):
+        return np.empty(0)
+    validity, numbers = whole.buffers()
+    values: Floats = np.frombuffer(numbers, np.float64, len(whole), whole.offset * 8)
+    if not whole.null_count:
+        return values
+    bits = np.unpackbits(np.frombuffer(validity, np.uint8), bitorder="little")
+    valid = bits[whole.offset : whole.offset + len(whole)].astype(np.bool_)
+    return np.where(valid, values, np.nan)
+
+
+def column_of(values: Floats) -> pa.Array:
+    """Return an array, shape (n,), as a column of float64, NaN as null."""
+    numbers = np.ascontiguousarray(values, dtype=np.float64)
+    missing = np.isnan(numbers)
+    validity = pa.py_buffer(np.packbits(~missing, bitorder="little")) if missing.any() else None
+    return pa.Array.from_buffers(
+        pa.float64(), numbers.size, [validity, pa.py_buffer(numbers)], int(missing.sum())
+    )
+
+
+def checked_file(folder: Location, run: Run) -> ParquetSource:
+    """Return the source that Parquet is read from, after its checksum matches the manifest.
+
+    InputError: the file is missing, leaves its folder or has another checksum, or cannot be
+    fetched.
+    """
+    if isinstance(folder, Address):
+        path = folder / run.file
+        try:
+            content = fetched(path, run.sha256.lower())
+        except NotThereError as error:
+            raise _missing(path, run) from error
+        if content is None:
+            raise changed(path, run)
+        return pa.BufferReader(content)
+    file = local_file(folder, run)
+    try:
+        digest = sha256_of(file)
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where=file) from error
+    if digest != run.sha256.lower():
+        raise changed(file, run)
+    return file
+
+
+def local_file(folder: Path, run: Run) -> Path:
+    """Return a run's file in a local folder.
+
+    InputError: the file is missing, or a link leads out of the folder.
+    """
+    path = folder / run.file
+    if not path.is_file():
+        raise _missing(path, run)
+    check_inside(path, folder)
+    return path
+
+
+def _missing(path: Location, run: Run) -> InputError:
+    return InputError(
+        "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
+    )
+
+
+def changed(path: Location, run: Run) -> InputError:
+    """Return the error for a file whose checksum differs from the manifest."""
+    return InputError(
+        "the checksum differs from the manifest's",
+        where=path,
+        expected=run.sha256.lower(),
+        remedy="the file has changed since ingest: restore it or ingest again",
+    )
+
+
+def fetched(address: Address, sha256: str) -> mmap.mmap | None:
+    """Return a recording's bytes, mapped from disk; None if the checksum differs.
+
+    InputError: there is no such object (`NotThereError`), the storage fails, or the disk has no
+    room for the recording.
+    """
+    key = address, sha256
+    with _LOCK:
+        content = _CACHE.pop(key, None) or _fetch(address, sha256)
+        if content is not None:
+            _CACHE[key] = content
+        while len(_CACHE) > 1 and sum(map(len, _CACHE.values())) > CACHE_BYTES:
+            _CACHE.popitem(last=False)
+    return content
+
+
+def _fetch(address: Address, sha256: str) -> mmap.mmap | None:
+    digest, size = hashlib.sha256(), address.size()
+    # Unnamed: a killed process leaves nothing. Unbuffered: no rest is written at the end.
+    with tempfile.TemporaryFile(buffering=0) as file:
+        for start in range(0, size, REQUEST_BYTES):
+            part = address.read_part(start, min(start + REQUEST_BYTES, size))
+            digest.update(part)
+            _write(file, part)
+        if digest.hexdigest() != sha256 or not size:
+            return None
+        return mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ)
+
+
+def _write(file: IO[bytes], part: bytes) -> None:
+    rest = memoryview(part)
+    try:
+        while rest:
+            rest = rest[file.write(rest) :]
+    except OSError as error:
+        raise InputError(
+            f"a recording cannot be stored while it is read ({error.strerror})",
+            where=tempfile.gettempdir(),
+            remedy="make room there, or name another folder in TMPDIR",
+        ) from error

@@ -7,8 +7,6 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.arrow_columns import floats_from
-from tsas_cli.recordings.checked import ParquetSource, checked_file
 from tsas_cli.recordings.columns import (
     BY_NAME,
     INPUTS,
@@ -18,7 +16,16 @@ from tsas_cli.recordings.columns import (
     largest,
 )
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, reading, size_of
+from tsas_cli.recordings.parquet_files import (
+    ParquetSource,
+    check_size,
+    checked_file,
+    floats_from,
+    is_number,
+    open_parquet,
+    reading,
+    size_of,
+)
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.units import conversion

@@ -28,10 +28,7 @@ _UNREACHED = {
 def timeout_s() -> float:
     """Return the time limit of a request [s], of the environment where it says one.
 
-    Raises
-    ------
-    InputError
-        It says no time, or one that nobody waits.
+    InputError: it says no time, or one that nobody waits.
     """
     given = os.environ.get(TIMEOUT) or str(TIMEOUT_S)
     try:

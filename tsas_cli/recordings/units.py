@@ -100,10 +100,7 @@ def conversion(
     where
         The location in error messages.
 
-    Raises
-    ------
-    InputError
-        The unit is unknown or not convertible, or the factor is zero or not finite.
+    InputError: the unit is unknown or not convertible, or the factor is zero or not finite.
     """
     if factor is None and is_label(unit):
         raise InputError(

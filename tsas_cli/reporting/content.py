@@ -1,12 +1,19 @@
-"""What the first screen and the sections of the page are made of."""
+"""What the first screen and the sections of a page are made of, and the page from them."""
 
 import re
+from base64 import b64encode
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from hashlib import sha256
+from importlib.resources import files
 
-from markupsafe import Markup
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 from tsas_cli.records.result import Table as Printed
 from tsas_cli.reporting.numbers import ABSENT
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import printable
 
 
 @dataclass(frozen=True)
@@ -130,3 +137,54 @@ def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:
     """Return a section that only says what was not given, and which stage writes it."""
     sentence = f"No {what} was given: add a folder written by `tsas {stage}`."
     return Section(anchor, title, (sentence,), given=False)
+
+
+def rendered(
+    *,
+    name: str,
+    about: str,
+    summary: str,
+    sections: Iterable[Section],
+    glance: Glance | None = None,
+    advance: Callable[[], None] = lambda: None,
+) -> str:
+    """Return a page as HTML.
+
+    `about` follows the name in the window's title; what stands between backticks in the summary
+    becomes code. Each of the sections is in the contents, and so are its parts; `glance` stands
+    above all. `advance` is called after each section.
+    """
+    made = []
+    for section in sections:
+        made.append(section)
+        advance()
+    environment = Environment(
+        loader=PackageLoader("tsas_cli.reporting"),
+        autoescape=True,
+        finalize=_visible,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["prose"] = _prose
+    script = (files("tsas_cli.reporting") / "templates" / "figures.js").read_text(encoding="utf-8")
+    return environment.get_template("page.html").render(
+        name=name,
+        about=about,
+        summary=summary,
+        sections=made,
+        glance=glance,
+        version=__version__,
+        script=Markup(script),  # noqa: S704  our own, and the one that the page allows
+        digest=b64encode(sha256(script.encode()).digest()).decode(),
+    )
+
+
+def _prose(text: str) -> Markup:
+    """Escape a sentence; what stands between backticks in it becomes code."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(printable(text)))))  # noqa: S704
+
+
+def _visible(value: object) -> object:
+    """Make control characters in names from files visible; leave our own markup as it is."""
+    return value if isinstance(value, Markup) else printable(str(value))

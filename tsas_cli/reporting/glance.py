@@ -11,10 +11,9 @@ from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting import before_after
-from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Fact, Glance
-from tsas_cli.reporting.diagnosis.words import heading_of, title_of, within
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import called, heading_of, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 from tsas_cli.support.wording import listed
 

@@ -13,7 +13,7 @@ from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location, recorded_location
-from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
+from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
@@ -200,9 +200,8 @@ def _by_file(folders: Sequence[Location], several: Set[str]) -> dict[str, list[L
     known = (MANIFEST_FILE, *(kind.FILE for kind in STAGES))
     found: dict[str, list[Location]] = {}
     for folder in folders:
-        looked_for = (
-            known if isinstance(folder, Path) else (MANIFEST_FILE,)
-        )  # stages write to local folders
+        # Stages write to local folders.
+        looked_for = known if isinstance(folder, Path) else (MANIFEST_FILE,)
         files = [file for file in looked_for if (folder / file).is_file()]
         if not files:
             raise InputError(

@@ -1,24 +1,32 @@
 """The page that a person reads: every section in order, in one file that needs nothing else."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from tsas_cli.records.base import OfDataset
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
 from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.reporting import prediction, repeat, simulation, summary
-from tsas_cli.reporting.calibration import parameters, stiffness, transfer
-from tsas_cli.reporting.closing import section as closing
-from tsas_cli.reporting.content import Section
+from tsas_cli.reporting import (
+    calibration,
+    closing,
+    drive,
+    prediction,
+    recordings,
+    repeat,
+    simulation,
+)
+from tsas_cli.reporting.content import Section, rendered
 from tsas_cli.reporting.diagnosis import section as diagnosis
-from tsas_cli.reporting.drive import section as drive
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.recordings import loops
-from tsas_cli.reporting.recordings import section as recordings
-from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking import section as tracking
+from tsas_cli.support.wording import count_of
+from tsas_cli.verifying.claims import change_notes
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,
@@ -27,11 +35,11 @@ SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     prediction.section,
     drive.section,
     recordings.section,
-    stiffness.section,
-    transfer.section,
-    loops.section,
+    calibration.section,
+    calibration.transfer_section,
+    recordings.loops_section,
     simulation.section,
-    parameters.section,
+    calibration.parameters_section,
     repeat.section,
 )
 
@@ -58,7 +66,36 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     return rendered(
         name=name,
         about=about,
-        summary=" ".join(summary.sentences(inputs)),
+        summary=" ".join(_sentences(inputs)),
         sections=sections,
         glance=glance(inputs),
     )
+
+
+def _sentences(inputs: Inputs) -> Iterator[str]:
+    """Yield the sentences of the first paragraph; without a dataset, of what was changed alone."""
+    places = [*inputs.folders.values(), *(folder for _, folder in inputs.more_simulations)]
+    yield from change_notes(places)
+    if inputs.dataset is None:
+        return
+    manifest = inputs.dataset.manifest
+    many = count_of(len(manifest.run), "recording")
+    yield f"{manifest.name} holds {many}, {manifest.kind}."
+    yield _findings(inputs.check)
+    of_data = [stage for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
+    yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
+    calibration = inputs.get(CalibrationFile)
+    if calibration and calibration.cannot_tell and inputs.get(DiagnosisFile) is None:
+        notes = calibration.cannot_tell
+        yield f"Keep in mind: {notes[0]}"
+        if notes[1:]:
+            yield f"{count_of(len(notes) - 1, 'more note')} on the estimates: see Parameters."
+
+
+def _findings(check: CheckFile) -> str:
+    counts = {
+        severity: sum(f.severity == severity for f in check.findings)
+        for severity in ("error", "warning", "note")
+    }
+    said = [count_of(n, name) for name, n in counts.items() if n]
+    return f"The checks report {', '.join(said)}." if said else "The checks found nothing."

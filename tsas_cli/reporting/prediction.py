@@ -6,18 +6,23 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.comparing.predict_stage import tables
+from tsas_cli.comparing.predict import tables
 from tsas_cli.recordings.columns import name_by
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.prediction import PredictedChannel, PredictionFile
 from tsas_cli.records.result import Table as Printed
-from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import MODELS, STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table
-from tsas_cli.reporting.decimation import POINTS, kept_samples, shared_points
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import legend, noise_bounds
+from tsas_cli.reporting.drawing import (
+    POINTS,
+    kept_samples,
+    legend,
+    noise_bounds,
+    picture,
+    shared_points,
+)
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import at_axis, in_words
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.arrays import Floats
 

@@ -10,19 +10,18 @@ from tsas_cli.identification.model_file import IN_MEMORY
 from tsas_cli.records.base import ModelFile, OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
-from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.closing import HIDDEN, ClosingFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.reporting.closing import call as closing_call
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.tracking import call
 from tsas_cli.support import __version__
 from tsas_cli.support.files import sha256_of
 
+SETTINGS = "settings.toml"
 _WROTE: dict[type[StageFile], str] = {
     CalibrationFile: "calibration",
     SimulationFile: "simulation",
@@ -44,7 +43,7 @@ def section(inputs: Inputs) -> Section:
     if prediction := inputs.get(PredictionFile):
         hashes |= {one.path: one.sha256 for one in prediction.models if one.sha256}
     if tracking := inputs.get(TrackingFile):
-        hashes |= call.files_read(tracking)
+        hashes |= files_read(tracking)
     tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
     if hashes:
         tables.append(Table("Files read", ("file", "SHA-256"), tuple(hashes.items())))
@@ -62,9 +61,9 @@ def _intro(inputs: Inputs) -> Iterator[str]:
     if _in_memory(inputs):
         yield "They lack what was handed over without a file: a model, settings, or conditions."
     closing = inputs.get(ClosingFile)
-    if closing and closing_call.own_settings(closing):
+    if closing and _own_settings(closing):
         yield (
-            f"`{closing_call.SETTINGS}` is a file with the settings that `{ClosingFile.FILE}` "
+            f"`{SETTINGS}` is a file with the settings that `{ClosingFile.FILE}` "
             "holds; they are not the defaults."
         )
 
@@ -82,7 +81,7 @@ def _in_memory(inputs: Inputs) -> bool:
 def _commands(inputs: Inputs) -> Iterator[list[str]]:
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
     if closing := inputs.get(ClosingFile):
-        yield ["tsas", "close-loop", *closing_call.options(closing), "--out", folder[ClosingFile]]
+        yield ["tsas", "close-loop", *closing_options(closing), "--out", folder[ClosingFile]]
     read = [*folder.values(), *(str(path) for _, path in inputs.more_simulations)]
     if inputs.dataset is not None:
         read.insert(0, str(inputs.dataset.folder))
@@ -95,7 +94,7 @@ def _of_dataset(
     inputs: Inputs, dataset: str, folder: Mapping[type[StageFile], str]
 ) -> Iterator[list[str]]:
     if tracking := inputs.get(TrackingFile):
-        yield ["tsas", "track", *call.options(tracking), "--out", folder[TrackingFile]]
+        yield ["tsas", "track", *tracking_options(tracking), "--out", folder[TrackingFile]]
     if CheckFile in folder:
         yield ["tsas", "check", dataset, "--out", folder[CheckFile]]
     if calibration := inputs.get(CalibrationFile):
@@ -148,3 +147,59 @@ def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
             yield f"tsas, {name}", stage.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)
+
+
+def closing_options(closing: ClosingFile) -> Iterator[str]:
+    """Yield the options; settings that are not the defaults as if they stood in `SETTINGS`."""
+    names = [case.case for case in closing.cases]
+    if HIDDEN not in names:
+        yield from ("--cases", ",".join(names))
+    else:
+        hidden = (change for case in closing.cases for change in case.hidden.items())
+        for name, value in hidden:
+            yield from ("--hide", f"{name}={value!r}")
+    if _own_settings(closing):
+        yield from ("--settings", SETTINGS)
+    first, last = closing.seeds
+    yield from ("--seeds", str(last - first + 1), "--seed", str(first))
+
+
+def _own_settings(closing: ClosingFile) -> bool:
+    """Return whether the settings are others than the defaults."""
+    from tsas_cli.tracking.settings import Settings
+
+    return closing.settings.content() != Settings().model_dump(mode="json", by_alias=True)
+
+
+def tracking_options(tracking: TrackingFile) -> Iterator[str]:
+    """Yield the options, files by their names."""
+    changes = [change for changes in tracking.conditions.values() for change in changes]
+    if tracking.model.sha256 is not None:
+        yield from ("--model", tracking.model.file)
+    if tracking.plant.sha256 is not None and tracking.plant != tracking.model:
+        yield from ("--plant", tracking.plant.file)
+    if tracking.drive.sha256 is not None:
+        yield from ("--drive", tracking.drive.file)
+    if tracking.dynamics != "slip":
+        yield from ("--dynamics", tracking.dynamics)
+    if len(tracking.conditions) > 1:
+        yield "--compare"  # which takes all controllers
+    else:
+        names = dict.fromkeys(result.controller for result in tracking.results)
+        yield from ("--controller", ",".join(names))
+    for change in changes:
+        late = f"@{change.from_s!r}" if change.from_s > 0.0 else ""
+        yield from ("--disturb", f"{change.quantity}={change.value!r}{late}")
+    yield from ("--reference", tracking.reference.shape or tracking.reference.file)
+    if tracking.gains == "as printed":
+        yield "--as-printed"
+    if tracking.settings.file is not None and tracking.settings.sha256 is not None:
+        yield from ("--settings", tracking.settings.file)
+    first, last = tracking.seeds
+    yield from ("--seeds", str(last - first + 1), "--seed", str(first))
+
+
+def files_read(tracking: TrackingFile) -> dict[str, str]:
+    """Return the checksums of models and reference by file, of those that were given."""
+    named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
+    return {one.file: one.sha256 for one in named if one.sha256 is not None}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.figures import legend, line, noise_bounds
+from tsas_cli.reporting.drawing import legend, line, noise_bounds
 from tsas_cli.support.arrays import Floats
 
 

@@ -22,11 +22,10 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import CopiedRows
-from tsas_cli.recordings.unrecorded import unrecorded
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.checked import accepted_errors
+from tsas_cli.stages.check import accepted_errors, unrecorded
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps

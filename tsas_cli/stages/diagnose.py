@@ -22,12 +22,11 @@ from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.unrecorded import unrecorded
 from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.checked import accepted_errors
+from tsas_cli.stages.check import accepted_errors, unrecorded
 from tsas_cli.stages.given import Named, dataset_of, listed, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if

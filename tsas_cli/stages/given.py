@@ -20,10 +20,7 @@ Word = TypeVar("Word", bound=str)
 def path_of(given: Thing | str, *kinds: type) -> Thing | Path:
     """Return text as a path; a path, None and a value of one of these kinds as they are.
 
-    Raises
-    ------
-    InputError
-        It is of another kind.
+    InputError: it is of another kind.
     """
     named: Thing | Path = Path(given) if isinstance(given, str) else given
     of_kind((Path, NoneType, *kinds), named)
@@ -43,10 +40,7 @@ def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
 def places_of(given: Named | Iterable[Named]) -> list[Location]:
     """Return one place or several as a list: local paths, or addresses of datasets.
 
-    Raises
-    ------
-    InputError
-        One is of another kind, or there is none.
+    InputError: one is of another kind, or there is none.
     """
     return [place_of(each) for each in several_of(given)]
 
@@ -59,10 +53,7 @@ def place_of(given: Named | Address) -> Location:
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
     """Return a dataset, or open that of a folder or an address, with the runs that were asked for.
 
-    Raises
-    ------
-    InputError
-        The folder is none, or there is no such run.
+    InputError: the folder is none, or there is no such run.
     """
     if isinstance(given, Dataset):
         dataset = given
@@ -75,10 +66,7 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
 def one_of(words: Sequence[Word], given: str, name: str) -> Word:
     """Return a word that is among those that are known.
 
-    Raises
-    ------
-    InputError
-        It is not.
+    InputError: it is not.
     """
     for word in words:
         if isinstance(given, str) and word == given:  # an array is equal one by one
@@ -91,10 +79,7 @@ def one_of(words: Sequence[Word], given: str, name: str) -> Word:
 def at_least(least: int, given: int, name: str) -> int:
     """Return a whole number that is no less than the least one.
 
-    Raises
-    ------
-    InputError
-        It is less.
+    InputError: it is less.
     """
     if of_kind((int,), given) < least:
         raise InputError(f"{name} is {given}", expected=f"{least} or more")
@@ -104,10 +89,7 @@ def at_least(least: int, given: int, name: str) -> int:
 def number_of_seeds(given: int) -> int:
     """Return how many seeds are asked for.
 
-    Raises
-    ------
-    InputError
-        There is none, or there are more than anyone waits for.
+    InputError: there is none, or there are more than anyone waits for.
     """
     if at_least(1, given, "seeds") > limits.SEEDS:
         raise InputError(f"seeds is {given}", expected=f"at most {limits.SEEDS}")

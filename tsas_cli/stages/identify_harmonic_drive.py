@@ -12,11 +12,10 @@ from tsas_cli.drive.diagnosis import diagnose_drive
 from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of
 from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
-from tsas_cli.drive.frequency_response import frequency_response
-from tsas_cli.drive.runs import drive_runs
+from tsas_cli.drive.json import tables
+from tsas_cli.drive.runs import drive_runs, frequency_response
 from tsas_cli.drive.search import DriveFits, DriveSearch, find_terms
 from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_of
-from tsas_cli.drive.tables import tables
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset

@@ -19,10 +19,7 @@ _COLOURS = ("before", "after")
 def plot_loop(run: Prepared, models: Mapping[str, Model], channel: str) -> "tuple[Axes, Axes]":
     """Draw a channel over x_in, and the residual of each model below; return the two axes.
 
-    Raises
-    ------
-    InputError
-        The run has no such channel.
+    InputError: the run has no such channel.
     """
     from matplotlib import pyplot as plt
 

@@ -4,9 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.comparing import predict_stage
+from tsas_cli.comparing import predict as predicting
 from tsas_cli.comparing.predict import Predicted, read_models
-from tsas_cli.comparing.predict import predict as predict_runs
 from tsas_cli.identification.model import Model
 from tsas_cli.recordings.columns import name_by
 from tsas_cli.recordings.dataset import Dataset
@@ -28,7 +27,7 @@ class PredictResult(Result):
 
     def tables(self) -> list[Table]:
         """Return the models, their errors, and which runs lie outside their ranges."""
-        return predict_stage.tables(self.record, self.titled("predictions"))
+        return predicting.tables(self.record, self.titled("predictions"))
 
     def sentences(self) -> list[str]:
         """Return which model predicts best, and what limits that."""
@@ -82,15 +81,15 @@ def predict(
     inputs = [data.folder, *(side for side in given if isinstance(side, Path))]
     with folder_if(path, stage="predict", inputs=inputs, force=force) as folder:
         step.ahead(len(sides) * len(data.runs))
-        it = predict_runs(sides, data, fit_own=fit_own, step=step)
+        it = predicting.predict(sides, data, fit_own=fit_own, step=step)
         record = PredictionFile(
             **data.header(path),
-            models=predict_stage.models_of(it, path),
+            models=predicting.models_of(it, path),
             own_values_fitted=bool(fit_own),
             channels=it.channels,
             ranges=it.ranges,
-            findings=tuple(predict_stage.findings(it)),
-            notes=tuple(predict_stage.notes(it)),
+            findings=tuple(predicting.findings(it)),
+            notes=tuple(predicting.notes(it)),
         )
         if folder is not None:
             record.write(folder)

@@ -17,7 +17,7 @@ from tsas_cli.stages.given import Named, file_of, places_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-from tsas_cli.verifying.seal import PAGE_MARK, with_seal
+from tsas_cli.verifying.claims import PAGE_MARK, with_seal
 
 
 @dataclass(frozen=True, repr=False, eq=False)

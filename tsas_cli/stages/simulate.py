@@ -18,8 +18,7 @@ from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of
-from tsas_cli.recordings.writing import write_result
-from tsas_cli.recordings.written import WrittenRuns
+from tsas_cli.recordings.writing import WrittenRuns, write_result
 from tsas_cli.records import simulation as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.calibration import MODEL_FILE
@@ -47,7 +46,7 @@ class SimulationResult(Result):
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
-        """Return the compared to a run."""
+        """Return a simulated run."""
         return recording_of(self.runs, run)
 
     def tables(self) -> list[Table]:

@@ -27,23 +27,27 @@ from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, one_
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
-from tsas_cli.tracking.drives import known_drive
-from tsas_cli.tracking.notes import dynamic_notes, run_notes
-from tsas_cli.tracking.recorded import conditions, manifest, stated_model, table_of
+from tsas_cli.tracking.conditions import Condition, disturbed, printed_rmse, proximal_spring
+from tsas_cli.tracking.recorded import (
+    conditions,
+    dynamic_notes,
+    manifest,
+    run_notes,
+    stated_model,
+    table_of,
+)
 from tsas_cli.tracking.references import reference as reference_of
-from tsas_cli.tracking.scores import over_seeds
-from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
-from tsas_cli.tracking.table_5 import printed_rmse
+from tsas_cli.tracking.settings import Settings, known_drive, printed_gains, read_settings
 from tsas_cli.tracking.track import (
     Known,
     Plant,
     TendonDynamics,
     Tracked,
+    over_seeds,
     plan,
     run_loop,
 )
-from tsas_cli.verifying.changed import change_notes
+from tsas_cli.verifying.claims import change_notes
 
 DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")
 COMPARED_SEEDS = 10

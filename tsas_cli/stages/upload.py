@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.recordings.checked import changed, local_file
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Run
+from tsas_cli.recordings.parquet_files import changed, local_file
 from tsas_cli.recordings.storage import Address
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, place_of

@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.support import limits, memory
+from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.replacing import (
     SUMS,
@@ -170,7 +170,7 @@ def read_json(path: Path) -> Any:
     limit.
     """
     try:
-        memory.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
+        limits.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
         text = limits.text_of(path, limits.JSON_BYTES)
         content = json.loads(text, object_pairs_hook=_without_duplicates)
     except OSError as error:

@@ -174,9 +174,8 @@ def _of_stage(folder: Path, stage: str) -> set[str] | None:
     listed = {line.partition("  ")[2] for line in lines}
     summaries = (folder / name for name in listed if "/" not in name and name.endswith(".json"))
     stages = {_stage_in(summary) for summary in summaries} - {None}
-    owner = (
-        {_SWEEP} if _SWEEP in stages else stages
-    )  # a task's folder also holds the JSON of its stage
+    # A task's folder also holds the JSON of its stage.
+    owner = {_SWEEP} if _SWEEP in stages else stages
     return listed | {SUMS} if owner == {stage} else None
 
 

@@ -14,8 +14,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.outcome import TaskOutcome, failure, run_task, worker_death
-from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions
+from tsas_cli.sweeping.outcome import (
+    ONE_THREAD,
+    TaskOutcome,
+    failure,
+    refuse_others,
+    run_task,
+    versions,
+    worker_death,
+)
 
 if TYPE_CHECKING:
     from distributed import Client, Security

@@ -8,8 +8,7 @@ from threading import local
 
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.worker_process import WorkerProcess
-from tsas_cli.sweeping.outcome import TaskOutcome, run_task, worker_death
-from tsas_cli.sweeping.versions import ONE_THREAD
+from tsas_cli.sweeping.outcome import ONE_THREAD, TaskOutcome, run_task, worker_death
 
 TRIES = 2  # of a task whose worker dies
 
@@ -34,9 +33,7 @@ def in_processes(
     finally:
         crew.stopped = True
         pool.shutdown(wait=False, cancel_futures=True)
-        while any(
-            future.running() for future in numbers
-        ):  # a thread may be about to start a worker
+        while any(future.running() for future in numbers):  # it may be about to start a worker
             crew.kill()
             time.sleep(0.05)
         pool.shutdown()

@@ -11,6 +11,7 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.records.tracking import ConditionChange
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range
+from tsas_cli.tracking.settings import Settings, printed_gains
 from tsas_cli.tracking.track import Plant
 
 ALLOWED = {
@@ -97,3 +98,19 @@ def _change(option: str, where: str) -> ConditionChange:
             remedy=f"leave out @{moment}: {ONLY_FROM_THE_START[name]}",
         )
     return ConditionChange(quantity=name, value=value, from_s=from_s)
+
+
+def printed_rmse(
+    controller: str, condition: Condition, reference: str, settings: Settings
+) -> float | None:
+    """Return the printed RMSE of a controller, None where anything is not the paper's.
+
+    The gains may be read per m or per mm.
+    """
+    as_the_paper = reference == "sine" and settings in (Settings(), printed_gains(Settings()))
+    undisturbed = not condition.changes
+    if not as_the_paper or not (undisturbed or condition == proximal_spring()):
+        return None
+    name = "undisturbed" if undisturbed else "disturbed"
+    printed = yang2025().values.get(f"tracking.{name}.rmse_{controller.replace('-', '_')}")
+    return None if printed is None else printed.value

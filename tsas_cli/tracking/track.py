@@ -1,6 +1,7 @@
 """One run of the closed loop: the controller's model makes the path, the plant answers."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -23,22 +24,34 @@ from tsas_cli.physics.ends import last_direction
 from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
+from tsas_cli.records.tracking import Scores, Spread
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
-from tsas_cli.tracking.scores import Score, score
 from tsas_cli.tracking.settings import Settings
 
+OUTSIDE = 0.02  # of the wanted force's range
 TendonDynamics = Literal["slip", "lugre"]
 RELAY_S = 0.5  # in which …
 RELAY_SHARE = 0.25  # … a loop whose motor is at its limits for so much of the time, and …
 RELAY_TURNS_PER_S = 20.0  # … goes so often from one to the other, is a relay
-
-
 REMEDIES: dict[TendonDynamics, str] = {
     "slip": "use more substeps in [loop] of the settings",
     "lugre": "leave out [bristles.damping_N_s_per_mm], which is critical then, or use more "
     "substeps in [loop] of the settings",
 }
+
+
+@dataclass(frozen=True)
+class Score:
+    """One run. Errors are wanted less true force at the load; u is the speed asked for."""
+
+    rmse_N: float
+    lowest_error_N: float
+    highest_error_N: float
+    effort_rpm: float  # root mean square of u
+    chatter_rpm_per_s: float  # total variation of u per second
+    outside_percent: float  # time with an error beyond 2 % of the wanted force's range
+    at_limit_percent: float  # time with the motor at its speed limit
 
 
 @dataclass(frozen=True)
@@ -197,3 +210,30 @@ def _within(true: Mask, width: int) -> npt.NDArray[np.int64]:
     width = min(width, true.size)
     count: npt.NDArray[np.int64] = total[width:] - total[:-width]
     return count
+
+
+def score(
+    wanted_N: Floats, f_out_N: Floats, asked_rpm: Floats, step_s: float, limit_rpm: float
+) -> Score:
+    """Return the numbers of a run, all arrays of shape (m,)."""
+    error = wanted_N - f_out_N
+    beyond = np.abs(error) > OUTSIDE * np.ptp(wanted_N)
+    return Score(
+        rmse_N=float(np.sqrt(np.mean(error**2))),
+        lowest_error_N=float(error.min()),
+        highest_error_N=float(error.max()),
+        effort_rpm=float(np.sqrt(np.mean(asked_rpm**2))),
+        chatter_rpm_per_s=float(np.abs(np.diff(asked_rpm)).sum() / (step_s * error.size)),
+        outside_percent=100.0 * float(beyond.mean()),
+        at_limit_percent=100.0 * float((np.abs(asked_rpm) >= limit_rpm).mean()),
+    )
+
+
+def over_seeds(scores: Sequence[Score]) -> Scores:
+    """Return mean and standard deviation of each number over the seeds; of one seed no spread."""
+    spreads = {}
+    for field in fields(Score):
+        values = np.array([getattr(one, field.name) for one in scores])
+        spread = float(values.std(ddof=1)) if values.size > 1 else None
+        spreads[field.name] = Spread(mean=float(values.mean()), sd=spread)
+    return Scores(**spreads)

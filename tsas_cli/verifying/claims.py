@@ -1,21 +1,42 @@
-"""Checksums that files record of other files, at the time of writing or reading."""
+"""Checksums that files record of other files, at the time of writing or reading.
 
+The first lines of a page say that it is one, so that a page whose end is lost is known; its inputs
+and the checksum of all above stand at its end.
+"""
+
+import hashlib
+import json
 import os.path
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml
-from tsas_cli.recordings.storage import is_address, path_from
+from tsas_cli.recordings.storage import Location, is_address, location_text, path_from
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import read_json
+from tsas_cli.support.files import read_json, sha256_of
 from tsas_cli.support.replacing import SUMS
-from tsas_cli.verifying.seal import sealed
 
+_TYPE = "<!DOCTYPE html>\n"
+_HEAD = "<!-- a page of tsas, which ends with its own checksum -->\n"
+PAGE_MARK = _HEAD.encode()
+_READ = "<!-- tsas has read: "
+_PAGE_SUM = re.compile(rb"<!-- sha256 of all above: ([0-9a-f]{64}) -->\n")
+_MARKS = (PAGE_MARK, _READ.encode(), b"<!-- sha256 of all above: ")
+_LENGTH = len("<!-- sha256 of all above:  -->\n") + 64
 _SUM = re.compile(r"([0-9a-f]{64})  (.+)")
 _INPUTS = ("model", "plant", "drive", "settings", "reference")  # keys of a stage's JSON
+
+
+@dataclass(frozen=True)
+class Seal:
+    """The recorded and the actual checksum of a page, and its input files."""
+
+    sha256: str
+    found: str
+    read: tuple[Any, ...]
 
 
 @dataclass(frozen=True)
@@ -130,3 +151,81 @@ def _claim(path: Path, folder: object, file: str, digest: str) -> Claim:
     if is_address(location):
         return Claim(path, location, digest)
     return Claim(path, file, digest, path_from(path.resolve().parent, location))
+
+
+def with_seal(text: str, files: Iterable[tuple[Location, str]], page: Path) -> str:
+    """Return a page's text with its seal; locations are relative to the page.
+
+    `files` are folders, or addresses, each with the name of a file in it.
+    """
+    home = page.parent.resolve()
+    read = [
+        {
+            "file": name,
+            "folder": location_text(home, folder),
+            "sha256": hashlib.sha256((folder / name).read_bytes()).hexdigest(),
+        }
+        for folder, name in files
+    ]
+    listed = json.dumps(read, ensure_ascii=False).replace("--", "-\\u002d")  # would end the comment
+    marked = text.replace(_TYPE, _TYPE + _HEAD, 1)
+    body = f"{marked.rstrip()}\n{_READ}{listed} -->\n"
+    return f"{body}<!-- sha256 of all above: {hashlib.sha256(body.encode()).hexdigest()} -->\n"
+
+
+def sealed(path: Path) -> Seal | None:
+    """Return the seal of a page, or None if it is no page of tsas.
+
+    InputError: the page cannot be read, or its seal is broken.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+    if not any(mark in content for mark in _MARKS):
+        return None
+    body, line = content[:-_LENGTH], content[-_LENGTH:]
+    checksum = _PAGE_SUM.fullmatch(line)
+    if checksum is None:
+        raise InputError("its last line is not the checksum of its seal", where=path)
+    listed = body.rpartition(_READ.encode())[2].rstrip()
+    try:
+        read = json.loads(listed.removesuffix(b"-->"))
+    except ValueError as error:
+        raise InputError("does not list its inputs", where=path) from error
+    found = hashlib.sha256(body).hexdigest()
+    return Seal(checksum[1].decode(), found, tuple(read) if isinstance(read, list) else ())
+
+
+def change_notes(given: Iterable[object]) -> list[str]:
+    """Return a sentence for each folder, of what is given, that was changed since it was written.
+
+    Of a file in such a folder, that file counts alone; what is no path, or has no checksums beside
+    it, tells nothing.
+    """
+    paths = dict.fromkeys(path for path in given if isinstance(path, Path))
+    return [
+        f"Changed since it was written: {', '.join(found)}. What is shown of it is not what the "
+        "stage found; `tsas verify` says more."
+        for path in paths
+        if (found := list(_changed(path)))
+    ]
+
+
+def _changed(path: Path) -> Iterator[str]:
+    folder = path if path.is_dir() else path.parent
+    try:
+        claims = list(claims_of(folder / SUMS)) if (folder / SUMS).is_file() else []
+    except InputError:
+        yield f"{folder.name}/{SUMS}"
+        return
+    for claim in claims:
+        if path in (folder, folder / claim.file) and not _fits(folder / claim.file, claim.sha256):
+            yield f"{folder.name}/{claim.file}"
+
+
+def _fits(path: Path, sha256: str) -> bool:
+    try:
+        return sha256_of(path) == sha256
+    except OSError:
+        return False

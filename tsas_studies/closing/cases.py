@@ -26,9 +26,8 @@ from tsas_cli.stages.diagnose import diagnose
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.tracking.recorded import conditions, manifest, stated_rig, table_of
 from tsas_cli.tracking.references import reference
-from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import Settings
-from tsas_cli.tracking.track import Known, Plant, plan, run_loop
+from tsas_cli.tracking.track import Known, Plant, over_seeds, plan, run_loop
 from tsas_studies.closing.drive import known_drives, record_drive
 from tsas_studies.closing.hidden import HiddenCase
 

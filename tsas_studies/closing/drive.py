@@ -27,9 +27,8 @@ from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.arrays import Floats
-from tsas_cli.tracking.drives import actuator_of
 from tsas_cli.tracking.recorded import manifest
-from tsas_cli.tracking.settings import Settings
+from tsas_cli.tracking.settings import Settings, actuator_of
 
 CHIRP_S, CHIRP_RPM, FIRST_HZ, LAST_HZ = 40.0, 1500.0, 0.2, 120.0
 SINES_S, SINES = 20.0, ((400.0, 2.0), (150.0, 13.0))  # rpm, rad/s

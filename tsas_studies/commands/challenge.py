@@ -6,8 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present, progress
 
 challenge = typer.Typer(
     name="challenge",

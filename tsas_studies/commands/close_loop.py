@@ -8,7 +8,6 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands import common
-from tsas_cli.commands.progress import progress
 
 
 def close_loop(
@@ -33,7 +32,10 @@ def close_loop(
     as_json: common.Json = False,
 ) -> None:
     """Compare tracking with the nominal, the extended and the true model of a rig."""
-    with progress("close-loop", quiet=quiet) as step, common.with_stream(rrd, step, _of_each_case):
+    with (
+        common.progress("close-loop", quiet=quiet) as step,
+        common.with_stream(rrd, step, _of_each_case),
+    ):
         result = tsas.close_loop(
             out=out,
             cases=common.names(cases),

@@ -1,8 +1,7 @@
 """`tsas reproduce`: the source paper's tables and figures computed again, beside what it prints."""
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present
-from tsas_cli.commands.progress import progress
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present, progress
 
 
 def reproduce(

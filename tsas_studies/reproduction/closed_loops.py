@@ -17,9 +17,8 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.tracking.conditions import Condition, proximal_spring
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
-from tsas_cli.tracking.scores import Score
 from tsas_cli.tracking.settings import Settings, printed_gains
-from tsas_cli.tracking.track import Known, Plant, Tracked, plan, run_loop
+from tsas_cli.tracking.track import Known, Plant, Score, Tracked, plan, run_loop
 
 Reading = Literal["per mm", "per m"]
 READINGS: tuple[Reading, ...] = ("per mm", "per m")

@@ -3,7 +3,7 @@
 from typing import Any
 
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.drawing import kept_samples
 from tsas_studies.reproduction.group import Figure
 
 COLUMNS = 2  # of the legend, which a phone shows whole

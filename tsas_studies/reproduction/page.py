@@ -6,11 +6,10 @@ from functools import partial
 import numpy as np
 
 from tsas_cli.paper import Paper
-from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table
+from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, rendered
 from tsas_cli.reporting.content import Group as Fold
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import ABSENT, as_printed, plain, spanned
-from tsas_cli.reporting.rendered import rendered
 from tsas_studies.reproduction.curves import draw_curves
 from tsas_studies.reproduction.group import Figure, Group, Line, Row
 from tsas_studies.reproduction.summary import counted, sentence, verdict_table

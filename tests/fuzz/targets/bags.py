@@ -6,11 +6,10 @@ from tempfile import TemporaryDirectory
 from tests.fuzz.foreign import Offering, whole_file
 from tests.fuzz.rules import chosen
 from tests.recordings.readers.bags import save_mcap, save_ros1, save_ros2
-from tsas_cli.recordings.readers import mcap_file, ros1_bag, ros2_bag  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import bags  # noqa: F401 # instrumented
 
 FORMATS = [
-    whole_file(Offering(module), f"a.{suffix}")
-    for module, suffix in (("mcap_file", "mcap"), ("ros1_bag", "bag"), ("ros2_bag", "db3"))
+    whole_file(Offering("bags"), f"a.{suffix}") for suffix in ("mcap", "bag", "db3")
 ]
 SHARE = 0.1
 MOST_BYTES = 50_000

@@ -10,7 +10,7 @@ from tests.fuzz.targets.parquet import MOST_BYTES, WORDS, parquet
 from tests.fuzz.targets.parquet import seeds as any_parquet
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import open_run, read_columns, read_recording
-from tsas_cli.recordings.written import columns_of, names_of
+from tsas_cli.recordings.writing import columns_of, names_of
 
 __all__ = ["MOST_BYTES", "WORDS", "one", "seeds"]
 SHARE = 5

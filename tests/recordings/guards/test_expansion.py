@@ -3,7 +3,7 @@
 import pytest
 
 from tsas_cli.recordings.guards.expansion import Expanded
-from tsas_cli.support import limits, memory
+from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
 
@@ -34,7 +34,7 @@ def test_items_are_counted(tmp_path):
 
 
 def test_what_is_unpacked_has_to_fit_into_the_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory, "available", lambda: 1_000_000_000)
+    monkeypatch.setattr(limits, "available", lambda: 1_000_000_000)
     expanded = Expanded(tmp_path / "a.mat", 1)
     expanded.bytes = 1_000_000_000 // limits.COPIES
     expanded.fits()

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from tsas_cli.recordings.conditions import at_most
+from tsas_cli.recordings.ingest_map import at_most
 
 
 def test_what_is_late_is_ended_and_what_is_not_goes_on():

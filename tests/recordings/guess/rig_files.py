@@ -8,8 +8,8 @@ import numpy as np
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.guess.columns import Proposed
 from tsas_cli.recordings.guess.proposal import propose
-from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION, IngestMap
 from tsas_cli.recordings.readers import read
 from tsas_cli.recordings.units import conversion

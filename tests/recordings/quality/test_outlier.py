@@ -8,8 +8,7 @@ import pytest
 from tests.recordings.quality.bench import Bench, columns
 from tests.recordings.quality.test_faults import GOOD, found
 from tsas_cli.numerics.noise import noise_sd
-from tsas_cli.recordings.quality.outlying import outlying
-from tsas_cli.recordings.quality.samples import span_of, step_of
+from tsas_cli.recordings.quality.samples import outlying, span_of, step_of
 
 N = GOOD["time_s"].size
 TIME = np.arange(2000) / 500.0

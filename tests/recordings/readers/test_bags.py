@@ -9,7 +9,7 @@ import pytest
 from tests.recordings.readers.bags import FORCES, JOINTS, save_mcap, save_ros1, save_ros2
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import names, read
-from tsas_cli.recordings.readers.messages import Topic, columns_of
+from tsas_cli.recordings.readers.bags import Topic, columns_of
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 

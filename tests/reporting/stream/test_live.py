@@ -12,8 +12,7 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.stream.live import LiveStream
-from tsas_cli.reporting.stream.opened import outline, to_file
-from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder import Recorder, outline, to_file
 
 
 @pytest.fixture

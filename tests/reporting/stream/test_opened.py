@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from tests.reporting.viewer.streams import make_stream
-from tsas_cli.reporting.stream.opened import is_finished
+from tsas_cli.reporting.stream.recorder import is_finished
 from tsas_cli.support.errors import InputError
 
 

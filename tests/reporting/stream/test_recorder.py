@@ -10,8 +10,7 @@ from rerun.chunk import RrdReader
 
 from tests.reporting.stream.streams import read
 from tsas_cli.reporting.stream.layout import series
-from tsas_cli.reporting.stream.opened import to_file
-from tsas_cli.reporting.stream.recorder import ROWS, times_of
+from tsas_cli.reporting.stream.recorder import ROWS, times_of, to_file
 from tsas_cli.support.errors import InputError
 
 TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912345])

@@ -23,7 +23,7 @@ from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.phases import BY_KEY
+from tsas_cli.reporting.names import BY_KEY
 from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.reporting.stream.stream import plain_text

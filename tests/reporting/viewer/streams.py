@@ -6,8 +6,7 @@ import numpy as np
 from rerun.blueprint import Blueprint, Tabs
 
 from tsas_cli.reporting.stream.layout import series
-from tsas_cli.reporting.stream.opened import to_file
-from tsas_cli.reporting.stream.recorder import times_of
+from tsas_cli.reporting.stream.recorder import times_of, to_file
 
 
 def make_stream(path: Path, samples: int = 2000) -> Path:

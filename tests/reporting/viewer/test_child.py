@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from tsas_cli.reporting.viewer import child
-from tsas_cli.reporting.viewer.child import viewer_child
-from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.child import LOOPBACK, free_ports, viewer_child
 from tsas_cli.support.errors import InputError
 
 SERVE = f"""#!{sys.executable}

@@ -10,8 +10,8 @@ from urllib.request import urlopen
 
 import pytest
 
-from tsas_cli.reporting.viewer.page_server import served_page
-from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.child import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.open import served_page
 
 PAGE, CONTENT = b"<html>" * 400_000, bytes(range(256)) * 10_000
 

@@ -12,9 +12,7 @@ from rerun.experimental import ViewerClient
 from tests.reporting.made_folders import make_dataset
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
-from tsas_cli.reporting.viewer.child import viewer_child
-from tsas_cli.reporting.viewer.drawing import drawn_with
-from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.child import LOOPBACK, drawn_with, free_ports, viewer_child
 from tsas_cli.stages.simulate import simulate
 from tsas_cli.support.errors import InputError
 

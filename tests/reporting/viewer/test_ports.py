@@ -2,7 +2,7 @@ import socket
 
 import pytest
 
-from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.child import LOOPBACK, free_ports
 from tsas_cli.support.errors import InputError
 
 

@@ -1,6 +1,10 @@
 """The error for a damaged file, or an encrypted one."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.limits import out_of_memory
 
 
 class EncryptedError(InputError):
@@ -22,3 +26,16 @@ def damaged(path: object, kind: str, error: Exception) -> InputError:
         where=path,
         remedy="the file may be incomplete: copy or export it again",
     )
+
+
+@contextmanager
+def foreign(path: object, kind: str) -> Iterator[None]:
+    """Convert the errors of the library for a format to `InputError`."""
+    try:
+        yield
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise out_of_memory(path) from error
+    except Exception as error:  # a damaged file raises any of a dozen types
+        raise damaged(path, kind, error) from error

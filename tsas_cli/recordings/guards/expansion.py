@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.support import limits, memory
+from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
 
@@ -51,4 +51,4 @@ class Expanded:
 
     def fits(self) -> None:
         """Refuse a file that is loaded whole and exceeds the memory."""
-        memory.fits(self.path, limits.COPIES * self.bytes)
+        limits.fits(self.path, limits.COPIES * self.bytes)

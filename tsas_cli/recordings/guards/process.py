@@ -35,12 +35,8 @@ class _Process:
     def call(self, seconds: float, *request: Any) -> Any:
         """Return the result of `limited`.
 
-        Raises
-        ------
-        TimeoutError
-            It is not done after so many seconds.
-        EOFError
-            The process has died.
+        TimeoutError: it is not done after so many seconds.
+        EOFError: the process has died.
         """
         with self.lock:
             if self.running is None or self.owner != os.getpid():  # a fork starts its own
@@ -71,12 +67,8 @@ _PROCESS = _Process()
 def in_another_process(module: str, function: str, path: Path, *rest: Any, kind: str) -> Any:
     """Return the result of a module's function for a file, called in the other process.
 
-    Raises
-    ------
-    InputError
-        The function raises it, or the file crashes the process or exceeds a limit.
-    OSError
-        The function raises it.
+    InputError: the function raises it, or the file crashes the process or exceeds a limit.
+    OSError: the function raises it.
     """
     size = path.stat().st_size
     if _PROCESS.refused not in (None, path):

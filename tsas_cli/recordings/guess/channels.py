@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
-from tsas_cli.recordings.guess.columns import FileColumn
+from tsas_cli.recordings.guess.columns import Certainty, FileColumn, Proposed, with_unit
 from tsas_cli.recordings.guess.ends import FORCES, LENGTHS, Assignment, assign
 from tsas_cli.recordings.guess.looks import correlation, sign_of
-from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.ingest_map import QUESTION
 
 _CLEAR = 0.75  # least magnitude of the correlation of two channels

@@ -7,9 +7,8 @@ import numpy as np
 
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.guess.columns import FileColumn
+from tsas_cli.recordings.guess.columns import Certainty, FileColumn, Proposed, with_unit
 from tsas_cli.recordings.guess.looks import increases, is_even
-from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.arrays import Floats
@@ -113,7 +112,7 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
         stated = f"its stated unit {column.unit} means {_rate(seconds)} and "
         stated += f"{seconds * column.values.size:.3g} s in total"
         return QUESTION, f"{stated}; {_listed(step)}", ()
-    likely = [unit for unit in _UNITS if _usual(step, unit)]
+    likely = [unit for unit in _UNITS if (_USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1])]
     since_1970 = [unit for unit in _UNITS if _is_date(float(column.values[0]), unit)]
     likely = [unit for unit in likely if unit in since_1970] or likely
     counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
@@ -128,10 +127,6 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
 def _implausible(interval_s: float, rows: float) -> bool:
     slow = interval_s >= _USUAL_S[1] and interval_s * rows > _STROKE_S[1]
     return interval_s < _FASTEST_S or interval_s * rows < _STROKE_S[0] or slow
-
-
-def _usual(step: float, unit: str) -> bool:
-    return _USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1]
 
 
 def _is_date(value: float, unit: str) -> bool:

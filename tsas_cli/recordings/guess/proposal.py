@@ -10,10 +10,9 @@ from typing import Any
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock, repeats
-from tsas_cli.recordings.guess.columns import FileColumn, columns_of, with_trusted_names
+from tsas_cli.recordings.guess.columns import FileColumn, Proposed, columns_of, with_trusted_names
 from tsas_cli.recordings.guess.looks import correlation
 from tsas_cli.recordings.guess.opening import Opened, open_file
-from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names, stem
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions

@@ -10,8 +10,8 @@ import tomlkit
 from tomlkit.items import Table
 
 from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
+from tsas_cli.recordings.guess.columns import Proposed
 from tsas_cli.recordings.guess.proposal import MapProposal
-from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.support import __version__

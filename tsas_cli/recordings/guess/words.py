@@ -40,9 +40,8 @@ _END_WORDS: dict[End, str] = {
     "abtrieb abtriebsseite lastseite sortie aval 输出 远端 末端",
     "motor": "motor moteur servo 电机",
 }
-WEAK = frozenset(
-    {"load", "last", "charge", "dist", "end", "负载"}
-)  # mean an end only with a quantity
+# They mean an end only with a quantity.
+WEAK = frozenset({"load", "last", "charge", "dist", "end", "负载"})
 _REFERENCES = (
     "ref reference desired target setpoint set soll sollwert wanted cmd command commanded "
     "demand trajectory goal consigne 期望 参考"

@@ -78,7 +78,9 @@ def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
     found: dict[str, list[tuple[str, Remark]]] = {}
     for rows, results in stretches:
         for remark in _remarks(results):
-            found.setdefault(_without_numbers(remark), []).append((rows, remark))
+            found.setdefault(f"{remark.column} {re.sub(_NUMBER, '', remark.sentence)}", []).append(
+                (rows, remark)
+            )
     return [_of_several(same, len(stretches)) for same in found.values()]
 
 
@@ -93,11 +95,6 @@ def _of_several(same: Sequence[tuple[str, Remark]], stretches: int) -> Remark:
 
 def _remarks(results: Results) -> list[Remark]:
     return [one for one in results if isinstance(one, Remark)]
-
-
-def _without_numbers(remark: Remark) -> str:
-    """Return a remark's column and sentence without numbers and the words after them (plurals)."""
-    return f"{remark.column} {re.sub(_NUMBER, '', remark.sentence)}"
 
 
 def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:

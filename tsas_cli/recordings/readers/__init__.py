@@ -3,6 +3,8 @@
 Packed files and those of spreadsheets are first converted to a file of another known format.
 """
 
+import json
+import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
@@ -12,44 +14,41 @@ from typing import Any
 from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers import converted, offered
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions, whole
-from tsas_cli.recordings.readers.unread import way_to_convert
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
-_READERS = {
-    ".csv": "delimited",
-    ".tsv": "delimited",
-    ".txt": "delimited",
-    ".dat": "delimited",
-    ".asc": "delimited",
-    ".mat": "matlab",
-    ".mf4": "mdf",
-    ".mdf": "mdf",
-    ".json": "json_table",
-    ".parquet": "parquet",
-    ".feather": "feather",
-    ".arrow": "feather",
-    ".npy": "numpy_file",
-    ".npz": "numpy_file",
-    ".h5": "hdf5",
-    ".hdf5": "hdf5",
-    ".tdms": "tdms",
-    ".mcap": "mcap_file",
-    ".bag": "ros1_bag",
-    ".db3": "ros2_bag",
-    ".join": "joined",
+_PANDAS = 'python -c "import pandas, sys; pandas.{}(sys.argv[1]).to_parquet(sys.argv[2])" {} {}'
+_ARCHIVES = {
+    ".tar": "mkdir -p {folder} && tar -xf {file} -C {folder}",
+    ".7z": "7z x {file} -o{folder}",
+    ".rar": "unrar x {file} {folder}/",
 }
-_ISOLATED = {  # their libraries crash on damaged files
-    "matlab": "a MATLAB file",
-    "mdf": "MDF",
-    "feather": "Feather",
-    "numpy_file": "a NumPy file",
-    "hdf5": "HDF5",
-    "tdms": "TDMS",
-    "mcap_file": "MCAP",
-    "ros1_bag": "a bag of ROS 1",
-    "ros2_bag": "a bag of ROS 2",
+_PANDAS_READERS = {
+    ".orc": "read_orc",
+    ".pkl": "read_pickle",  # runs code of the file
+    ".pickle": "read_pickle",
+    ".sav": "read_spss",
+    ".dta": "read_stata",
+    ".sas7bdat": "read_sas",
 }
+_R = "write.csv(readRDS({file}), {made}, row.names = FALSE)"
+_COPIES = {".nc": ".h5", ".nc4": ".h5", ".log": ".txt", ".out": ".txt", ".prn": ".txt"}
+_FORMATS = (  # suffixes, reader, and what they are if its library crashes on damaged files
+    ((".csv", ".tsv", ".txt", ".dat", ".asc"), "delimited", ""),
+    ((".mat",), "matlab", "a MATLAB file"),
+    ((".mf4", ".mdf"), "mdf", "MDF"),
+    ((".json",), "json_table", ""),
+    ((".parquet",), "parquet", ""),
+    ((".feather", ".arrow"), "feather", "Feather"),
+    ((".npy", ".npz"), "numpy_file", "a NumPy file"),
+    ((".h5", ".hdf5"), "hdf5", "HDF5"),
+    ((".tdms",), "tdms", "TDMS"),
+    ((".mcap",), "bags", "MCAP"),
+    ((".bag",), "bags", "a bag of ROS 1"),
+    ((".db3",), "bags", "a bag of ROS 2"),
+    ((".join",), "joined", ""),
+)
+_READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
 _WITHOUT_OFFERED = ("delimited", "parquet", "mdf")  # they have `read` and `names`
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
@@ -119,10 +118,10 @@ def _suffix(path: Path) -> str:
 
 def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    name, kind = f"{__name__}.{module}", _ISOLATED.get(module)
+    name, kind = f"{__name__}.{module}", _READERS[_suffix(path)][1]
     if module not in _WITHOUT_OFFERED and function != "tables":
         name, rest = offered.__name__, (name, kind or "a table", *rest)
-    if kind is not None:
+    if kind:
         return in_another_process(name, function, path, *rest, kind=kind)
     return getattr(import_module(name), function)(path, *rest)
 
@@ -144,7 +143,7 @@ def _checked(
             _check(file)
             file = converted.converted(file, options, frozenset(_READERS))
         _check(file)
-        yield _READERS.get(_suffix(file), "spreadsheet"), file
+        yield _READERS.get(_suffix(file), ("spreadsheet",))[0], file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))
@@ -169,3 +168,27 @@ def _unknown(path: Path) -> InputError:
         expected=f"one of {', '.join(SUFFIXES)}",
         remedy=way_to_convert(path),
     )
+
+
+def way_to_convert(path: Path) -> str:
+    """Return the sentence with the command that makes a readable file, or which formats to use."""
+    suffixes = [suffix.lower() for suffix in path.suffixes]
+    last = suffixes[-1] if suffixes else ""
+    made = path.with_name(path.name.split(".")[0] or "data")
+    file, folder = shlex.quote(str(path)), shlex.quote(str(made))
+    if ".tar" in suffixes or last in (".tgz", ".tbz", ".txz"):
+        last = ".tar"
+    if last in _ARCHIVES:
+        command = _ARCHIVES[last].format(file=file, folder=folder)
+        return f"unpack it and ingest the folder {folder}: {command}"
+    if last in _PANDAS_READERS:
+        target = shlex.quote(f"{made}.parquet")
+        command = _PANDAS.format(_PANDAS_READERS[last], file, target)
+        trust = " (only if you trust it: the file may run code)" if "pickle" in command else ""
+        return f"convert it{trust}: {command}"
+    if last == ".rds":
+        said = _R.format(file=json.dumps(str(path)), made=json.dumps(f"{made}.csv"))
+        return f"convert it: Rscript -e {shlex.quote(said)}"
+    if last in _COPIES:
+        return f"copy it: cp {file} {shlex.quote(f'{made}{_COPIES[last]}')}"
+    return "export it from the program that has written it, as CSV or Parquet"

@@ -15,8 +15,8 @@ from tsas_cli.support.files import state_of
 SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _PACKED = (".gz", ".bz2", ".xz", ".zip")
 _CONVERTERS = dict.fromkeys(_PACKED, "packed") | {
-    ".jsonl": "json_lines",
-    ".ndjson": "json_lines",
+    ".jsonl": "json_table",
+    ".ndjson": "json_table",
     ".lvm": "labview",
     **dict.fromkeys(SHEETS, "spreadsheet"),
 }
@@ -40,12 +40,8 @@ def is_packed(path: Path) -> bool:
 def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
     """Return the temporary file of a `known` format that `path` is converted to.
 
-    Raises
-    ------
-    InputError
-        It is damaged, or holds no such file.
-    OSError
-        A file cannot be read or written.
+    InputError: it is damaged, or holds no such file.
+    OSError: a file cannot be read or written.
     """
     key = (path.absolute(), state_of(path), options.table, options.encoding)
     if key not in _made:

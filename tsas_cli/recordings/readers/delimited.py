@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import csv
 
-from tsas_cli.recordings.arrow_columns import floats_from
+from tsas_cli.recordings.parquet_files import floats_from
 from tsas_cli.recordings.readers.layout import (
     DoubtfulMarkError,
     Layout,
@@ -19,7 +19,6 @@ from tsas_cli.recordings.readers.layout import (
     grouped,
     number,
 )
-from tsas_cli.recordings.readers.stamps import Seconds, is_stamp
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
@@ -29,6 +28,7 @@ from tsas_cli.recordings.readers.table import (
     not_a_number,
     resolve,
 )
+from tsas_cli.recordings.readers.timebase import Seconds, is_stamp
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError

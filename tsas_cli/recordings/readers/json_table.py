@@ -6,9 +6,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.offered import Column, Offered
-from tsas_cli.recordings.readers.records import flat
+from tsas_cli.recordings.readers.offered import Column, Offered, flat
 from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 
@@ -89,3 +89,23 @@ def _is_column(value: Any) -> bool:
 
 def _is_plain(value: Any) -> bool:
     return isinstance(value, str | int | float)
+
+
+def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+    """Write the lines as one JSON list into a folder; return its path.
+
+    InputError: the file is not UTF-8.
+    """
+    del options, known
+    made = folder / "lines.json"
+    before = "["
+    try:
+        with path.open(encoding="utf-8-sig") as lines, made.open("w", encoding="utf-8") as file:
+            for line in limits.lines(lines, path):
+                if line.strip():
+                    file.write(before + line.rstrip())
+                    before = ",\n"
+            file.write("]" if before != "[" else "[]")
+    except UnicodeError as error:
+        raise InputError("is not UTF-8", where=path, expected="JSON Lines") from error
+    return made

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from tsas_cli.recordings.readers.stamps import is_stamp
 from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.recordings.readers.timebase import is_stamp
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 

@@ -1,26 +1,33 @@
 """MATLAB files: version 5 and earlier, and the HDF5 of version 7.3."""
 
+import struct
 import warnings
-from collections.abc import Iterator
+import zlib
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
-from tsas_cli.recordings.guards.damaged import damaged
-from tsas_cli.recordings.guards.matlab_packed import check_unpacked
-from tsas_cli.recordings.readers.controldesk import captures, channels_of, find_capture
+from tsas_cli.recordings.guards.damaged import foreign
+from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.readers.offered import Column, Offered
-from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions, floats
+from tsas_cli.recordings.readers.timebase import TIME
+from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
-from tsas_cli.support.memory import out_of_memory
 
+_HEADER, _TAG = 128, 8
+_ORDERS = {b"IM": "<", b"MI": ">"}
+_PACKED = 15
+_MOST_PACKED = 1032  # bytes per compressed byte, at most
+_PART = 1 << 12
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
@@ -46,22 +53,12 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
 
 def tables(path: Path) -> list[str]:
     """Return the names of the captures, if there are several."""
-    found = captures(_content(path))
+    with foreign(path, "a MATLAB file"):
+        found = captures(_content(path))
     return list(found) if len(found) > 1 else []
 
 
 def _content(path: Path) -> Raw:
-    try:
-        return _variables(path)
-    except InputError:
-        raise
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except Exception as error:  # a damaged file raises any of a dozen types
-        raise damaged(path, "a MATLAB file", error) from error
-
-
-def _variables(path: Path) -> Raw:
     """Return the variables as plain dictionaries, lists, text and arrays."""
     with path.open("rb") as stream:
         head = stream.read(520)
@@ -101,3 +98,125 @@ def _vectors(content: Raw, prefix: str = "") -> Iterator[tuple[str, Floats]]:
 def _is_matrix(value: Any) -> bool:
     is_array = isinstance(value, np.ndarray) and value.ndim in {1, 2} and value.size > 0
     return is_array and value.dtype.kind in "fiub"
+
+
+def check_unpacked(path: Path) -> None:
+    """Refuse a file that unpacks to more than a recording can hold, or exceeds the memory.
+
+    The declared size of a variable may be false, so a file that could be large is first unpacked in
+    parts to count its bytes.
+    """
+    claimed, expanded = Expanded.of(path), Expanded.of(path)
+    if expanded.of_file * _MOST_PACKED <= limits.HARMLESS:
+        return
+    with path.open("rb") as stream:
+        order = _ORDERS.get(stream.read(_HEADER)[-2:], "")
+        for kind, size in _elements(stream, order):
+            declared = (
+                _declared_size(stream.read(min(size, _PART)), order) if kind == _PACKED else size
+            )
+            claimed.add(declared, what="unpacked")
+        claimed.fits()
+        for kind, size in _elements(stream, order):
+            for part in _parts(stream, size) if kind == _PACKED else (size,):
+                expanded.grow(part, what="unpacked")
+    expanded.fits()
+
+
+def _elements(stream: BinaryIO, order: str) -> Iterator[tuple[int, int]]:
+    """Yield kind and size of each variable, with the stream at its beginning."""
+    end = _HEADER
+    stream.seek(end)
+    while order and len(tag := stream.read(_TAG)) == _TAG:
+        kind, size = struct.unpack(f"{order}II", tag)
+        end += _TAG + size
+        yield kind, size
+        stream.seek(end)
+
+
+def _declared_size(packed: bytes, order: str) -> int:
+    """Return the declared size of a packed variable [bytes]; 0 if it cannot be unpacked."""
+    try:
+        tag = zlib.decompressobj().decompress(packed, _TAG)
+    except zlib.error:
+        return 0
+    return int(struct.unpack(f"{order}II", tag)[1]) if len(tag) == _TAG else 0
+
+
+def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
+    """Yield the unpacked sizes of the parts of the next `size` bytes."""
+    packed = zlib.decompressobj()
+    while size > 0 and (content := stream.read(min(size, _PART))):
+        size -= len(content)
+        while content:
+            try:
+                yield len(packed.decompress(content, _MOST_PACKED * _PART))
+            except zlib.error:  # the reader reports it
+                return
+            content = packed.unconsumed_tail
+
+
+def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
+    """Return the struct that holds X and Y with data, or None.
+
+    InputError: there are several.
+    """
+    if _is_capture(content):
+        return content
+    found = captures(content)
+    if len(found) > 1:
+        raise InputError(
+            f"holds {len(found)} captures: {', '.join(found)}",
+            where=path,
+            expected="one",
+            remedy='name it in the map: table = "…" under [read]',
+        )
+    return next(iter(found.values()), None)
+
+
+def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return the captures among the variables, by name."""
+    return {name: value for name, value in content.items() if _is_capture(value)}
+
+
+def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
+    """Return the channels of a capture, with their clocks in s.
+
+    InputError: a channel, when it is loaded, differs in length from its clock.
+    """
+    clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
+    channels = [
+        Column(
+            str(channel.get("Name", "")).strip('"'),
+            partial(np.ravel, channel["Data"]),
+            str(channel.get("Unit", "")),
+            partial(_clock, channel, clocks, path),
+        )
+        for channel in _records(capture["Y"])
+    ]
+    description = str(capture.get("Description", ""))
+    return Offered(channels, (description,) if description else ())
+
+
+def _is_capture(value: Any) -> bool:
+    if not isinstance(value, Mapping) or not {"X", "Y"} <= set(value):
+        return False
+    records = [*_records(value["X"]), *_records(value["Y"])]
+    return all(isinstance(record, Mapping) and "Data" in record for record in records)
+
+
+def _records(value: Any) -> list[Any]:
+    """Return a struct array as a list; an array of one element is read as a struct."""
+    return list(value) if isinstance(value, list | np.ndarray) else [value]
+
+
+def _clock(channel: Mapping[str, Any], clocks: list[Floats], path: Path) -> Floats:
+    size = np.size(channel["Data"])
+    number = channel.get("XIndex", 1)  # number of the clock, from 1
+    clock = clocks[int(number) - 1] if np.ndim(number) == 0 and 1 <= number <= len(clocks) else None
+    if clock is None or clock.size != size:
+        raise InputError(
+            f"channel {channel.get('Name', '')} has {size} samples and no clock of that length",
+            where=path,
+        )
+    return clock

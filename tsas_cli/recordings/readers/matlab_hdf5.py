@@ -15,12 +15,8 @@ from tsas_cli.support.files import Raw
 def variables(path: Path) -> Raw:
     """Return the variables of a file: structs as dictionaries, struct arrays and cells as lists.
 
-    Raises
-    ------
-    InputError
-        h5py is not installed, or the file links to another one or exceeds a limit.
-    OSError
-        The file is damaged.
+    InputError: h5py is not installed, or the file links to another one or exceeds a limit.
+    OSError: the file is damaged.
     """
     h5py = optional("h5py", extra="mat")
     with h5py.File(path, "r") as file:

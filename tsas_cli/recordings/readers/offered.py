@@ -2,16 +2,17 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.recordings.guards.damaged import foreign
 from tsas_cli.recordings.guards.expansion import Expanded
-from tsas_cli.recordings.readers.stamps import Seconds, is_stamp
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
@@ -19,10 +20,11 @@ from tsas_cli.recordings.readers.table import (
     floats,
     resolve,
 )
-from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.recordings.readers.timebase import TIME, Seconds, is_stamp, on_one_clock
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import out_of_memory
+
+_MOST_ITEMS = 64  # of a list, whose items become columns; longer ones are images or scans
 
 
 @dataclass(frozen=True)
@@ -136,12 +138,71 @@ def _numbers(values: Any, source: ColumnSource, path: Path) -> tuple[Floats, boo
 
 @contextmanager
 def _opened(path: Path, module: str, kind: str, options: ReadOptions) -> Iterator[Offered]:
-    try:
-        with import_module(module).offered(path, options) as offered:
-            yield offered
-    except InputError:
-        raise
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except Exception as error:  # a damaged file raises any of a dozen types
-        raise damaged(path, kind, error) from error
+    with foreign(path, kind), import_module(module).offered(path, options) as offered:
+        yield offered
+
+
+def flat(record: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of a record by their paths: `pose.position.x`, `effort[0]`."""
+    for key, value in record.items():
+        yield from _named(f"{prefix}{key}", value)
+
+
+def _named(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    if is_dataclass(value):
+        value = vars(value)
+    if isinstance(value, np.ndarray):
+        value = value.tolist() if value.size <= _MOST_ITEMS else []
+    if isinstance(value, Mapping):
+        yield from flat(value, f"{name}.")
+    elif isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        for i, item in enumerate(value if len(value) <= _MOST_ITEMS else ()):
+            yield from _named(f"{name}[{i}]", item)
+    else:
+        yield name, value
+
+
+def columns_in(
+    name: str, array: Any, unit: str = "", load: Callable[[Any], npt.NDArray[Any]] | None = None
+) -> list[Column]:
+    """Return the columns of numbers or of times in an array.
+
+    A vector is a column, the field of records `name.field`, the j-th column of a matrix
+    `name(:,j)`; samples lie along its longer side. Other arrays hold none.
+
+    Parameters
+    ----------
+    array
+        With `shape`, `ndim` and `dtype`, such as one in a file.
+    load
+        Loads the values of `array`; without it they are there.
+    """
+    whole = partial(load, array) if load else partial(np.asarray, array)
+    if array.ndim not in {1, 2} or (array.size < 2 and array.ndim == 2):
+        return []
+    if array.dtype.names:
+        return [
+            Column(f"{name}.{field}" if name else field, partial(_field, whole, field), unit)
+            for field in array.dtype.names
+            if array.dtype[field].kind in "fiubmM" and array.ndim == 1
+        ]
+    if array.dtype.kind not in "fiubmM":
+        return []
+    if 1 in array.shape or array.ndim == 1:
+        return [Column(name, lambda: whole().ravel(), unit)]
+    across = array.shape[0] < array.shape[1]
+    named = [f"{name}(:,{j + 1})" if name else "" for j in range(min(array.shape))]
+    return [Column(n, partial(_column, whole, j, across), unit) for j, n in enumerate(named)]
+
+
+def _field(whole: Callable[[], npt.NDArray[Any]], field: str) -> npt.NDArray[Any]:
+    return whole()[field]
+
+
+def _column(
+    whole: Callable[[], npt.NDArray[Any]],
+    j: int,
+    across: bool,
+) -> npt.NDArray[Any]:
+    values = whole()
+    return values[j] if across else values[:, j]

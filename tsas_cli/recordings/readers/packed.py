@@ -13,7 +13,7 @@ from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import out_of_memory
+from tsas_cli.support.limits import out_of_memory
 
 _OPEN: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
 _PART = 1 << 20  # bytes at a time

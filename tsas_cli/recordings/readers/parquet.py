@@ -2,15 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
-import pyarrow as pa
 
 from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
 from tsas_cli.recordings.readers.feather import to_numpy
-from tsas_cli.recordings.readers.stamps import Seconds
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
@@ -20,6 +16,7 @@ from tsas_cli.recordings.readers.table import (
     in_batches,
     resolve,
 )
+from tsas_cli.recordings.readers.timebase import Seconds
 
 
 def batches(
@@ -49,7 +46,9 @@ def batches(
         first = 1
         for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
             values = {
-                source: _values(table, field.name, order[source])
+                source: to_numpy(
+                    table.column(table.schema.get_all_field_indices(field.name)[order[source]])
+                )
                 for source, field in fields.items()
             }
             typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
@@ -66,8 +65,3 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
     del options
     with reading(path), open_parquet(path) as file:
         return list(file.schema_arrow.names)
-
-
-def _values(table: pa.Table, name: str, order: int) -> npt.NDArray[Any]:
-    """Return column number `order` (from 0) among those of its name."""
-    return to_numpy(table.column(table.schema.get_all_field_indices(name)[order]))

@@ -5,7 +5,7 @@ from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.recordings.guards.damaged import foreign
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.readers.table import ReadOptions, optional
 from tsas_cli.support.errors import InputError, nearest
@@ -54,7 +54,7 @@ def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str
 def _sheets(path: Path) -> dict[str, list[list[Any]]]:
     """Return the rows of each sheet, from its first row."""
     calamine = optional("python_calamine", extra="excel")
-    try:
+    with foreign(path, "a spreadsheet"):
         if zipfile.is_zipfile(path):
             with zipfile.ZipFile(path) as archive:
                 expanded = Expanded.of(path)
@@ -65,10 +65,6 @@ def _sheets(path: Path) -> dict[str, list[list[Any]]]:
                 name: book.get_sheet_by_name(name).to_python(skip_empty_area=False)
                 for name in book.sheet_names
             }
-    except InputError:
-        raise
-    except Exception as error:  # a damaged file raises any of a dozen types
-        raise damaged(path, "a spreadsheet", error) from error
 
 
 def _has_numbers(rows: list[list[Any]]) -> bool:

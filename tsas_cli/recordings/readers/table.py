@@ -123,9 +123,8 @@ def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> 
 
     InputError: a value is not numeric, or the values are complex, dates or durations.
     """
-    if (
-        isinstance(values, np.ndarray) and values.dtype.kind in "cmM"
-    ):  # NumPy would drop the imaginary part or the unit
+    # NumPy would drop the imaginary part or the unit.
+    if isinstance(values, np.ndarray) and values.dtype.kind in "cmM":
         raise InputError(
             f"column {source} holds {values.dtype}", where=path, expected="real numbers"
         )

@@ -1,15 +1,60 @@
-"""Channels with different times, interpolated onto one clock."""
+"""Times: dates and durations in seconds, and channels of different times on one clock."""
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
+_DATE = re.compile(
+    r"\d{4}[-/]\d\d[-/]\d\d([T ]+\d\d:\d\d(:\d\d([.,]\d{1,9})?)?( ?(Z|UTC|[+-]\d\d:?\d\d))?)?"
+)
+_TIME = re.compile(r"\d{1,4}:\d\d:\d\d([.,]\d{1,9})?")
+_DAY_S = 86400.0
 TIME = "time"  # source of the common clock of a file's channels in a map
+
+
+class Seconds:
+    """The conversion of one column to seconds, part by part of a file.
+
+    Dates count from the first one of the file: since 1970 they would be exact to a quarter of a
+    microsecond only. Times of day (`from_text`) go on after midnight.
+    """
+
+    def __init__(self) -> None:
+        self._zero: Any = None
+        self._last_s, self._days = 0.0, 0.0
+
+    def __call__(self, values: npt.NDArray[Any]) -> Floats:
+        """Return dates or durations in seconds, shape (n,); NaT is NaN."""
+        if values.dtype.kind == "M":
+            dates = values[~np.isnat(values)]
+            if self._zero is None and dates.size:
+                self._zero = dates[0]
+            values = values - (self._zero if dates.size else values)
+        seconds: Floats = values / np.timedelta64(1, "s")
+        return seconds
+
+    def from_text(self, cells: Sequence[str | None]) -> Floats:
+        """Return cells in seconds, shape (n,); ValueError as from `from_text` of this module."""
+        values = from_text(cells)
+        return self(values) if values.dtype.kind == "M" else self._after_midnight(self(values))
+
+    def _after_midnight(self, seconds: Floats) -> Floats:
+        known = np.isfinite(seconds)
+        steps = np.diff(seconds[known], prepend=self._last_s)
+        days = self._days + np.cumsum(steps < -0.5 * _DAY_S)
+        if days.size:
+            self._last_s, self._days = float(seconds[known][-1]), float(days[-1])
+        whole = np.full(seconds.size, np.nan)
+        whole[known] = seconds[known] + _DAY_S * days
+        return whole
 
 
 def on_one_clock(
@@ -31,11 +76,8 @@ def on_one_clock(
         Interpolate different times linearly onto those of the channel with the most samples,
         within the interval that all channels cover.
 
-    Raises
-    ------
-    InputError
-        There is no channel; the times differ and `resample` is not set, do not increase, or never
-        overlap.
+    InputError: there is no channel; the times differ and `resample` is not set, do not increase, or
+    never overlap.
     """
     if not series:
         raise InputError("the map has no channel besides the time", where=path)
@@ -83,3 +125,26 @@ def _described(times: Floats) -> str:
     if times.size == 0:
         return "no samples"
     return f"{times.size} samples, {times[0]:g} to {times[-1]:g}"
+
+
+def is_stamp(text: object) -> bool:
+    """Return whether a cell is a date, by ISO 8601, or a time as hh:mm:ss."""
+    return isinstance(text, str) and (_DATE.fullmatch(text) or _TIME.fullmatch(text)) is not None
+
+
+def from_text(cells: Sequence[str | None]) -> npt.NDArray[Any]:
+    """Return cells as datetime64 or timedelta64, shape (n,); an empty cell is NaT.
+
+    ValueError: a cell is no stamp, or is one of another kind than the first.
+    """
+    import pandas as pd
+
+    plain = pd.Series([cell or None for cell in cells], dtype="object")
+    filled = plain.dropna()
+    form = _DATE if filled.empty or _DATE.fullmatch(filled.iloc[0]) else _TIME
+    if not all(form.fullmatch(cell) for cell in filled):
+        raise ValueError("another form of date or time")
+    plain = plain.str.replace(",", ".").str.replace("/", "-").str.replace(" UTC", "Z")
+    if form is _TIME:
+        return pd.to_timedelta(plain).to_numpy(dtype="timedelta64[ns]")
+    return pd.to_datetime(plain, format="ISO8601", utc=True).dt.tz_localize(None).to_numpy()

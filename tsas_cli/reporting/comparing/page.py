@@ -3,23 +3,24 @@
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.predictions import Both, channels
 from tsas_cli.comparing.sentences import findings, notes
-from tsas_cli.comparing.stage import tables
+from tsas_cli.comparing.stage import differs, tables
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.records.comparison import shared_name
-from tsas_cli.reporting.comparing import values
-from tsas_cli.reporting.content import Group, Picture, Section, Table
+from tsas_cli.records.comparison import ParameterPair, shared_name
+from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.content import Group, Picture, Section, Table, rendered
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
-from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
+_MOST = 8  # strips of a picture
 _SAID = 3  # findings that stand in the summary
 _VALUES = (
     "B − A has a 95 % interval where both values were fitted, to different recordings: it goes as "
@@ -30,15 +31,12 @@ _VALUES = (
 
 def comparison_page(it: Comparison, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each section."""
-    sections = []
-    for section in _sections(it):
-        sections.append(section)
-        advance()
     return rendered(
         name="A and B, side by side",
         about=f"{it.a.path} and {it.b.path}",
         summary=" ".join(findings(it)[:_SAID]) or "There is nothing that both sides hold.",
-        sections=sections,
+        sections=_sections(it),
+        advance=advance,
     )
 
 
@@ -47,7 +45,7 @@ def _sections(it: Comparison) -> Iterator[Section]:
     points = (*findings(it)[_SAID:], *notes(it))
     yield Section("sides", "What is compared", points=points, tables=(printed["sides"],))
     if "parameters" in printed:
-        shown = tuple(values.pictures(it))
+        shown = tuple(value_pictures(it))
         how = (_VALUES,) if it.tested else ()
         yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
     if "effects" in printed:
@@ -108,7 +106,7 @@ _NOTHING = "Over no signal does the error of either side stand out of the noise.
 
 
 def _maps(it: Comparison) -> Section:
-    """Return the _maps of the residual maps."""
+    """Return the section of the residual maps."""
     panels = [
         Panel(channel, signal, bins, it.maps["b"][channel][signal])
         for channel, signals in it.maps["a"].items()
@@ -124,7 +122,7 @@ _MOST_RUNS = 10
 
 
 def _residuals(it: Comparison) -> Section:
-    """Return the _residuals of the residuals, one group per run that both answer to."""
+    """Return the section of the residuals, one group per run that both answer to."""
     left = len(it.shared) - _MOST_RUNS
     more = f" The first {_MOST_RUNS} of {len(it.shared)} runs are shown." if left > 0 else ""
     groups = tuple(
@@ -163,3 +161,61 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
             height_in=height_in(len(panels)),
         ),
     )
+
+
+def value_pictures(it: Comparison) -> Iterator[Picture]:
+    """Yield the picture of fitted values, differing ones first, those of single runs last."""
+    shown = [p for p in it.pairs if p.a and p.b and "fitted" in (p.a.origin, p.b.origin)]
+    shown.sort(key=lambda pair: (pair not in it.differing, pair.run != "all"))
+    strips = shown[:_MOST]
+    if not strips:
+        return
+    said = "; ".join(
+        f"{_label(pair)}: A {plain(pair.a.value)}, B {plain(pair.b.value)}"
+        f"{', which differs' if differs(pair) == 'yes' else ''}"
+        for pair in strips
+        if pair.a and pair.b
+    )
+    star = " A star marks a difference beyond both uncertainties." if it.tested else ""
+    yield picture(
+        partial(draw_values, strips=strips),
+        key="values",
+        alt=f"Values of A and B with 95 % intervals, each on its own axis. {said}.",
+        caption=f"Values of A and B with their 95 % intervals, each on its own axis.{star}",
+        height_in=0.5 + 0.72 * len(strips),
+    )
+
+
+def _label(pair: ParameterPair) -> str:
+    return pair.name.rpartition(".")[2] + ("" if pair.run == "all" else f"\nrun {pair.run}")
+
+
+def draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
+    """Draw the strips below each other, A above B in each; a star marks those that differ."""
+    rows = figure.subplots(len(strips), 1, squeeze=False)[:, 0]
+    for axes, pair in zip(rows, strips, strict=True):
+        for name, side, role, y in (("A", pair.a, "before", 1.0), ("B", pair.b, "after", 0.0)):
+            if side is None or side.value is None:
+                continue
+            ends = side.interval_low, side.interval_high
+            low, high = (side.value if end is None else end for end in ends)
+            axes.errorbar(
+                side.value,
+                y,
+                xerr=[[side.value - low], [high - side.value]],
+                marker="o",
+                markersize=5,
+                capsize=3,
+                elinewidth=1.6,
+                linestyle="none",
+                color=STAND_IN[role],
+                label=name,
+            )
+        axes.set(ylim=(-0.6, 1.6), yticks=[])
+        axes.margins(x=0.08)
+        axes.locator_params(axis="x", nbins=4)
+        axes.ticklabel_format(axis="x", useOffset=False)
+        star = " *" if differs(pair) == "yes" else ""
+        axes.set_ylabel(_label(pair) + star, rotation=0, ha="right", va="center")
+        axes.spines["left"].set_visible(False)
+    legend(figure, rows[0])

@@ -11,12 +11,11 @@ from tsas_cli.comparing.tracked import (
     notes,
     tables,
 )
-from tsas_cli.recordings.written import columns_of, result_file
+from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.reporting.comparing.page import repeat_section
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, Table, rendered
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import with_spread
-from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
@@ -26,15 +25,12 @@ def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
 
     InputError: a run cannot be read.
     """
-    sections = []
-    for section in _sections(it):
-        sections.append(section)
-        advance()
     return rendered(
         name="A and B, side by side",
         about=" and ".join(str(path) for path in it.paths.values()),
         summary=" ".join(findings(it)) or "There is no controller and condition that both have.",
-        sections=sections,
+        sections=_sections(it),
+        advance=advance,
     )
 
 

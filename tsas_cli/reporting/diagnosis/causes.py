@@ -13,9 +13,9 @@ from tsas_cli.records.base import Value
 from tsas_cli.records.diagnosis import DescribedLaw, DiagnosisFile, NamedCause
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, anchor
-from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.support.wording import listed
 

@@ -9,11 +9,9 @@ from typing import Any
 from tsas_cli.records.diagnosis import Bin, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section
-from tsas_cli.reporting.diagnosis.words import signal_at_axis, signal_in_words
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import legend
+from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.names import label_of, signal_at_axis, signal_in_words
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.phases import label_of
 from tsas_cli.support.wording import listed
 
 _SEEN = 0.5  # in units of noise

@@ -1,16 +1,32 @@
 """What the diagnosis says: the verdict, its causes, the evidence, and what to measure next."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
-from tsas_cli.records.diagnosis import DiagnosisFile
-from tsas_cli.reporting.content import Section, missing
-from tsas_cli.reporting.diagnosis import candidates, causes, gains, maps, similarity
-from tsas_cli.reporting.diagnosis.words import signal_in_words
+from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause, TriedHypothesis
+from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.content import Section, Table, missing
+from tsas_cli.reporting.diagnosis import causes, maps, similarity
+from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import fixed, plain
+from tsas_cli.reporting.names import called, signal_in_words
+from tsas_cli.reporting.numbers import ABSENT, fixed, plain
 from tsas_cli.support.wording import listed
 
+_BOUNDS = (
+    "Normalised: over the noise level, which is then 1. Attainable is what a flexible regression "
+    "on the recorded signals leaves, whatever the cause."
+)
+_TRIED = "What was tried"
+_SHOWN = 10  # and what is named, and its rivals
+_HYPOTHESES = (
+    "Each of these was fitted together with all parameters of the nominal model. Reduction: by how "
+    "much the normalised residual on held-out data falls; what is named was fitted again for it. "
+    "Test statistic: how many standard deviations the reduction is above what chance gives."
+)
+_NOTHING_TRIED = "Screening left no effect that could explain enough of the error to be fitted."
 _TITLE = "Diagnosis"
 
 
@@ -20,8 +36,10 @@ def section(inputs: Inputs) -> Section:
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
     evidence = (
-        gains.part(diagnosis, inputs.held_out),
-        *(part.part(diagnosis) for part in (maps, candidates, similarity)),
+        gains_part(diagnosis, inputs.held_out),
+        maps.part(diagnosis),
+        candidates_part(diagnosis),
+        similarity.part(diagnosis),
     )
     return Section(
         "diagnosis",
@@ -72,3 +90,151 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
     if left.depends_on:
         signals = listed([signal_in_words(name) for name in left.depends_on])
         yield f"What is left depends on {signals}."
+
+
+def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
+    """Return the part, None where it was undecided before anything was tried."""
+    tried = diagnosis.candidates
+    if not tried:
+        if diagnosis.verdict == "undecided":
+            return None
+        return Section("diagnosis-candidates", _TRIED, (_NOTHING_TRIED,))
+    standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
+    shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
+    of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
+    header = (
+        "effects",
+        "reduction [%]",
+        "test statistic",
+        "convincing",
+        "remark",
+    )
+    table = Table(
+        f"Hypotheses{of}",
+        header,
+        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
+        numeric=frozenset({1, 2}),
+    ).without_empty()
+    return Section("diagnosis-candidates", _TRIED, (_HYPOTHESES,), tables=(table,))
+
+
+def _standing(candidate: TriedHypothesis, named: Sequence[NamedCause]) -> str:
+    """Say whether a hypothesis is what is named, or has a rival in place of a cause."""
+    causes = {cause.effect for cause in named}
+    if not causes:
+        return ""
+    if set(candidate.effects) == causes:
+        return "named"
+    rivals = [causes - {c.effect} | {rival} for c in named for rival in c.rivals]
+    return "rival" if set(candidate.effects) in rivals else ""
+
+
+def _row(candidate: TriedHypothesis, standing: str) -> tuple[str, ...]:
+    gain = candidate.gain_percent
+    return (
+        " + ".join(candidate.effects),
+        "none" if gain is not None and gain < 0.0 else fixed(gain, 1),
+        fixed(candidate.test_statistic, 1),
+        "yes" if candidate.convincing else "no",
+        standing if candidate.converged else "did not converge",
+    )
+
+
+def gains_part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Section | None:
+    """Return the part, None where no channel was judged."""
+    if not channels:
+        return None
+    named = diagnosis.extended
+    alt = "; ".join(_in_words(name, c, named=named) for name, c in channels.items())
+    shown = picture(
+        partial(draw_gains, channels=channels, named=named),
+        key="diagnosis-gains",
+        alt=f"RMS of the residual on held-out data. {alt}.",
+        caption="RMS of the residual on held-out data, by channel.",
+        height_in=0.6 + 0.75 * len(channels),
+    )
+    return Section(
+        "diagnosis-gains",
+        "Residual on held-out data",
+        tuple(text for text in (_judged(diagnosis), _BOUNDS) if text),
+        tables=(gains_table(channels, named=named),),
+        pictures=(shown,),
+    )
+
+
+def _judged(diagnosis: DiagnosisFile) -> str:
+    how = diagnosis.evidence.sentence
+    return how[:1].upper() + how[1:]
+
+
+def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
+    """Return the residuals in numbers, in the channel's unit and over its noise level."""
+    rows = tuple(
+        (
+            name,
+            plain(c.rmse_before, 3),
+            plain(c.rmse_after, 3) if named else ABSENT,
+            plain(c.attainable, 3),
+            plain(c.noise_floor, 3),
+            c.unit,
+            _normalised(c.rmse_before, c),
+            _normalised(c.rmse_after, c) if named else ABSENT,
+        )
+        for name, c in channels.items()
+    )
+    header = (
+        "channel",
+        "nominal model",
+        "extended model",
+        "attainable",
+        "noise level",
+        "unit",
+        "nominal, normalised",
+        "extended, normalised",
+    )
+    caption = "RMS of the residual on held-out data"
+    numeric = frozenset({1, 2, 3, 4, 6, 7})
+    return Table(caption, header, rows, numeric=numeric).without_empty()
+
+
+def _normalised(rms: float | None, channel: HeldOut) -> str:
+    return ABSENT if rms is None or not channel.noise_floor else plain(rms / channel.noise_floor, 3)
+
+
+def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
+    after = f", extended model {plain(channel.rmse_after, 3)}" if named else ""
+    return (
+        f"{called(name)}: nominal model {plain(channel.rmse_before, 3)}"
+        f"{after}, attainable {plain(channel.attainable, 3)}, noise level "
+        f"{plain(channel.noise_floor, 3)} {channel.unit}"
+    )
+
+
+def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> None:
+    """Draw the channels below each other, each with an axis of its own from zero.
+
+    With `named` a cause is named, so that there is an error after to show.
+    """
+    rows = figure.subplots(len(channels), 1, squeeze=False)[:, 0]
+    for axes, (name, channel) in zip(rows, channels.items(), strict=True):
+        _bar(axes, channel.rmse_before, at=0.2 * named, role="before", label="nominal model")
+        if named:
+            _bar(axes, channel.rmse_after, at=-0.2, role="after", label="extended model")
+        _mark(axes, channel.noise_floor, linestyle="-", label="noise level")
+        _mark(axes, channel.attainable, linestyle=(0, (2, 1.5)), label="attainable")
+        axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
+        axes.set_ylabel(
+            f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"
+        )
+        axes.spines["left"].set_visible(False)
+    legend(figure, rows[0])
+
+
+def _bar(axes: Any, value: float | None, *, at: float, role: str, label: str) -> None:
+    if value is not None:
+        axes.barh(at, value, 0.36, color=STAND_IN[role], label=label)
+
+
+def _mark(axes: Any, value: float | None, **style: Any) -> None:
+    if value is not None:
+        axes.plot([value, value], [-0.5, 0.5], color=STAND_IN["ink"], linewidth=1.6, **style)

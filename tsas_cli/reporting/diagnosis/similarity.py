@@ -10,8 +10,7 @@ import numpy.typing as npt
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section
-from tsas_cli.reporting.drawing import WIDTH_IN, picture
-from tsas_cli.reporting.figures import legend
+from tsas_cli.reporting.drawing import WIDTH_IN, legend, picture
 from tsas_cli.reporting.numbers import fixed
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import listed

@@ -5,17 +5,17 @@ from collections.abc import Callable, Mapping, Sequence
 import rerun.blueprint as rrb
 from rerun.blueprint import Blueprint, Container, Grid, Horizontal, Tabs, Vertical, View
 
-from tsas_cli.reporting.channels import at_axis
+from tsas_cli.reporting.names import at_axis
 from tsas_cli.reporting.stream.channels import (
     ERROR,
     FORCE,
     SPEED,
     STATES,
+    faults_of,
     residuals_of,
     series_of,
+    view_of,
 )
-from tsas_cli.reporting.stream.events import faults_of
-from tsas_cli.reporting.stream.loops import view_of
 from tsas_cli.reporting.stream.recorder import Entity, T, path_of
 from tsas_cli.reporting.stream.seen import MEASURED, WANTED, X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon import view_of_tendon

@@ -20,8 +20,7 @@ from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stream.opened import to_viewer
-from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.stream import Stream, stream_of
 from tsas_cli.support.errors import InputError

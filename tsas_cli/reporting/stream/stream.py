@@ -1,28 +1,34 @@
 """What a person looks at, from what the stages wrote: into one file, or to a viewer."""
 
 import re
-from collections.abc import Callable, Iterator
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import rerun as rr
 from rerun.blueprint import Blueprint
 
+from tsas_cli.recordings.storage import Location
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.glance import glance
-from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stream.channels import record_channels, record_tracking
-from tsas_cli.reporting.stream.events import record_faults, record_phases
+from tsas_cli.reporting.inputs import Inputs, read_inputs
+from tsas_cli.reporting.stream.channels import (
+    record_channels,
+    record_faults,
+    record_phases,
+    record_tracking,
+)
 from tsas_cli.reporting.stream.layout import OVERVIEW, layout_of
-from tsas_cli.reporting.stream.opened import to_file
-from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder import Recorder, is_finished, to_file
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tendon import record_tendon
-from tsas_cli.support.errors import printable
+from tsas_cli.support.errors import InputError, printable
 
 STREAM_FILE = "stream.rrd"
 CONTENT = (record_channels, record_tracking, record_phases, record_faults, record_tendon)
@@ -113,3 +119,44 @@ def _points(inputs: Inputs) -> Iterator[str]:
         for found in check.findings:
             where = f"run {found.run}, " if found.run else ""
             yield f"{found.severity}, {where}{found.code}: {found.sentence}"
+
+
+@contextmanager
+def shown_stream(
+    paths: Sequence[Location], step: Callable[[], None] = lambda: None
+) -> Iterator[tuple[Path, list[str]]]:
+    """Yield the stream's file, and sentences about it; what is made here is gone afterwards.
+
+    A folder that holds a stream shows that; several folders make one of their own, and `step` is
+    called after each run.
+
+    InputError: a path is missing, no stream and no folder of a stage, or a file stands among
+    others.
+    """
+    local = [path for path in paths if isinstance(path, Path)]
+    for path in local:
+        if not path.exists():
+            raise InputError("is not there", where=path, expected="an .rrd file or a folder")
+    first, *others = paths
+    if isinstance(first, Path) and not others:
+        stream = first / STREAM_FILE if first.is_dir() else first
+        if stream.is_file():
+            yield stream, _end_notes(stream)
+            return
+    for path in local:
+        if not path.is_dir():
+            raise InputError(
+                "is a file among others",
+                where=path,
+                expected="folders of stages, or one .rrd file alone",
+            )
+    with tempfile.TemporaryDirectory(prefix="tsas-view-") as folder:
+        stream = Path(folder) / STREAM_FILE
+        write_stream(read_inputs(paths), stream, step=step)
+        yield stream, []
+
+
+def _end_notes(stream: Path) -> list[str]:
+    if is_finished(stream):
+        return []
+    return [f"{stream} has no end: its writer was stopped, or it is cut off; all it holds is shown"]

@@ -10,11 +10,9 @@ import numpy as np
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive
 from tsas_cli.reporting.colours import of_controller
 from tsas_cli.reporting.content import Picture, Section, Table
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import bound, line
+from tsas_cli.reporting.drawing import bound, line, picture
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.tracking.over_time import mark_change
-from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun
+from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun, mark_change
 from tsas_cli.support.arrays import Floats
 
 _WHAT = (

@@ -1,17 +1,44 @@
-"""The runs that the plots show: for each condition, each controller's with the first seed."""
+"""The runs that the plots show, each controller's with the first seed, and their curves."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
-from tsas_cli.recordings.written import columns_of, result_file
+import numpy as np
+
+from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.records.tracking import ADAPTIVE, ConditionChange, TrackedResult, TrackingFile
+from tsas_cli.reporting.colours import STAND_IN, of_controller
+from tsas_cli.reporting.content import Picture, Section
+from tsas_cli.reporting.drawing import bound, legend, line, picture
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import plain, spanned
 from tsas_cli.support.arrays import Floats
 
+_OUTSIDE = 0.02
+_SCALES = (
+    "Wanted less true force at the load. Each panel has a scale of its own; the dashed lines, "
+    "where they are in view, are 2 % of the wanted force's range."
+)
+_EFFORT = (
+    "The motor speed u that is asked for, feedforward and controller together. In the table above, "
+    "effort is its root mean square, chatter its total variation per second: a line that looks "
+    "thick chatters."
+)
 WANTED, TRUE, ASKED = "f_out_ref_N", "f_out_true_N", "motor_speed_rpm"
 X_IN, X_INV = "x_in_mm", "x_inv_mm"
 ESTIMATES = ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm")
 _COLUMNS = ("time_s", WANTED, TRUE, ASKED, X_IN, X_INV)
+
+
+@dataclass(frozen=True)
+class TimeCurve:
+    """What it is called, the controller that it is of, and its values, shape (n,)."""
+
+    label: str
+    controller: str
+    values: Floats
 
 
 @dataclass(frozen=True)
@@ -69,3 +96,151 @@ def read_conditions(inputs: Inputs, tracking: TrackingFile) -> tuple[RunsUnderCo
         RunsUnderCondition(name, number, tracking.conditions.get(name, ()), tuple(runs))
         for number, (name, runs) in enumerate(found.items())
     )
+
+
+def curve_parts(conditions: tuple[RunsUnderCondition, ...]) -> tuple[Section, Section, Section]:
+    """Return the parts of force, error and control effort, one picture for each condition."""
+
+    def part(name: str, title: str, intro: str, make: Callable[..., Picture]) -> Section:
+        pictures = tuple(map(make, conditions))
+        return Section(f"tracking-{name}", title, (intro,), pictures=pictures)
+
+    without_noise = "The true force is that at the load, without its sensor's noise."
+    return (
+        part("force", "Wanted and true force", without_noise, _force),
+        part("error", "Tracking error", _SCALES, _error),
+        part("effort", "Control effort", _EFFORT, _effort),
+    )
+
+
+def _force(condition: RunsUnderCondition) -> Picture:
+    wanted = condition.runs[0].columns[WANTED]
+    curves = [TimeCurve(run.name, run.name, run.columns[TRUE]) for run in condition.runs]
+    return _picture(
+        condition,
+        curves,
+        partial(draw_together, wanted=wanted, label="force at the load [N]"),
+        key="force",
+        what=("Force at the load", f"newton: wanted {spanned(wanted)}"),
+        caption="wanted force, and what each controller gives",
+        height_in=3.5,
+    )
+
+
+def _error(condition: RunsUnderCondition) -> Picture:
+    band = _OUTSIDE * float(np.ptp(condition.runs[0].columns[WANTED]))
+    curves = [_error_curve(run) for run in condition.runs]
+    return _picture(
+        condition,
+        curves,
+        partial(draw_panels, label="error [N]", band=band),
+        key="error",
+        what=("Tracking error", "newton"),
+        caption="wanted less true force over time",
+        height_in=panels_in(len(curves)),
+    )
+
+
+def _effort(condition: RunsUnderCondition) -> Picture:
+    curves = [_effort_curve(run) for run in condition.runs]
+    return _picture(
+        condition,
+        curves,
+        partial(draw_panels, label="u [rpm]", same_scale=True),
+        key="effort",
+        what=("Motor speed asked for", "rpm"),
+        caption="motor speed asked for over time",
+        height_in=panels_in(len(curves)),
+    )
+
+
+def _picture(
+    condition: RunsUnderCondition,
+    curves: Sequence[TimeCurve],
+    draw: Callable[..., Any],
+    *,
+    key: str,
+    what: tuple[str, str],
+    caption: str,
+    height_in: float,
+) -> Picture:
+    """Return a condition's curves; `what` is shown, and in which unit."""
+    drawn = partial(
+        draw, time_s=condition.runs[0].time_s, curves=curves, change_s=condition.change_s
+    )
+    said = "; ".join(f"{curve.label}, {spanned(curve.values)}" for curve in curves)
+    return picture(
+        drawn,
+        key=f"tracking-{key}-{condition.number}",
+        alt=f"{what[0]} over time, {condition.name}, in {what[1]}: {said}.",
+        caption=f"{condition.name.capitalize()}: {caption}.",
+        height_in=height_in,
+    )
+
+
+def _error_curve(run: TrackedRun) -> TimeCurve:
+    error = run.error
+    rmse = plain(float(np.sqrt(np.mean(error**2))), 3)
+    return TimeCurve(f"{run.name}, RMSE {rmse} N", run.name, error)
+
+
+def _effort_curve(run: TrackedRun) -> TimeCurve:
+    chatter = plain(run.result.scores.chatter_rpm_per_s.mean, 3)
+    return TimeCurve(f"{run.name}, chatter {chatter} rpm/s", run.name, run.columns[ASKED])
+
+
+def panels_in(panels: int) -> float:
+    """Return the height in inches that so many panels need."""
+    return 0.6 + (1.15 * panels if panels > 1 else 2.4)
+
+
+def draw_together(
+    figure: Any,
+    *,
+    time_s: Floats,
+    wanted: Floats,
+    curves: Sequence[TimeCurve],
+    label: str,
+    change_s: float | None = None,
+) -> None:
+    """Draw what is wanted, wide and grey, and all curves over it; `label` names the axis."""
+    axes = figure.add_subplot()
+    line(axes, time_s, wanted, color=STAND_IN["measured"], linewidth=3.2, label="wanted")
+    for curve in curves:
+        colour = of_controller(curve.controller)
+        line(axes, time_s, curve.values, color=colour, linewidth=1.1, label=curve.label)
+    mark_change(axes, change_s)
+    axes.set(xlabel="time [s]", ylabel=label)
+    legend(figure)
+
+
+def draw_panels(
+    figure: Any,
+    *,
+    time_s: Floats,
+    curves: Sequence[TimeCurve],
+    label: str,
+    change_s: float | None = None,
+    band: float | None = None,
+    same_scale: bool = False,
+) -> None:
+    """Draw one panel for each curve, its name above it; `band` is drawn to both sides of zero."""
+    rows = figure.subplots(len(curves), 1, sharex=True, sharey=same_scale, squeeze=False)[:, 0]
+    for axes, curve in zip(rows, curves, strict=True):
+        axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+        line(axes, time_s, curve.values, color=of_controller(curve.controller), linewidth=0.9)
+        limits = axes.get_ylim()
+        for side in (-1.0, 1.0) if band is not None else ():
+            bound(axes, side * (band or 0.0))
+        axes.set_ylim(limits)
+        mark_change(axes, change_s)
+        axes.set_ylabel(label)
+        axes.set_title(curve.label, loc="left", fontsize=9.0, pad=3.0)
+    rows[-1].set_xlabel("time [s]")
+    figure.align_ylabels()
+
+
+def mark_change(axes: Any, change_s: float | None) -> None:
+    """Draw where the plant changes."""
+    if change_s is not None:
+        axes.axvline(change_s, color=STAND_IN["ink"], linewidth=1.0, linestyle=(0, (1, 2)))

@@ -1,14 +1,32 @@
 """How well a wanted force is followed, by whom, and at what cost."""
 
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
 import numpy as np
 
+from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.base import ModelFile
-from tsas_cli.records.tracking import Spread, TrackingFile
-from tsas_cli.reporting.content import Section, Table
+from tsas_cli.records.tracking import Spread, StatedSettings, TrackingFile
+from tsas_cli.reporting.colours import STAND_IN, of_controller
+from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.drawing import kept_cells, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_spread
-from tsas_cli.reporting.tracking import adaptation, curves, portraits
-from tsas_cli.reporting.tracking.runs import WANTED, RunsUnderCondition, read_conditions
+from tsas_cli.reporting.tracking import adaptation
+from tsas_cli.reporting.tracking.runs import (
+    WANTED,
+    X_IN,
+    X_INV,
+    RunsUnderCondition,
+    TrackedRun,
+    curve_parts,
+    read_conditions,
+)
+from tsas_cli.support.arrays import Floats
+
+_ACROSS = 2
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -17,8 +35,8 @@ def section(inputs: Inputs) -> Section | None:
     if tracking is None:
         return None
     conditions = read_conditions(inputs, tracking)
-    force, error, effort = curves.parts(conditions)
-    portrait = portraits.part(conditions, tracking.settings)
+    force, error, effort = curve_parts(conditions)
+    portrait = portraits_part(conditions, tracking.settings)
     adapted = adaptation.part(conditions, tracking.settings.controllers.adaptive)
     return Section(
         "tracking",
@@ -89,7 +107,7 @@ _COLUMNS = (
 
 
 def _scores(tracking: TrackingFile) -> Table:
-    """Return the _scores, with its spread where there is more than one seed."""
+    """Return the scores, with their spread where there is more than one seed."""
     seeds = tracking.seeds[1] - tracking.seeds[0] + 1
     over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
     rows = tuple(
@@ -113,3 +131,69 @@ def _cell(number: Spread) -> str:
 def _limit(number: Spread) -> str:
     """Return how long the motor is at its speed limit; nothing where it never is."""
     return _cell(number) if number.mean else ABSENT
+
+
+def portraits_part(conditions: tuple[RunsUnderCondition, ...], settings: StatedSettings) -> Section:
+    """Return the part, one picture for each condition."""
+    what = (
+        "The rate of the error e = x_inv − x_in of the drive over the error, both by the filter of "
+        f"the sliding modes ({settings.loop.filter_Hz:g} Hz). A turn of the wanted force throws a "
+        "controller off, over a dead band; what it does until it is back at the cross is the loop. "
+        "Each panel has scales of its own."
+    )
+    pictures = tuple(_picture(condition, settings) for condition in conditions)
+    return Section("tracking-phase", "Phase portraits", (what,), pictures=pictures)
+
+
+def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:
+    orbits = [(run.name, *_error_and_rate(run, settings)) for run in condition.runs]
+    said = "; ".join(
+        f"{name} error up to {plain(_most(x), 3)} mm, rate up to {plain(_most(y), 3)} mm/s"
+        for name, x, y in orbits
+    )
+    return picture(
+        partial(draw_portraits, orbits=orbits),
+        key=f"tracking-phase-{condition.number}",
+        alt=f"Phase portraits of the drive's error, {condition.name}: {said}.",
+        caption=f"{condition.name.capitalize()}: rate of the drive's error over the error.",
+        height_in=portraits_in(len(orbits)),
+    )
+
+
+def _error_and_rate(run: TrackedRun, settings: StatedSettings) -> tuple[Floats, Floats]:
+    """Return what the filter of the controllers makes of the run's error, shape (n,) each."""
+    A, b = error_filter(settings.loop.filter_Hz, 1.0 / settings.sensor.rate_Hz)
+    state, error = np.zeros(ORDER), run.columns[X_INV] - run.columns[X_IN]
+    both = np.empty((2, error.size))
+    for k, e in enumerate(error):
+        filtered(state, e, A, b)
+        both[:, k] = state[:2]
+    return both[0], both[1]
+
+
+def _most(values: Floats) -> float:
+    return float(np.abs(values).max())
+
+
+def portraits_in(orbits: int) -> float:
+    """Return the height in inches that so many panels need."""
+    return 0.5 + 2.0 * -(-orbits // _ACROSS) if orbits > 1 else 3.5
+
+
+def draw_portraits(figure: Any, *, orbits: Sequence[tuple[str, Floats, Floats]]) -> None:
+    """Draw each controller's error and its rate in a panel with its own scales, zero as a cross."""
+    across = min(_ACROSS, len(orbits))
+    panels = figure.subplots(-(-len(orbits) // across), across, squeeze=False)
+    for axes in panels.flat[len(orbits) :]:
+        axes.set_axis_off()
+    for axes, (name, x, y) in zip(panels.flat, orbits, strict=False):
+        axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+        axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+        kept = kept_cells(x, y)
+        axes.plot(x[kept], y[kept], color=of_controller(name), linewidth=0.8)
+        axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
+        axes.locator_params(nbins=5)
+    for axes in panels[-1]:
+        axes.set_xlabel("e [mm]")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("de/dt [mm/s]")

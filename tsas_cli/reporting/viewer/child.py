@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -9,15 +10,19 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import IO
 
-from tsas_cli.reporting.viewer.ports import LOOPBACK
 from tsas_cli.support.errors import InputError
 
+LONGEST_S = 10.0
+SIZE = "64x64"
+ADAPTER = re.compile(r'backend: (\w+), device_type: (\w+), name: "([^"]*)"')
+LOOPBACK = "127.0.0.1"
+LAST = 65535
 START_S = 30.0  # a program of 300 MB, read from a slow disk
 END_S = 3.0
 LOOK_S = 0.05
@@ -134,3 +139,68 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     except subprocess.TimeoutExpired:
         process.kill() if sys.platform == "win32" else os.killpg(process.pid, signal.SIGKILL)
         process.wait()
+
+
+def free_ports(count: int, first: int | None = None) -> tuple[int, ...]:
+    """Return ports on 127.0.0.1 that nothing listens on: any, or `first` and those after it.
+
+    InputError: one of those asked for is in use, or may not be had.
+    """
+    wanted = [0] * count if first is None else range(first, first + count)
+    with ExitStack() as held:  # all at once, so that no two are the same
+        return tuple(held.enter_context(_listening(port)).getsockname()[1] for port in wanted)
+
+
+def _listening(port: int) -> socket.socket:
+    reason = f"the last is {LAST}"
+    if port <= LAST:
+        try:
+            return socket.create_server((LOOPBACK, port))
+        except OSError as error:
+            reason = str(error.strerror)
+    raise InputError(
+        f"port {port} cannot be had ({reason})",
+        where="--port",
+        remedy="choose another one, or leave --port out",
+    )
+
+
+def drawn_with() -> str:
+    """Return what the viewer draws with, for a person: "Vulkan on …".
+
+    InputError: it is not installed, or cannot draw.
+    """
+    with tempfile.TemporaryDirectory(prefix="tsas-draw-") as folder:
+        picture = Path(folder) / "picture.png"
+        (port,) = free_ports(1)
+        call = [str(program()), "--bind", LOOPBACK, "--port", str(port), "--headless"]
+        call += ["--window-size", SIZE, "--hide-welcome-screen", "--screenshot-to", str(picture)]
+        own = {"RUST_LOG": "info", "NO_COLOR": "1", "CI": "true"}  # CI: no usage statistics
+        try:
+            ended = subprocess.run(  # noqa: S603 # the program of a package of ours
+                call,
+                env=os.environ | own,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=LONGEST_S,
+                check=False,
+            )
+        except OSError as error:
+            raise InputError(f"cannot be run ({error.strerror})", where=program()) from error
+        except subprocess.TimeoutExpired as error:
+            raise InputError(f"the viewer draws nothing within {LONGEST_S:g} s") from error
+        if ended.returncode or not picture.is_file():
+            raise InputError("the viewer finds nothing to draw with", remedy=_remedy())
+    log = (ended.stdout + ended.stderr).decode(errors="replace")
+    found = ADAPTER.search(log)
+    if found is None:
+        return "yes"
+    backend, kind, name = found.groups()
+    return f"{backend} on {name}" + (", in software" if kind == "Cpu" else "")
+
+
+def _remedy() -> str:
+    return (
+        "install a driver for Vulkan (without a graphics card on Debian: "
+        "`apt install mesa-vulkan-drivers libvulkan1`), or use `tsas view --web`"
+    )

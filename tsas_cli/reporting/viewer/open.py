@@ -4,17 +4,28 @@ It counts how it is used, which a person should know before it starts.
 """
 
 import os
+import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
+from http import HTTPStatus
+from http.client import HTTPConnection
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from urllib.parse import urlencode
 
-from tsas_cli.reporting.viewer.child import Child, viewer_child
-from tsas_cli.reporting.viewer.page_server import PAGE_STREAM, served_page
-from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.reporting.viewer.child import LOOPBACK, Child, free_ports, viewer_child
 
+PAGE_STREAM = "/stream.rrd"
+KEPT = ("Content-Type", "Content-Length", "rerun-final-length")  # what the page reads of headers
+HOSTS = (LOOPBACK, "localhost")
+POLICY = (
+    "default-src 'self' data: blob:; "
+    "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob:; style-src 'self' 'unsafe-inline'"
+)
+AT_ONCE = 1 << 20  # bytes
 BIND = ("--bind", LOOPBACK)
 ALL_OF_IT = ("--server-memory-limit", "75%")  # beyond it the oldest data go without a word
 OPENS_S = 1.0  # after its port answers, a viewer without screen or graphics has failed by then
@@ -108,3 +119,67 @@ def _address(page: int, shown: str) -> str:
     """
     query = {"url": shown, "renderer": "webgl", "theme": "dark", "hide_welcome_screen": "true"}
     return f"http://{LOOPBACK}:{page}/?{urlencode(query)}"
+
+
+@contextmanager
+def served_page(
+    port: int, *, inside: int, file: Path | None = None, data: Sequence[int] = ()
+) -> Iterator[None]:
+    """Serve the page that Rerun serves at the port `inside`, and a file at `PAGE_STREAM`.
+
+    Rerun's own page calls its makers, a font server and GitHub, and no setting of theirs stops
+    that: a content security policy lets the browser talk to this machine alone. The file is read
+    from the disk here, so that only the browser holds it in memory.
+
+    Of other addresses the page may only reach the ports `data`, which send what is live.
+    """
+    own = [f"{host}:{port}" for host in HOSTS]
+    reached = " ".join(f"http://{host}:{one}" for one in (port, *data) for host in HOSTS)
+    policy = f"{POLICY}; connect-src 'self' {reached} data: blob:"
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            if self.headers["Host"] not in own:  # a page elsewhere that calls this machine its own
+                self.send_error(HTTPStatus.FORBIDDEN)
+                return
+            with suppress(ConnectionError):  # the browser has seen enough
+                if file is not None and self.path == PAGE_STREAM:
+                    self._send_file(file)
+                else:
+                    self._pass_on()
+
+        def _send_file(self, path: Path) -> None:
+            with path.open("rb") as content:
+                self.send_response(HTTPStatus.OK)
+                self.send_header("Content-Type", "application/octet-stream")
+                self.send_header("Content-Length", str(path.stat().st_size))
+                self.end_headers()
+                shutil.copyfileobj(content, self.wfile, AT_ONCE)
+
+        def _pass_on(self) -> None:
+            connection = HTTPConnection(LOOPBACK, inside)
+            try:
+                connection.request("GET", self.path)
+                response = connection.getresponse()
+                self.send_response(response.status)
+                for name in KEPT:
+                    if (value := response.headers[name]) is not None:
+                        self.send_header(name, value)
+                self.send_header("Content-Security-Policy", policy)
+                self.end_headers()
+                shutil.copyfileobj(response, self.wfile, AT_ONCE)
+            finally:
+                connection.close()
+
+        def log_message(self, format: str, *args: object) -> None:  # noqa: A002 # theirs
+            """Say nothing: the terminal is for the person."""
+
+    with ThreadingHTTPServer((LOOPBACK, port), Handler) as server:
+        server.daemon_threads = True
+        thread = Thread(target=server.serve_forever, args=(0.05,), daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            server.shutdown()
+            thread.join()

@@ -14,7 +14,7 @@ import numpy as np
 
 from tsas_cli.recordings.quality.checks.slow_channel import is_held
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.noise_spectrum import NoiseSpectrum, noise_spectrum
+from tsas_cli.recordings.quality.samples import NoiseSpectrum, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.noise_spectrum import NoiseSpectrum, noise_spectrum
+from tsas_cli.recordings.quality.samples import NoiseSpectrum, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
 
 _SEGMENT_S = 2.0

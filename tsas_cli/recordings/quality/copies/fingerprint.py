@@ -11,8 +11,7 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import Piece
-from tsas_cli.recordings.quality.copies.agreement import RunSamples
-from tsas_cli.recordings.quality.copies.copy import RowSpan
+from tsas_cli.recordings.quality.copies.agreement import RowSpan, RunSamples
 from tsas_cli.recordings.quality.samples import alternates, step_of
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats, Indices, Mask

@@ -1,7 +1,6 @@
 """Runs in pieces, one or two side by side; short ones stay in memory, as they are read again."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -69,24 +68,14 @@ def _plausible(piece: Piece) -> Piece:
 MOST_SAMPLES = 1 << 16  # compared at once
 
 
-@dataclass(frozen=True, eq=False)
-class SideBySide:
-    """Consecutive samples of a run, and a source's samples around them on the same clock.
-
-    `row` is the number of the first sample in its run.
-    """
-
-    row: int
-    samples: RunSamples
-    source: RunSamples
-
-
 def side_by_side(
     run: Iterator[Piece], source: Iterator[Piece], names: Sequence[str], shift_s: float
-) -> Iterator[SideBySide]:
+) -> Iterator[tuple[int, RunSamples, RunSamples]]:
     """Yield all samples of a run, moved by `shift_s` onto a source's clock, in order.
 
-    Run and source are given in pieces, at least one each; `names` are the common channels.
+    Each part is consecutive samples, after the number of the first in its run, and before the
+    source's samples around them. Run and source are given in pieces, at least one each; `names` are
+    the common channels.
     """
     row, left = 0, RunSamples(np.empty(0), np.empty((0, len(names))))
     around = _samples(next(source), names)
@@ -105,7 +94,7 @@ def side_by_side(
             first, last = np.searchsorted(around.time_s, now.time_s[[0, -1]]).tolist()
             first = min(first, around.time_s.size - 2)  # the run may begin after the source's end
             near = around.part(slice(max(first - MARGIN_ROWS, 0), last + MARGIN_ROWS))
-            yield SideBySide(row, now, near)
+            yield row, now, near
             row, left = row + here, left.part(slice(here, None))
         elif ahead is not None:
             overlap = around.part(slice(-2 * MARGIN_ROWS, None))

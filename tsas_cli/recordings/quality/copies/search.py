@@ -15,8 +15,15 @@ import numpy as np
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.agreement import RunSamples, agreement, joined, stretches
-from tsas_cli.recordings.quality.copies.copy import Copy, RowSpan, contradictions
+from tsas_cli.recordings.quality.copies.agreement import (
+    Copy,
+    RowSpan,
+    RunSamples,
+    agreement,
+    contradictions,
+    joined,
+    stretches,
+)
 from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
 from tsas_cli.recordings.quality.copies.reader import Reader, side_by_side
@@ -222,12 +229,12 @@ def _common_stretches(
     both = side_by_side(reader.parts(other.run), reader.parts(source.run), names, shift.seconds)
     found = (
         stretches(
-            part.row,
-            part.samples.moved(-shift.seconds),
-            agreement(part.source, part.samples, tolerance, spline=shift.spline),
+            row,
+            samples.moved(-shift.seconds),
+            agreement(around, samples, tolerance, spline=shift.spline),
             information,
         )
-        for part in both
+        for row, samples, around in both
     )
     against = contradictions(other.run, source.run)
     for span, every in joined(stretch for part in found for stretch in part):

@@ -1,18 +1,37 @@
-"""The stiffness of each phase: fitted, expected from the model, and by theory."""
+"""What a calibration says: the stiffness of each phase, the transfer of tension, the parameters."""
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import read_model
+from tsas_cli.records.base import ParameterValue
 from tsas_cli.records.calibration import CalibrationFile, Stiffness
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, missing
-from tsas_cli.reporting.drawing import picture, shortened
-from tsas_cli.reporting.figures import legend
+from tsas_cli.reporting.drawing import legend, picture, shortened
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import BY_KEY, PHASES, label_of
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
-from tsas_cli.reporting.phases import BY_KEY, PHASES, label_of
 
+_PARAMETERS_TITLE = "Parameters"
+Shown = TypeVar("Shown", ParameterValue, Estimate)
+_TRANSFER_TITLE = "Tension passed on"
+_TRANSFER = (
+    "While the whole tendon slips, the tension at the drive is a ratio times the tension at the "
+    "load plus an intercept. The capstan alone gives two ratios whose product is 1, and no "
+    "intercepts."
+)
+_INTERCEPTS = (
+    "Intercepts of opposite sign in the two directions are friction that does not depend on the "
+    "load (constant_friction); a common part is an offset."
+)
+_NO_TRANSFER = (
+    "It needs f_in_N and f_out_N, and slip in both directions with a tension that changes."
+)
 _TITLE = "Stiffness by phase"
 _WHAT = (
     "km is the slope of the tension at the drive over its displacement, fitted as a straight line "
@@ -143,3 +162,71 @@ def _draw_marks(axes: Any, values: Sequence[float | None], **style: Any) -> None
     look = {"color": STAND_IN["ink"], "markerfacecolor": "none", "markeredgewidth": 1.5} | style
     if there:
         axes.plot(*zip(*there, strict=True), linestyle="none", **look)
+
+
+def transfer_section(inputs: Inputs) -> Section:
+    """Return the section of the tension's transfer."""
+    calibration = inputs.get(CalibrationFile)
+    if calibration is None:
+        return missing("transfer", _TRANSFER_TITLE, what="calibration", stage="calibrate")
+    if not calibration.transfer:
+        return Section("transfer", _TRANSFER_TITLE, (_TRANSFER, _NO_TRANSFER))
+    rows = tuple(
+        (p.run or "all", p.name, *with_interval(p.value, p.interval_low, p.interval_high), p.unit)
+        for p in calibration.transfer
+    )
+    header = ("runs", "what", "value", "95 % interval", "unit")
+    table = Table("Ratios and intercepts", header, rows, numeric=frozenset({2, 3}))
+    return Section("transfer", _TRANSFER_TITLE, (_TRANSFER, _INTERCEPTS), tables=(table,))
+
+
+def parameters_section(inputs: Inputs) -> Section:
+    """Return the section of the parameters."""
+    calibration, extended = inputs.get(CalibrationFile), _extended(inputs)
+    if calibration is None and extended is None:
+        return missing("parameters", _PARAMETERS_TITLE, what="calibration", stage="calibrate")
+    intro = ["The origin says which values are fitted, and which are taken as given."]
+    tables, notes = [], tuple[str, ...]()
+    if extended is not None:
+        tables.append(parameter_table("The extended model", _shown(extended.estimates, inputs)))
+    if calibration is not None:
+        if not calibration.fit.converged:
+            intro.append(f"The fit did not converge: {calibration.fit.message}")
+        if notes := calibration.cannot_tell:
+            intro.append("Keep in mind of the calibrated model:")
+        tables.append(
+            parameter_table("The calibrated model", _shown(calibration.parameters, inputs))
+        )
+    return Section(
+        "parameters", _PARAMETERS_TITLE, tuple(intro), tables=tuple(tables), points=notes
+    )
+
+
+def _extended(inputs: Inputs) -> Model | None:
+    """Return the extended model of a diagnosis, None without one."""
+    diagnosis = inputs.get(DiagnosisFile)
+    if diagnosis is None or not diagnosis.extended:
+        return None
+    path = inputs.folders[DiagnosisFile] / EXTENDED_MODEL
+    return read_model(path) if path.is_file() else None
+
+
+def _shown(parameters: Sequence[Shown], inputs: Inputs) -> list[Shown]:
+    return [p for p in parameters if inputs.concerns(p.name)]
+
+
+def parameter_table(caption: str, parameters: Sequence[ParameterValue | Estimate]) -> Table:
+    """Return a model's parameters with their intervals."""
+    rows = tuple(
+        (
+            p.name,
+            p.run or "all",
+            *with_interval(p.value, p.interval_low, p.interval_high),
+            p.unit,
+            p.origin,
+            "yes" if p.at_bound else "no",
+        )
+        for p in parameters
+    )
+    header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
+    return Table(caption, header, rows, numeric=frozenset({2, 3}))

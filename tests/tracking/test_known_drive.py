@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from tsas_cli.drive.file import IdentifiedDrive
-from tsas_cli.tracking.drives import actuator_of, known_drive
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
-from tsas_cli.tracking.settings import ReferenceSettings, Settings
+from tsas_cli.tracking.settings import ReferenceSettings, Settings, actuator_of, known_drive
 from tsas_cli.tracking.track import Known, Plant, feedforward, plan, run_loop
 
 SETTINGS = Settings(reference=ReferenceSettings(duration_s=8.0))

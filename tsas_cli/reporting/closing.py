@@ -1,4 +1,4 @@
-"""The RMSE of every controller in every case, by the model in its inverse and feedforward."""
+"""What a diagnosis is worth in tracking: hidden differences, named, and the RMSE by model."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -6,14 +6,28 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from tsas_cli.records.closing import ClosingFile, Row
+from tsas_cli.records.closing import ClosedCase, ClosingFile, Named, Row
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Table
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures import legend
-from tsas_cli.reporting.numbers import plain, with_spread
+from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import as_printed, plain, with_spread
 from tsas_cli.support.wording import listed
 
+_HOW = (
+    "A plant differs from what the controller knows. It is recorded while it tracks with the model "
+    "of the data sheet, calibrated and diagnosed from these recordings alone, and tracks a "
+    "reference with four models in inverse and feedforward."
+)
+_SHARED = (
+    "All is simulated, and the plant is made of the same laws as the models: a wrong law would go "
+    "unseen here. The blind benchmark has a rig of its own for that."
+)
+_LIMIT = (
+    "The limit is the plant's own model. It is no lower bound: a wrong model may happen to cancel "
+    "a part of what the controller itself leaves, so that extended / true can be below 1. Where "
+    "nothing is named, the extended model is the calibrated one."
+)
 NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference
 _PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"
 
@@ -84,13 +98,9 @@ def _said(case: str, row: Row) -> str:
     return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
 
 
-def _median_gain(rows: dict[str, Row]) -> float:
-    return median(row.gain for row in rows.values())
-
-
 def _gain(rows: dict[str, Row]) -> str:
     """Return in sentences how much the extended model lowers the error of the data sheet's."""
-    middle = _median_gain(rows)
+    middle = median(row.gain for row in rows.values())
     said = f"the better model {_matters(middle)}. RMSE data sheet / extended is {plain(middle, 2)}"
     if len(rows) == 1:
         return f"{said}."
@@ -165,3 +175,45 @@ def _draw_panel(axes: Any, rows: Mapping[str, Row]) -> None:
     axes.set_yticks(places, list(rows))
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
+
+
+def section(inputs: Inputs) -> Section | None:
+    """Return the section, None where no loop was closed over a diagnosis."""
+    closing = inputs.get(ClosingFile)
+    if closing is None:
+        return None
+    return Section(
+        "closing",
+        "Does a better model track better?",
+        (_HOW, _SHARED),
+        tables=(_hidden_and_named(closing),),
+        parts=(
+            Section(
+                "closing-rmse",
+                "RMSE by model",
+                (_LIMIT,),
+                points=tuple(worth(closing)),
+                pictures=(dots(closing),),
+            ),
+            Section("closing-table", "The same errors in numbers", tables=(table(closing),)),
+        ),
+    )
+
+
+def _hidden_and_named(closing: ClosingFile) -> Table:
+    """Return what was hidden and what was named, one row for each case."""
+    rows = tuple(
+        (case.case, case.title, _hidden(case), case.verdict, _named(case.named))
+        for case in closing.cases
+    )
+    header = ("case", "what differs", "hidden", "verdict", "named")
+    return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
+
+
+def _hidden(case: ClosedCase) -> str:
+    return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
+
+
+def _named(named: tuple[Named, ...]) -> str:
+    causes = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in named)
+    return ", ".join(causes) or "nothing"

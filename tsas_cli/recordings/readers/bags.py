@@ -1,7 +1,11 @@
-"""Topics of messages, as robots record them: each field is a column with the clock of its topic."""
+"""Recordings of robots: bags of ROS 1 and 2, and MCAP. Each field of a topic is a column."""
 
+import json
 import re
+import shlex
+import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from pathlib import Path
@@ -9,14 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.readers.offered import Column
-from tsas_cli.recordings.readers.records import flat
-from tsas_cli.recordings.readers.table import optional
+from tsas_cli.recordings.readers.offered import Column, Offered, flat
+from tsas_cli.recordings.readers.table import ReadOptions, optional
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
 _NAME = re.compile(r"\w+(/(msg|action))?/\w+", flags=re.ASCII)
 Decode = Callable[[bytes], Mapping[str, Any]]
+_UNITS = {"force": "N", "torque": "N m"}
+_STAMP = "header.stamp."
+Message = tuple[int, Mapping[str, Any]]  # when it was published or logged [ns], and its fields
+_TOPICS = "SELECT id, name, type FROM topics WHERE serialization_format = 'cdr' ORDER BY id"
+_TEXTS = (
+    "SELECT topic_type, encoded_message_definition FROM message_definitions "
+    "WHERE encoding = 'ros2msg'"
+)
+_MESSAGES = "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp, id"
 
 
 class UnknownTypeError(Exception):
@@ -45,11 +57,6 @@ def decoder(kind: str, definition: str, *, ros1: bool) -> Decode:
         raise UnknownTypeError(name)
     decode = store.deserialize_ros1 if ros1 else store.deserialize_cdr
     return lambda data: vars(decode(data, name))
-
-
-_UNITS = {"force": "N", "torque": "N m"}
-_STAMP = "header.stamp."
-Message = tuple[int, Mapping[str, Any]]  # when it was published or logged [ns], and its fields
 
 
 @dataclass(frozen=True)
@@ -84,6 +91,20 @@ class Topic:
             fields.append(dict(flat(message)))
         sent = [_sent_ns(one) for one in fields]
         return (sent if sent and all(sent) else logged), fields
+
+
+_Topics = Iterator[tuple[list[Topic], dict[str, str]]]  # and advice where none can be decoded
+
+
+@contextmanager
+def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+    """Yield the fields of all topics whose type is defined in the file, or by ROS itself.
+
+    InputError: there is none.
+    """
+    del options
+    with _TOPICS_OF[path.suffix.lower()](path) as (topics, advice):
+        yield Offered(columns_of(topics, path, **advice))
 
 
 def columns_of(topics: Sequence[Topic], path: Path, **advice: str) -> list[Column]:
@@ -138,3 +159,79 @@ def _values(topic: Topic, field: str) -> list[Any]:
 def _times(topic: Topic, zero_ns: int) -> Floats:
     times_ns, _ = topic.all
     return np.array([time_ns - zero_ns for time_ns in times_ns]) * 1e-9
+
+
+@contextmanager
+def _of_ros1(path: Path) -> _Topics:
+    rosbag = optional("rosbags.rosbag1", extra="robots")
+    with rosbag.Reader(path) as bag:
+        connections = bag.connections
+        yield [Topic(one.topic, one.msgtype, partial(_ros1, bag, one)) for one in connections], {}
+
+
+def _ros1(bag: Any, connection: Any) -> Iterator[Message]:
+    decode = decoder(connection.msgtype, connection.msgdef.data, ros1=True)
+    for _, time_ns, data in bag.messages(connections=[connection]):
+        yield time_ns, decode(data)
+
+
+@contextmanager
+def _of_ros2(path: Path) -> _Topics:
+    """Yield the topics of the SQLite file in the folder of a bag."""
+    address = f"{path.absolute().as_uri()}?mode=ro&immutable=1"
+    with closing(sqlite3.connect(address, uri=True)) as file:
+        try:
+            texts = dict(file.execute(_TEXTS))
+        except sqlite3.OperationalError:  # bags hold definitions since Iron
+            texts = {}
+        topics = [
+            Topic(name, kind, partial(_ros2, file, number, kind, texts.get(kind, "")))
+            for number, name, kind in file.execute(_TOPICS).fetchall()
+        ]
+        remedy = (
+            "convert it where its types are installed: "
+            f"echo 'output_bags: [{{uri: made, storage_id: mcap, all: true}}]' > made.yaml && "
+            f"ros2 bag convert -i {shlex.quote(str(path.parent))} -o made.yaml"
+        )
+        yield topics, {"remedy": remedy}
+
+
+def _ros2(file: sqlite3.Connection, number: int, kind: str, definition: str) -> Iterator[Message]:
+    decode = decoder(kind, definition, ros1=False)
+    for time_ns, data in file.execute(_MESSAGES, (number,)):
+        yield time_ns, decode(data)
+
+
+@contextmanager
+def _of_mcap(path: Path) -> _Topics:
+    """Yield the topics of ROS, or in JSON."""
+    mcap = optional("mcap.reader", extra="robots")
+    with path.open("rb") as stream:
+        file = mcap.make_reader(stream)
+        summary = file.get_summary()
+        topics = []
+        for channel in summary.channels.values():
+            schema = summary.schemas.get(channel.schema_id)
+            kind = schema.name if schema else ""
+            topics.append(Topic(channel.topic, kind, partial(_mcap, file, channel, schema)))
+        yield topics, {"expected": "messages of ROS 1 or 2, or in JSON"}
+
+
+def _decode(channel: Any, schema: Any) -> Decode:
+    encoding = channel.message_encoding
+    if encoding == "json":
+        return json.loads
+    if encoding not in ("cdr", "ros1") or schema is None:
+        raise UnknownTypeError(f"in {encoding[:40]}")
+    text = schema.data.decode() if schema.encoding in ("ros2msg", "ros1msg") else ""
+    return decoder(schema.name, text, ros1=encoding == "ros1")
+
+
+def _mcap(file: Any, channel: Any, schema: Any) -> Iterator[Message]:
+    decode = _decode(channel, schema)
+    for _, found, message in file.iter_messages(topics=[channel.topic]):
+        if found.id == channel.id:
+            yield message.publish_time, decode(message.data)
+
+
+_TOPICS_OF = {".bag": _of_ros1, ".db3": _of_ros2, ".mcap": _of_mcap}

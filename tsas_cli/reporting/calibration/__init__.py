@@ -1,1 +1,0 @@
-"""What a calibration says: its sections on stiffness, transfer and parameters."""

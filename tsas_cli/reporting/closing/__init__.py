@@ -1,1 +1,0 @@
-"""What a better model is worth in tracking: the section, its parts and figure."""

@@ -1,1 +1,0 @@
-"""The drive's section and its figures."""

@@ -1,0 +1,125 @@
+"""How the page names effects, signals, channels and phases, the same in every plot."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.effects import EFFECTS
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.records.base import PhaseSegment
+from tsas_cli.records.diagnosis import NamedCause
+from tsas_cli.support.arrays import Floats
+
+EFFECT = {effect.name: effect for effect in EFFECTS}
+_SIGNALS = {  # in words, and the unit
+    "speed_mm_per_s": ("speed of the drive", "mm/s"),
+    "travel_since_reversal_mm": ("travel of the drive since it turned", "mm"),
+    "time_s": ("time in the run", "s"),
+    "direction": ("direction of the drive", ""),
+    "phase": ("phase of the cycle", ""),
+    "run": ("run", ""),
+}
+
+
+@dataclass(frozen=True)
+class Phase:
+    """One phase: its key in the files, its name on the page, its number beside the curve."""
+
+    key: str
+    label: str
+    number: str
+    colour: str
+
+
+PHASES = (
+    Phase("contraction", "contraction", "1", "contraction"),
+    Phase("dead_band_down", "dead band down", "2", "dead-band-down"),
+    Phase("loosening", "loosening", "3", "loosening"),
+    Phase("dead_band_up", "dead band up", "4", "dead-band-up"),
+    Phase("rest", "rest", "", "rest"),
+    Phase("unknown", "unknown", "", "unknown"),
+)
+BY_KEY = {phase.key: phase for phase in PHASES}
+
+
+def title_of(name: str) -> str:
+    """Return an effect's title, its name where the catalogue has none."""
+    return EFFECT[name].title if name in EFFECT else name
+
+
+def within(title: str) -> str:
+    """Return a title as it stands within a sentence.
+
+    >>> within("Compliance of the drive")
+    'compliance of the drive'
+    """
+    return title[:1].lower() + title[1:]
+
+
+def heading_of(cause: NamedCause) -> str:
+    """Return a cause's title, with its rival where there is one, or how many there are."""
+    title = cause.title or title_of(cause.effect)
+    if not cause.rivals:
+        return title
+    if len(cause.rivals) == 1:
+        return f"{title}, or {within(title_of(cause.rivals[0]))}"
+    return f"{title}, or one of {len(cause.rivals)} others"
+
+
+def sentence_of(name: str) -> str:
+    """Return the first sentence on an effect, empty where the catalogue has none."""
+    return EFFECT[name].sentence if name in EFFECT else ""
+
+
+def signal_in_words(name: str) -> str:
+    """Return what a signal is; a text that is no known name stays as it is."""
+    if name in _SIGNALS:
+        return _SIGNALS[name][0]
+    return called(name)
+
+
+def signal_at_axis(name: str) -> str:
+    """Return the words with the unit in brackets, where there is one."""
+    own = _SIGNALS[name][1] if name in _SIGNALS else ""
+    unit = own or (BY_NAME[name].unit if name in BY_NAME else "")
+    return signal_in_words(name) + (f" [{unit}]" if unit else "")
+
+
+def in_words(name: str) -> str:
+    """Return what a canonical column means, in a few words.
+
+    >>> in_words("f_in_N")
+    'tension at the drive'
+    """
+    return BY_NAME[name].meaning.split(",")[0]
+
+
+def called(name: str) -> str:
+    """Return what a column means in a few words; of one that is not canonical its name."""
+    return in_words(name) if name in BY_NAME else name
+
+
+def at_axis(name: str) -> str:
+    """Return the words with the unit in brackets.
+
+    >>> at_axis("f_in_N")
+    'tension at the drive [N]'
+    """
+    return f"{in_words(name)} [{BY_NAME[name].unit}]"
+
+
+def label_of(key: str) -> str:
+    """Return the phase's name on the page; a key that is not known is its own name."""
+    return BY_KEY[key].label if key in BY_KEY else key
+
+
+def phase_of_samples(time_s: Floats, segments: Iterable[PhaseSegment]) -> npt.NDArray[np.object_]:
+    """Return the phase's key at each sample, shape (n,); "unknown" outside all segments."""
+    keys = np.full(time_s.size, "unknown", dtype=object)
+    for segment in segments:
+        first = np.searchsorted(time_s, segment.start_s, side="left")
+        after = np.searchsorted(time_s, segment.end_s, side="right")
+        keys[first:after] = segment.phase if segment.phase in BY_KEY else "unknown"
+    return keys

@@ -1,1 +1,0 @@
-"""The recordings, what the checks say of them, and their loops."""
