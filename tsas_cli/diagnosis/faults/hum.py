@@ -33,8 +33,11 @@ def swings(
         step_s = max(float(np.median(np.diff(time_s[part]))) for part in parts)
         count = round(PER_RESOLUTION * max(lengths) / step_s)
         tried = np.fft.rfftfreq(count, step_s)
+        faster = tried > MOTIONS_OWN * max(motions)
+        if not faster.any():
+            continue
         power = sum(_power(time_s[part], residual[part], step_s, count) for part in parts)
-        frequency = float(tried[np.argmax(power * (tried > MOTIONS_OWN * max(motions)))])
+        frequency = float(tried[np.argmax(power * faster)])
         columns = np.zeros((time_s.size, 2 * len(parts)))
         for k, part in enumerate(parts):
             phase = 2.0 * np.pi * frequency * time_s[part]

@@ -8,16 +8,15 @@ from collections.abc import Iterator
 
 from tsas_cli.diagnosis.faults.search import OWN_FRICTION, FoundFault, beside
 from tsas_cli.diagnosis.search import LINEAR, Search
-from tsas_cli.diagnosis.tolerances import tolerances
 
 AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the fault
 
 
 def effects_as_good(search: Search, fault: FoundFault) -> Iterator[str]:
     """Yield the effects of the catalogue that explain as much as a fault, each fitted by itself."""
-    bench, folds = search.bench, search.folds
+    folds = search.folds
     nominal = search.trial(frozenset())
-    tolerated = tolerances(bench, nominal)
+    tolerated = search.tolerated[nominal.on_mesh]
     squares = float(nominal.solution.residual @ nominal.solution.residual)
     alike = fault.found[0].code == OWN_FRICTION
     beyond = max(fault.rest - folds.run.size, 0.0)  # the noise: an effect may leave twice as much

@@ -15,7 +15,7 @@ from tsas_cli.diagnosis.faults.hum import swings
 from tsas_cli.diagnosis.faults.shapes import CONSTANTS_S, RATES, WINDOWS, RunShapes, shapes_of
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerances import SCATTER, friction_of_runs, tolerances
+from tsas_cli.diagnosis.tolerances import SCATTER, friction_of_runs
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
@@ -123,7 +123,7 @@ def fault_of_recording(search: Search, accepted: Collection[str]) -> FoundFault 
     mechanism acts in every run. Faults of the codes that are `accepted` are not sought.
     """
     bench, trial, run = search.bench, search.trial(frozenset()), search.folds.run
-    tolerated = tolerances(bench, trial)
+    tolerated = search.tolerated[trial.on_mesh]
     left = beside(trial, tolerated, run)
     found = [c for c in candidates(bench, trial, left, run) if c.code not in accepted]
     choices = [_judged(found, left.squares, run.size)]
