@@ -1,13 +1,15 @@
 """Parquet files that lie, or that decode to far more than they are; written byte by byte."""
 
+import pickle
 import struct
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tests.hostile.case import Case, around, columns, ingesting
+from tests.hostile.case import Evil, Make, around, cases, columns, ingesting
 
 DOUBLE, TEXT = 5, 6
 PLAIN, DICTIONARY = 0, 8
@@ -82,6 +84,17 @@ def repeated(value: bytes, rows: int) -> tuple[bytes, bytes]:
     return dictionary, data
 
 
+def footer(schema: Sequence[bytes], rows: int, groups: Sequence[bytes]) -> bytes:
+    """Return the end of a file."""
+    meta = fields(
+        (1, I32, zigzag(2)),
+        (2, LIST, listed(STRUCT, schema)),
+        (3, I64, zigzag(rows)),
+        (4, LIST, listed(STRUCT, groups)),
+    )
+    return meta + struct.pack("<I", len(meta)) + b"PAR1"
+
+
 def parquet(
     path: Path,
     names: Iterable[str],
@@ -117,49 +130,24 @@ def parquet(
     group = fields(
         (1, LIST, listed(STRUCT, chunks)), (2, I64, zigzag(len(out))), (3, I64, zigzag(said))
     )
-    footer = fields(
-        (1, I32, zigzag(2)),
-        (2, LIST, listed(STRUCT, [root, *schema])),
-        (3, I64, zigzag(said)),
-        (4, LIST, listed(STRUCT, [group])),
-    )
-    path.write_bytes(bytes(out) + footer + struct.pack("<I", len(footer)) + b"PAR1")
+    path.write_bytes(bytes(out) + footer([root, *schema], said, [group]))
     return path
 
 
 CANONICAL = ("time_s", "x_in_mm", "f_in_N")
+LONG = struct.pack("<I", 1_000_000) + b"x" * 1_000_000  # a text of 1 MB
 
 
-def check(folder: Path, file: Path) -> list[object]:
-    return ["check", around(folder, file)]
+def checked(names: Iterable[str] = CANONICAL, **how: Any) -> Make:
+    return lambda folder: check(parquet(folder / "a.parquet", names, **how))
 
 
-def claims(folder: Path) -> list[object]:
-    return check(folder, parquet(folder / "a.parquet", CANONICAL, rows=3, claimed=BILLION))
+def ingested(**how: Any) -> Make:
+    return lambda folder: ingesting(parquet(folder / "a.parquet", "txf", **how))
 
 
-def decodes(folder: Path) -> list[object]:
-    return check(folder, parquet(folder / "a.parquet", CANONICAL, rows=3 * BILLION))
-
-
-def claims_most(folder: Path) -> list[object]:
-    return check(folder, parquet(folder / "a.parquet", CANONICAL, rows=3, claimed=2**62))
-
-
-def claims_below_zero(folder: Path) -> list[object]:
-    return check(folder, parquet(folder / "a.parquet", CANONICAL, rows=3, claimed=-5))
-
-
-def decodes_in_secret(folder: Path) -> list[object]:
-    return check(folder, parquet(folder / "a.parquet", CANONICAL, rows=MOST, claimed=3))
-
-
-def ingested(folder: Path) -> list[object]:
-    return ingesting(parquet(folder / "a.parquet", "txf", rows=3 * BILLION))
-
-
-def ingested_claim(folder: Path) -> list[object]:
-    return ingesting(parquet(folder / "a.parquet", "txf", rows=3, claimed=BILLION))
+def check(file: Path) -> list[object]:
+    return ["check", around(file.parent, file)]
 
 
 def guessed(folder: Path) -> list[object]:
@@ -171,108 +159,77 @@ def reference(folder: Path) -> list[object]:
     return ["track", "--reference", path, "--out", folder / "out"]
 
 
-def text_note(folder: Path) -> list[object]:
-    """An extra column that repeats a text of 1 MB, beside honest ones."""
-    long = ["x" * 1_000_000]
-    note = pa.DictionaryArray.from_arrays(pa.array([0] * 400, pa.int32()), pa.array(long))
-    path = folder / "a.parquet"
-    pq.write_table(
-        pa.table({**columns(), **{f"note{i}": note for i in range(40)}}), path, store_schema=False
-    )
-    return check(folder, path)
+def written(table: Callable[[Path], pa.Table], **how: Any) -> Make:
+    """Return a maker of a table that pyarrow writes."""
+
+    def make(folder: Path) -> list[object]:
+        pq.write_table(table(folder), folder / "a.parquet", **how)
+        return check(folder / "a.parquet")
+
+    return make
 
 
-def text_force(folder: Path) -> list[object]:
-    long = struct.pack("<I", 1_000_000) + b"x" * 1_000_000
-    path = parquet(folder / "a.parquet", ("t", "x", "f"), rows=100_000, kind=TEXT, value=long)
-    return ingesting(path)
+def text_note(_: Path) -> pa.Table:
+    """Forty extra columns that repeat a text of 1 MB, beside honest ones."""
+    long = pa.array(["x" * 1_000_000])
+    note = pa.DictionaryArray.from_arrays(pa.array([0] * 400, pa.int32()), long)
+    return pa.table(columns() | {f"note{i}": note for i in range(40)})
 
 
-def text_time(folder: Path) -> list[object]:
-    long = struct.pack("<I", 1_000_000) + b"x" * 1_000_000
-    path = parquet(folder / "a.parquet", CANONICAL, rows=100_000, kind=TEXT, value=long)
-    return check(folder, path)
-
-
-def many_columns(folder: Path) -> list[object]:
-    names = [*CANONICAL, *(f"c{i}" for i in range(10_500))]
-    return check(folder, parquet(folder / "a.parquet", names, rows=3))
-
-
-def nested(folder: Path) -> list[object]:
-    kind = pa.float64()
+def nested(_: Path) -> pa.Table:
+    kind, value = pa.float64(), 1.0
     for _ in range(60):
-        kind = pa.list_(kind)
-    value: object = 1.0
-    for _ in range(60):
-        value = [value]
-    path = folder / "a.parquet"
-    table = {**columns(3), "deep": pa.array([value] * 3, kind)}
-    pq.write_table(pa.table(table), path)
-    return check(folder, path)
+        kind, value = pa.list_(kind), [value]
+    return pa.table(columns(3) | {"deep": pa.array([value] * 3, kind)})
+
+
+def pickled(folder: Path) -> pa.Table:
+    """A column whose type is a pickled Python object, as old versions of Arrow took it."""
+    meta = {
+        b"ARROW:extension:name": b"arrow.py_extension_type",
+        b"ARROW:extension:metadata": pickle.dumps(Evil(folder)),
+    }
+    fields = [pa.field(n, pa.float64(), metadata=meta) for n in CANONICAL]
+    return pa.table(columns(), schema=pa.schema(fields))
 
 
 def nested_deep(folder: Path) -> list[object]:
     """A schema of groups in groups in groups."""
     group = fields((3, I32, zigzag(0)), (4, BINARY, binary(b"g")), (5, I32, zigzag(1)))
     leaf = fields((1, I32, zigzag(DOUBLE)), (3, I32, zigzag(0)), (4, BINARY, binary(b"time_s")))
-    footer = fields(
-        (1, I32, zigzag(2)),
-        (2, LIST, listed(STRUCT, [*([group] * 200_000), leaf])),
-        (3, I64, zigzag(0)),
-        (4, LIST, listed(STRUCT, [])),
-    )
-    path = folder / "a.parquet"
-    path.write_bytes(b"PAR1" + footer + struct.pack("<I", len(footer)) + b"PAR1")
-    return check(folder, path)
+    (folder / "a.parquet").write_bytes(b"PAR1" + footer([*([group] * 200_000), leaf], 0, []))
+    return check(folder / "a.parquet")
 
 
-def with_pickle(folder: Path) -> list[object]:
-    """A column whose type is a pickled Python object, as old versions of Arrow took it."""
-    import pickle
-
-    class Evil:
-        def __reduce__(self) -> tuple[object, ...]:
-            return (Path.touch, (folder / "touched",))
-
-    plain = columns()
-    meta = {
-        b"ARROW:extension:name": b"arrow.py_extension_type",
-        b"ARROW:extension:metadata": pickle.dumps(Evil()),
+CASES = cases(
+    {
+        "1000000000 rows, 8 GB or more from a file of 324 bytes": {
+            "a footer that claims a billion rows": checked(rows=3, claimed=BILLION),
+        },
+        "at most 5000 times its size": {
+            "a footer that claims 2^62 rows": checked(rows=3, claimed=2**62),
+            "run lengths of three billion rows": checked(rows=3 * BILLION),
+            "run lengths, ingested": ingested(rows=3 * BILLION),
+            "a footer that claims a billion rows, ingested": ingested(rows=3, claimed=BILLION),
+            "run lengths, as a reference to track": reference,
+            "forces that are long texts": ingested(rows=100_000, kind=TEXT, value=LONG),
+        },
+        "cannot be read as Parquet": {
+            "a footer that claims fewer than no rows": checked(rows=3, claimed=-5),
+            "lists in lists": written(nested),
+            "groups in groups, 200,000 deep": nested_deep,
+        },
+        "holds no column of numbers (3000000000 rows": {"run lengths, guessed": guessed},
+        "column time_s holds binary": {
+            "a time that is long texts": checked(rows=100_000, kind=TEXT, value=LONG),
+        },
+        "holds 10503 columns; expected at most 10000": {
+            "too many columns": checked([*CANONICAL, *(f"c{i}" for i in range(10_500))], rows=3),
+        },
+        "": {
+            "run lengths of two billion rows in three": checked(rows=MOST, claimed=3),
+            "an extra column of long texts": written(text_note, store_schema=False),
+            "a pickled type": written(pickled),
+        },
     }
-    schema = pa.schema([pa.field(n, pa.float64(), metadata=meta) for n in plain])
-    path = folder / "a.parquet"
-    pq.write_table(pa.table(plain, schema=schema), path)
-    return check(folder, path)
-
-
-CASES = (
-    Case(
-        "a footer that claims a billion rows",
-        claims,
-        "1000000000 rows, 8 GB or more from a file of 324 bytes",
-    ),
-    Case("a footer that claims 2^62 rows", claims_most, "at most 5000 times its size"),
-    Case("a footer that claims fewer than no rows", claims_below_zero, "cannot be read as Parquet"),
-    Case("run lengths of three billion rows", decodes, "at most 5000 times its size"),
-    Case("run lengths of two billion rows in three", decodes_in_secret),
-    Case("run lengths, ingested", ingested, "at most 5000 times its size"),
-    Case(
-        "a footer that claims a billion rows, ingested",
-        ingested_claim,
-        "at most 5000 times its size",
-    ),
-    Case("run lengths, guessed", guessed, "holds no column of numbers (3000000000 rows"),
-    Case("run lengths, as a reference to track", reference, "at most 5000 times its size"),
-    Case("an extra column of long texts", text_note),
-    Case("forces that are long texts", text_force, "at most 5000 times its size"),
-    Case("a time that is long texts", text_time, "column time_s holds binary"),
-    Case(
-        "too many columns",
-        many_columns,
-        "holds 10503 columns; expected at most 10000",
-    ),
-    Case("lists in lists", nested, "cannot be read as Parquet"),
-    Case("groups in groups, 200,000 deep", nested_deep, "cannot be read as Parquet"),
-    Case("a pickled type", with_pickle),
 )
