@@ -117,7 +117,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
     ("text", "message"),
     [
         ("t,f\n0,1\n1,fast\n", ("row 3", "column f", "'fast'")),
-        ("t,f\n" + "0,1\n" * 200_000 + "1,fast\n", ("row 200002", "column f", "'fast'")),
+        ("t,f\n" + "0,1\n" * 20_000 + "1,fast\n", ("row 20002", "column f", "'fast'")),
         ("t,f\n0,1\n1,2,3\n", ("row 3", "3 fields", "expected 2")),
         ("t,f,g\n0,1\n1,2\n", ("row 2", "3 column names and 2 fields")),
         ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),

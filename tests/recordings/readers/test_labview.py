@@ -57,12 +57,6 @@ def test_segments_of_lvm_follow_each_other(tmp_path):
         names(path, ReadOptions())
 
 
-def test_another_file_is_no_lvm(tmp_path):
-    (tmp_path / "a.lvm").write_text("t,f\n0,1\n")
-    with pytest.raises(InputError, match="has no"):
-        names(tmp_path / "a.lvm", ReadOptions())
-
-
 def tdms(path, groups, **properties):
     with TdmsWriter(path) as file:
         channels = [
@@ -96,9 +90,3 @@ def test_tdms_with_clocks_of_its_channels(tmp_path):
     np.testing.assert_allclose(table.columns["time"], 0.125 * np.arange(1, 6))
     np.testing.assert_allclose(table.columns["a/f"], np.arange(1, 6))
     np.testing.assert_allclose(table.columns["b/x"], np.arange(5) / 2)
-
-
-def test_damaged_tdms_is_one_line(tmp_path):
-    (tmp_path / "a.tdms").write_bytes(b"nothing")
-    with pytest.raises(InputError, match="holds no channel of numbers"):
-        names(tmp_path / "a.tdms", ReadOptions())

@@ -70,29 +70,31 @@ def two_channels_5(path):
     save_5(path, rec001=controldesk([T], channels))
 
 
-def one_channel_73(path):
+def capture_73(path, fill):
+    """Write a capture whose channels are filled in."""
+
     def build(file):
         capture = struct(file, "rec001")
         numbers(struct(capture, "X"), "Data", T)
+        fill(file, capture)
+
+    save_73(path, build)
+
+
+def one_channel_73(path):
+    def fill(_, capture):
         channel = struct(capture, "Y")
         text(channel, "Name", FORCE)
         numbers(channel, "Data", F)
         text(channel, "Unit", "N")
 
-    save_73(path, build)
+    capture_73(path, fill)
 
 
 def two_channels_73(path):
-    def build(file):
-        capture = struct(file, "rec001")
-        numbers(struct(capture, "X"), "Data", T)
-        records = [
-            {"Name": SPEED, "Data": F * 2, "Unit": "rpm"},
-            {"Name": FORCE, "Data": F, "Unit": "N"},
-        ]
-        struct_array(file, capture, "Y", records)
-
-    save_73(path, build)
+    speed = {"Name": SPEED, "Data": F * 2, "Unit": "rpm"}
+    force = {"Name": FORCE, "Data": F, "Unit": "N"}
+    capture_73(path, lambda file, capture: struct_array(file, capture, "Y", [speed, force]))
 
 
 @pytest.mark.parametrize("write", [one_channel_5, two_channels_5, one_channel_73, two_channels_73])
@@ -111,9 +113,8 @@ def test_the_clock_beside_a_channel_that_is_called_time_has_a_number(path):
 
 
 def test_a_capture_with_two_rasters_needs_leave_to_interpolate(path):
-    slow = T[::2]
     channels = [(FORCE, F, "N", 1), (SPEED, F[::2], "rpm", 2)]
-    save_5(path, rec001=controldesk([T, slow], channels))
+    save_5(path, rec001=controldesk([T, T[::2]], channels))
     with pytest.raises(InputError, match=r"different times.*resample = true"):
         ask(path, "time", FORCE, SPEED)
     columns, _ = ask(path, "time", FORCE, SPEED, resample=True)
@@ -122,10 +123,7 @@ def test_a_capture_with_two_rasters_needs_leave_to_interpolate(path):
 
 
 def test_two_captures_are_not_chosen_between(path):
-    captures = {
-        name: controldesk([T], [(FORCE, values, "N", 1)]) for name, values in (("a", T), ("b", F))
-    }
-    save_5(path, **captures)
+    save_5(path, **{n: controldesk([T], [(FORCE, v, "N", 1)]) for n, v in (("a", T), ("b", F))})
     with pytest.raises(InputError, match="holds 2 captures: a, b"):
         ask(path, FORCE)
     assert ask(path, "time", FORCE, table="b")[0] == {"time": T.tolist(), FORCE: F.tolist()}
