@@ -1,24 +1,19 @@
-"""An S3-compatible server in a process of its own, and a counting wire before it."""
+"""An S3-compatible server in a process of its own, and a wire before it."""
 
 import itertools
 import os
-import re
-import select
 import socket
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 
 import pytest
 
+from tests.storage.wire import HOST, Wire
 from tsas_cli.recordings import storage
 
-HOST = "127.0.0.1"
 KEY, SECRET = "test-key-id", "test-secret-that-nobody-sees"
-
-
 NUMBERS = itertools.count()
 
 
@@ -49,54 +44,6 @@ def server(tmp_path_factory) -> Iterator[int]:
     finally:
         process.terminate()
         process.wait(timeout=120)
-
-
-class Wire:
-    """Hands on every connection to the server; counts requests, and bytes that come back."""
-
-    def __init__(self, target: int) -> None:
-        self.target, self.received, self.sent = target, 0, b""
-        self.door = socket.create_server((HOST, 0))
-        self.port = self.door.getsockname()[1]
-        threading.Thread(target=self._listen, daemon=True).start()
-
-    @property
-    def requests(self) -> list[tuple[str, str]]:
-        """Each request: what it does, and to which object."""
-        found = re.findall(rb"(GET|HEAD|PUT|DELETE|POST) (/\S*) HTTP/1\.1\r\n", self.sent)
-        return [(verb.decode(), path.decode()) for verb, path in found]
-
-    def reset(self) -> None:
-        self.received, self.sent = 0, b""
-
-    def _listen(self) -> None:
-        while True:
-            try:
-                client, _ = self.door.accept()
-            except OSError:
-                return
-            try:
-                server = socket.create_connection((HOST, self.target))
-            except OSError:
-                client.close()
-                continue
-            threading.Thread(target=self._hand_on, args=(client, server), daemon=True).start()
-
-    def _hand_on(self, client: socket.socket, server: socket.socket) -> None:
-        with client, server:
-            while True:
-                for side in select.select([client, server], [], [])[0]:
-                    try:
-                        data = side.recv(65536)
-                        if not data:
-                            return
-                        if side is server:
-                            self.received += len(data)
-                        else:
-                            self.sent += data
-                        (client if side is server else server).sendall(data)
-                    except OSError:
-                        return
 
 
 @pytest.fixture

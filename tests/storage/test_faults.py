@@ -7,8 +7,7 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
-from tests.storage.conftest import HOST, forget
-from tests.storage.faults import FaultyWire
+from tests.storage.conftest import forget
 from tsas_cli.recordings import checked, storage
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.storage_failures import TIMEOUT
@@ -20,16 +19,12 @@ RUN = b"runs/a.parquet"
 
 
 @pytest.fixture
-def broken(server, bucket, monkeypatch):
+def broken(wire, bucket, monkeypatch):
     """The wire before the storage, with short limits; the bucket is there."""
-    wire = FaultyWire(server)
-    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{wire.port}")
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
-    forget()
     assert not location_of(f"{bucket}/opened").is_file()  # its libraries take their time
     monkeypatch.setenv(TIMEOUT, "2")
-    yield wire
-    wire.door.close()
+    return wire
 
 
 @pytest.fixture
@@ -79,11 +74,12 @@ def test_what_always_breaks_off_is_one_line_in_time(broken, bucket, dataset, fau
 
 def test_a_shorter_answer_than_asked_for_is_asked_again(broken, bucket, dataset, monkeypatch):
     tsas.upload(dataset, f"{bucket}/bench")
-    broken.faulty("lie", 2, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
+    whole = b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN
+    broken.faulty("lie", 2, whole)
     assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
     forget()
     checked._CACHE.clear()
-    broken.faulty("lie", 1000, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
+    broken.faulty("lie", 1000, whole)
     with pytest.raises(InputError, match="breaks off"):
         tsas.read(f"{bucket}/bench")["a"]
 
@@ -92,10 +88,10 @@ def test_a_shorter_answer_than_asked_for_is_asked_again(broken, bucket, dataset,
 def test_an_object_that_is_gone_meanwhile_is_one_line(broken, bucket, dataset, of):
     if of != b"PUT":
         tsas.upload(dataset, f"{bucket}/bench")
-    data = None if of == b"PUT" else tsas.read(f"{bucket}/bench")
+        data = tsas.read(f"{bucket}/bench")
     broken.faulty("404 Not Found", 1000, of)
     with pytest.raises(InputError, match=r"is not on the storage|file is missing"):
-        tsas.upload(dataset, f"{bucket}/bench") if data is None else data["a"]
+        tsas.upload(dataset, f"{bucket}/bench") if of == b"PUT" else data["a"]
     broken.faulty("404 Not Found", 1000, b"GET")
     with pytest.raises(InputError):
         tsas.check(f"{bucket}/bench")

@@ -1,16 +1,18 @@
-"""A wire before a server that drops, stalls, truncates and lies, as often as it is told."""
+"""A wire before a server that counts, and drops, stalls, truncates and lies when it is told."""
 
+import re
 import socket
+import threading
 import time
 
-from tests.storage.conftest import Wire
-
+HOST = "127.0.0.1"
 ANSWER = b"HTTP/1.1 %s\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
 
 
-class FaultyWire(Wire):
-    """Does `fault` to the next `times` requests whose first line holds `of`.
+class Wire:
+    """Hands on every request to the server; counts requests, and bytes that come back.
 
+    It does `fault` to the next `times` requests whose first line holds `of`.
     `drop`: closes before the answer; `stall`: takes the request and stays silent; `trickle`: a byte
     of the answer in 0.2 s; `truncate`: half of the answer, then the end; `lie`: an answer with a
     shorter length than asked for; else the text is the answer's status, such as "404 Not Found".
@@ -18,8 +20,36 @@ class FaultyWire(Wire):
 
     fault, times, of = "", 0, b""
 
+    def __init__(self, target: int) -> None:
+        self.target, self.received, self.sent = target, 0, b""
+        self.door = socket.create_server((HOST, 0))
+        self.port = self.door.getsockname()[1]
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    @property
+    def requests(self) -> list[tuple[str, str]]:
+        """Each request: what it does, and to which object."""
+        found = re.findall(rb"(GET|HEAD|PUT|DELETE|POST) (/\S*) HTTP/1\.1\r\n", self.sent)
+        return [(verb.decode(), path.decode()) for verb, path in found]
+
+    def reset(self) -> None:
+        self.received, self.sent = 0, b""
+
     def faulty(self, fault: str, times: int, of: bytes = b" /") -> None:
         self.fault, self.times, self.of = fault, times, of
+
+    def _listen(self) -> None:
+        while True:
+            try:
+                client, _ = self.door.accept()
+            except OSError:
+                return
+            try:
+                server = socket.create_connection((HOST, self.target))
+            except OSError:
+                client.close()
+                continue
+            threading.Thread(target=self._hand_on, args=(client, server), daemon=True).start()
 
     def _hand_on(self, client: socket.socket, server: socket.socket) -> None:
         """Hand on one request and its answer; each has a connection of its own."""
