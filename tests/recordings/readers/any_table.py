@@ -57,9 +57,13 @@ def columns_of_numbers(draw: st.DrawFn, least: int = 1, most: int = 4) -> list[l
     return [draw(st.lists(kind, min_size=rows, max_size=rows)) for kind in kinds]
 
 
-def words(most: int = 5) -> st.SearchStrategy[str]:
+def words() -> st.SearchStrategy[str]:
     """Draw a name that is no number and no gap."""
-    return st.text(LETTERS, min_size=1, max_size=most).map(lambda w: f"n{w}")
+    return st.text(LETTERS, min_size=1, max_size=5).map(lambda w: f"n{w}")
+
+
+def titles_of(count: int) -> st.SearchStrategy[list[str]]:
+    return st.lists(words(), min_size=count, max_size=count, unique=True)
 
 
 @st.composite
@@ -70,7 +74,7 @@ def text_tables(draw: st.DrawFn) -> Known:
     delimiter = draw(st.sampled_from([",", ";", "\t", " "]))
     comma = delimiter != "," and draw(st.booleans())
     encoding = draw(st.sampled_from(["utf-8", "utf-8-sig", "utf-16", "cp1252"]))
-    titles = draw(st.lists(words(), min_size=count, max_size=count, unique=True))
+    titles = draw(titles_of(count))
     units = draw(st.lists(st.sampled_from(["mm", "N", "s", "µm"]), min_size=count, max_size=count))
     has_names = draw(st.booleans())
     where = draw(st.sampled_from(["nowhere", "bracket", "row"])) if has_names else "nowhere"
@@ -128,7 +132,7 @@ def json_tables(draw: st.DrawFn) -> Known:
     """Draw a table as JSON: rows, records or columns, at the top or under a key."""
     columns = draw(columns_of_numbers())
     count = len(columns)
-    titles = draw(st.lists(words(), min_size=count, max_size=count, unique=True))
+    titles = draw(titles_of(count))
     plain = [[None if v != v else v for v in column] for column in columns]
     rows = [list(row) for row in zip(*plain, strict=True)]
     form = draw(st.sampled_from(["rows", "named rows", "records", "columns"]))
@@ -158,7 +162,7 @@ def parquet_tables(draw: st.DrawFn) -> Known:
     """Draw a Parquet file of some type, compression and layout."""
     columns = draw(columns_of_numbers())
     count = len(columns)
-    titles = draw(st.lists(words(), min_size=count, max_size=count, unique=True))
+    titles = draw(titles_of(count))
     kind = draw(st.sampled_from([pa.float64(), pa.float32(), pa.int16(), pa.int64()]))
     if kind == pa.float32():
         with np.errstate(over="ignore"):
