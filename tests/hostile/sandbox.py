@@ -28,7 +28,6 @@ class Ended:
     out: str
     err: str
     taken: int
-    seconds: float
 
 
 class Sandbox:
@@ -106,7 +105,6 @@ def _answer(call: dict[str, Any]) -> dict[str, Any]:
         "out": texts[0],
         "err": texts[1],
         "taken": 1024 * max(0, usage.ru_maxrss - before),
-        "seconds": time.monotonic() - begun,
     }
 
 
