@@ -64,10 +64,6 @@ class Object:
         return b"content"[start:end]
 
 
-def put(bucket, name, content):
-    storage.files_of("s3").pipe_file(f"{bucket}/{name}", content)
-
-
 def test_a_recording_is_fetched_once_and_whole(large, wire):
     folder, address = large
     here, there = (open_run(place, read_dataset(place).runs[0]) for place in large)
@@ -105,7 +101,7 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
     folder, _ = large
     content = bytearray((folder / "runs/a.parquet").read_bytes())
     content[len(content) // 2] ^= 1
-    put(bucket, OBJECT, bytes(content))
+    storage.files_of("s3").pipe_file(f"{bucket}/{OBJECT}", bytes(content))
     (folder / "runs/a.parquet").write_bytes(content)
     lines = []
     for place in large:
@@ -116,7 +112,6 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
 
 
 def test_where_there_is_no_room_it_is_said(monkeypatch):
-    """Of a small recording it was said when the file was flushed: that the output has no room."""
     assert checked._fetch(Object(), sha256(b"content").hexdigest())[:] == b"content"
     monkeypatch.setattr(checked.tempfile, "TemporaryFile", Full)
     with pytest.raises(InputError, match="cannot be stored while it is read") as caught:

@@ -12,24 +12,23 @@ HEAD = """LabVIEW Measurement\t
 Separator\tTab
 Decimal_Separator\t{point}
 X_Columns\t{x}
-{end}
+***End_of_Header***\t
 
 """
 SEGMENT = """Channels\t2\t
 Y_Unit_Label\tN\tmm
 X_Dimension\tTime\tTime
-Delta_X\t{dx}\t{dx}
-{end}
+Delta_X\t0{point}125\t0{point}125
+***End_of_Header***\t
+X_Value\tForce µ\tPos\tComment
 """
-END = "***End_of_Header***\t"
 TIME = np.arange(4) / 8
 
 
 def lvm(path, *, point=".", x="One", segments=1, encoding="utf-8"):
-    form = {"point": point, "x": x, "end": END, "dx": f"0{point}125"}
-    text = HEAD.format(**form)
+    text = HEAD.format(point=point, x=x)
     for _ in range(segments):
-        text += SEGMENT.format(**form) + "X_Value\tForce µ\tPos\tComment\n"
+        text += SEGMENT.format(point=point)
         for i, t in enumerate(TIME):
             cells = ["" if x == "No" else f"{t}", f"{t + 1}", f"-{t}"]
             text += "\t".join(cells).replace(".", point) + ("\tstart" if i == 0 else "") + "\n"

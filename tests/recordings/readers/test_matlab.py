@@ -49,14 +49,9 @@ def plain_73(path):
 @pytest.mark.parametrize("write", [plain_5, plain_73])
 def test_vectors_matrices_and_structs_have_names(path, write):
     write(path)
-    columns, table = ask(path, "t", "i", "m(:,2)", "s.a", "s.b.c")
-    assert columns == {
-        "t": T.tolist(),
-        "i": [0, 1, 2, 3, 4],
-        "m(:,2)": F.tolist(),
-        "s.a": T.tolist(),
-        "s.b.c": F.tolist(),
-    }
+    expected = {"t": T, "i": np.arange(5.0), "m(:,2)": F, "s.a": T, "s.b.c": F}
+    columns, table = ask(path, *expected)
+    assert columns == {name: values.tolist() for name, values in expected.items()}
     assert "note = 50 mm" in table.header
     assert ask(path, "b.c", table="s")[0] == {"b.c": F.tolist()}
 
@@ -146,12 +141,6 @@ def test_a_file_that_is_cut_short_is_one_line(path, write, kept):
     assert str(path) in error.value.line()
 
 
-def test_text_in_a_cell_is_no_column(path):
-    save_5(path, t=T, c=np.array(["a", "b"], dtype=object))
-    with pytest.raises(InputError, match="column c is missing"):
-        ask(path, "c")
-
-
 def test_the_missing_package_is_named(path, monkeypatch):
     plain_73(path)
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
@@ -159,7 +148,14 @@ def test_the_missing_package_is_named(path, monkeypatch):
         offered.names(path, matlab.__name__, "a MATLAB file", ReadOptions())
 
 
-def test_complex_data_of_a_capture_are_refused(path):
-    save_5(path, rec001=controldesk([T], [(FORCE, F + 1j, "N", 1)]))
-    with pytest.raises(InputError, match="holds complex128; expected real numbers"):
-        ask(path, "time", FORCE)
+@pytest.mark.parametrize(
+    ("content", "wanted", "message"),
+    [
+        (controldesk([T], [(FORCE, F + 1j, "N", 1)]), FORCE, "holds complex128; expected real"),
+        (np.array(["a", "b"], dtype=object), "c", "column c is missing"),
+    ],
+)
+def test_what_is_no_column_of_numbers_is_refused(path, content, wanted, message):
+    save_5(path, c=content)
+    with pytest.raises(InputError, match=message):
+        ask(path, wanted)
