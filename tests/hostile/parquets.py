@@ -27,71 +27,58 @@ def varint(number: int) -> bytes:
     return bytes(out)
 
 
-def zigzag(number: int) -> bytes:
-    return varint((number << 1) ^ (number >> 63))
+Value = tuple[int, bytes]  # of Thrift: its type and how it is written
 
 
-def binary(text: bytes) -> bytes:
-    return varint(len(text)) + text
+def i32(number: int) -> Value:
+    return I32, varint((number << 1) ^ (number >> 63))
 
 
-def listed(kind: int, items: Sequence[bytes]) -> bytes:
+def i64(number: int) -> Value:
+    return I64, i32(number)[1]
+
+
+def text(value: str) -> Value:
+    return BINARY, varint(len(value)) + value.encode()
+
+
+def array(items: Sequence[Value]) -> Value:
+    kind = items[0][0] if items else STRUCT
     short = len(items) < 15
-    return (
-        bytes([(len(items) if short else 15) << 4 | kind])
-        + (b"" if short else varint(len(items)))
-        + b"".join(items)
-    )
+    size = bytes([(len(items) if short else 15) << 4 | kind])
+    return LIST, size + (b"" if short else varint(len(items))) + b"".join(v for _, v in items)
 
 
-def fields(*members: tuple[int, int, bytes]) -> bytes:
-    """Return a Thrift struct of (id, type, encoded value), ids rising."""
+def group(fields: dict[int, Value]) -> Value:
+    """Return a struct of fields whose numbers rise."""
     out, last = b"", 0
-    for number, kind, value in members:
+    for number, (kind, value) in fields.items():
         out += bytes([(number - last) << 4 | kind]) + value
         last = number
-    return out + b"\0"
+    return STRUCT, out + b"\0"
 
 
-def page(kind: int, content: bytes, header: bytes, *, unpacked: int | None = None) -> bytes:
-    """Return a page behind its header; `unpacked` is the size that it claims."""
-    at = {0: 5, 2: 7}[kind]
-    return (
-        fields(
-            (1, I32, zigzag(kind)),
-            (2, I32, zigzag(len(content) if unpacked is None else unpacked)),
-            (3, I32, zigzag(len(content))),
-            (at, STRUCT, header),
-        )
-        + content
-    )
+def page(kind: int, content: bytes, header: Value) -> bytes:
+    """Return a page of data (0) or of a dictionary (2) behind its header."""
+    size = i32(len(content))
+    return group({1: i32(kind), 2: size, 3: size, {0: 5, 2: 7}[kind]: header})[1] + content
 
 
 def repeated(value: bytes, rows: int) -> tuple[bytes, bytes]:
     """Return a dictionary of one value, and pages that say it so often."""
-    dictionary = page(2, value, fields((1, I32, zigzag(1)), (2, I32, zigzag(PLAIN))))
+    dictionary = page(2, value, group({1: i32(1), 2: i32(PLAIN)}))
     data = b""
     while rows:
         now = min(rows, MOST)
         rows -= now
-        header = fields(
-            (1, I32, zigzag(now)),
-            (2, I32, zigzag(DICTIONARY)),
-            (3, I32, zigzag(3)),
-            (4, I32, zigzag(3)),
-        )
+        header = group({1: i32(now), 2: i32(DICTIONARY), 3: i32(3), 4: i32(3)})
         data += page(0, b"\x01" + varint(now << 1) + b"\0", header)
     return dictionary, data
 
 
-def footer(schema: Sequence[bytes], rows: int, groups: Sequence[bytes]) -> bytes:
+def footer(schema: Sequence[Value], rows: int, groups: Sequence[Value]) -> bytes:
     """Return the end of a file."""
-    meta = fields(
-        (1, I32, zigzag(2)),
-        (2, LIST, listed(STRUCT, schema)),
-        (3, I64, zigzag(rows)),
-        (4, LIST, listed(STRUCT, groups)),
-    )
+    _, meta = group({1: i32(2), 2: array(schema), 3: i64(rows), 4: array(groups)})
     return meta + struct.pack("<I", len(meta)) + b"PAR1"
 
 
@@ -109,28 +96,16 @@ def parquet(
     out, chunks, schema = bytearray(b"PAR1"), [], []
     for name in names:
         dictionary, data = repeated(value, rows)
-        size = len(dictionary) + len(data)
-        meta = fields(
-            (1, I32, zigzag(kind)),
-            (2, LIST, listed(I32, [zigzag(PLAIN), zigzag(DICTIONARY)])),
-            (3, LIST, listed(BINARY, [binary(name.encode())])),
-            (4, I32, zigzag(0)),
-            (5, I64, zigzag(said)),
-            (6, I64, zigzag(size)),
-            (7, I64, zigzag(size)),
-            (9, I64, zigzag(len(out) + len(dictionary))),
-            (11, I64, zigzag(len(out))),
-        )
-        chunks.append(fields((2, I64, zigzag(len(out))), (3, STRUCT, meta)))
-        schema.append(
-            fields((1, I32, zigzag(kind)), (3, I32, zigzag(0)), (4, BINARY, binary(name.encode())))
-        )
+        begin, size = i64(len(out)), i64(len(dictionary) + len(data))
+        meta = {1: i32(kind), 2: array([i32(PLAIN), i32(DICTIONARY)]), 3: array([text(name)])}
+        meta |= {4: i32(0), 5: i64(said), 6: size, 7: size}
+        meta |= {9: i64(len(out) + len(dictionary)), 11: begin}
+        chunks.append(group({2: begin, 3: group(meta)}))
+        schema.append(group({1: i32(kind), 3: i32(0), 4: text(name)}))
         out += dictionary + data
-    root = fields((4, BINARY, binary(b"schema")), (5, I32, zigzag(len(schema))))
-    group = fields(
-        (1, LIST, listed(STRUCT, chunks)), (2, I64, zigzag(len(out))), (3, I64, zigzag(said))
-    )
-    path.write_bytes(bytes(out) + footer([root, *schema], said, [group]))
+    root = group({4: text("schema"), 5: i32(len(schema))})
+    rows_of_all = group({1: array(chunks), 2: i64(len(out)), 3: i64(said)})
+    path.write_bytes(bytes(out) + footer([root, *schema], said, [rows_of_all]))
     return path
 
 
@@ -195,9 +170,9 @@ def pickled(folder: Path) -> pa.Table:
 
 def nested_deep(folder: Path) -> list[object]:
     """A schema of groups in groups in groups."""
-    group = fields((3, I32, zigzag(0)), (4, BINARY, binary(b"g")), (5, I32, zigzag(1)))
-    leaf = fields((1, I32, zigzag(DOUBLE)), (3, I32, zigzag(0)), (4, BINARY, binary(b"time_s")))
-    (folder / "a.parquet").write_bytes(b"PAR1" + footer([*([group] * 200_000), leaf], 0, []))
+    deep = group({3: i32(0), 4: text("g"), 5: i32(1)})
+    leaf = group({1: i32(DOUBLE), 3: i32(0), 4: text("time_s")})
+    (folder / "a.parquet").write_bytes(b"PAR1" + footer([*([deep] * 200_000), leaf], 0, []))
     return check(folder / "a.parquet")
 
 
