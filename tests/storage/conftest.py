@@ -50,7 +50,8 @@ def server(tmp_path_factory) -> Iterator[int]:
 def wire(server) -> Iterator[Wire]:
     made = Wire(server)
     yield made
-    made.door.close()
+    made.shutdown()
+    made.server_close()
 
 
 def forget() -> None:
@@ -79,7 +80,7 @@ def keys(monkeypatch, wire) -> None:
     """Let the storage be that of the server, by the settings that its own tools take."""
     monkeypatch.setenv("AWS_ACCESS_KEY_ID", KEY)
     monkeypatch.setenv("AWS_SECRET_ACCESS_KEY", SECRET)
-    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{wire.port}")
+    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{wire.server_port}")
     monkeypatch.setenv("AWS_DEFAULT_REGION", "us-east-1")
 
 

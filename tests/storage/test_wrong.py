@@ -56,7 +56,6 @@ def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
 def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):
     tsas.upload(dataset, f"{bucket}/bench")
     data = tsas.read(f"{bucket}/bench")
-    wire.door.close()
     wire.target = free_port()
     forget()
     with pytest.raises(InputError) as caught:
