@@ -65,9 +65,7 @@ def dataset(folder: Path, ids: tuple[str, ...] = ("a",)) -> Path:
     """Write a small honest dataset."""
     folder.mkdir(parents=True, exist_ok=True)
     runs = [{"id": i, "file": f"runs/{n}.parquet", "sha256": "0" * 64} for n, i in enumerate(ids)]
-    manifest = Manifest.model_validate(
-        {"format": 1, "name": "bench", "kind": "measured", "run": runs}
-    )
+    manifest = Manifest(format=1, name="bench", kind="measured", run=runs)
     write_dataset(folder, manifest, {i: pa.table(columns()) for i in ids})
     return folder
 

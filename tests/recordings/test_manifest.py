@@ -137,10 +137,10 @@ def test_a_path_written_on_windows_works(tmp_path):
         ("preload_N = 25.0", "total_bend_rad = true", "run.0.total_bend_rad: true and false are"),
         ("1.579", "true", "rig.load_stiffness_N_per_mm: true and false are no numbers"),
         (STARTED, "started = 20240101", "run.0.started: is no date such as .* got 20240101"),
-        (STARTED, 'started = "1704067200"', "run.0.started: is no date"),
-        (STARTED, "started = 1.5", "run.0.started: is no date"),
-        (STARTED, "started = true", "run.0.started: is no date"),
-        (STARTED, 'started = "01.02.2024"', "run.0.started: is no date"),
+        *(
+            (STARTED, f"started = {day}", "run.0.started: is no date")
+            for day in ('"1704067200"', "1.5", "true", '"01.02.2024"')
+        ),
         (STARTED, 'started = "20240230"', "run.0.started: .* day value"),
     ],
 )

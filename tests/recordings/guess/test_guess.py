@@ -23,6 +23,9 @@ from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.support.errors import InputError
 
+FEWER = settings(
+    max_examples=settings.default.max_examples * 6 // 10, suppress_health_check=list(HealthCheck)
+)
 REPOSITORY = Path(__file__).parents[3]
 MAPS = REPOSITORY / "datasets" / "maps"
 LABS = {
@@ -276,10 +279,7 @@ STEMS = {
 }
 
 
-@settings(
-    max_examples=settings.default.max_examples * 6 // 10,
-    suppress_health_check=list(HealthCheck),
-)
+@FEWER
 @given(data=st.data())
 def test_no_order_and_no_mixture_of_names_is_guessed_wrong(tmp_path_factory, data):
     kept = data.draw(st.permutations(CHANNELS))[: data.draw(st.integers(2, 5))]
@@ -371,10 +371,7 @@ def test_text_gaps_and_what_rests_are_left_out_with_the_reason(path):
     assert '# extra = ["Nothing", "Idle [mm]"]' in text
 
 
-@settings(
-    max_examples=settings.default.max_examples * 6 // 10,
-    suppress_health_check=list(HealthCheck),
-)
+@FEWER
 @given(data=st.data())
 def test_any_numbers_make_a_map_and_no_defect(tmp_path_factory, data):
     path = tmp_path_factory.mktemp("f") / "a.csv"

@@ -80,12 +80,11 @@ def text_tables(draw: st.DrawFn) -> Known:
     where = draw(st.sampled_from(["nowhere", "bracket", "row"])) if has_names else "nowhere"
     gap = draw(st.sampled_from(["nan", "NaN", "NULL", *([] if delimiter == " " else [""])]))
     form = draw(st.sampled_from(["{!r}", "{:.17g}", "{:.17e}", "{:+.17g}", "{:.17G}"]))
+    gap = gap if count > 1 else gap or "nan"
     rows = [
         [_cell(value, form, gap, comma=comma) for value in row]
         for row in zip(*columns, strict=True)
     ]
-    if count == 1:
-        rows = [[cell or "nan" for cell in row] for row in rows]
     if where == "bracket":
         glue = "" if delimiter == " " else draw(st.sampled_from(["", " "]))
         titles = [f"{t}{glue}[{u}]" for t, u in zip(titles, units, strict=True)]
@@ -139,12 +138,10 @@ def json_tables(draw: st.DrawFn) -> Known:
     sources: list[str | int] = list(titles)
     table: Any = dict(zip(titles, plain, strict=True))
     above: dict[str, Any] = {"note": "a"}
-    if form.endswith("rows"):
-        table = rows
-        if form == "named rows":
-            above["columns"] = titles
-        else:
-            sources = list(range(1, count + 1))
+    if form == "rows":
+        table, sources = rows, list(range(1, count + 1))
+    elif form == "named rows":
+        table, above["columns"] = rows, titles
     elif form == "records":
         table = [
             {t: v for t, v in zip(titles, row, strict=True) if i == 0 or v is not None}
