@@ -1,11 +1,8 @@
-"""An S3-compatible server in a process of its own, and a wire before it."""
+"""An S3-compatible server and a wire before it."""
 
 import itertools
 import os
 import socket
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 
 import pytest
@@ -24,26 +21,14 @@ def free_port() -> int:
 
 
 @pytest.fixture(scope="session")
-def server(tmp_path_factory) -> Iterator[int]:
+def server() -> Iterator[int]:
     """Return the port of a server that lasts as long as the tests."""
-    pytest.importorskip("moto.server", reason="needs moto[server]")
+    moto = pytest.importorskip("moto.server", reason="needs moto[server]")
     pytest.importorskip("s3fs", reason="needs tsas[s3]")
-    port = free_port()
-    log = tmp_path_factory.mktemp("server") / "log"
-    with log.open("w") as out:
-        call = [sys.executable, "-m", "moto.server", "-H", HOST, "-p", str(port)]
-        process = subprocess.Popen(call, stdout=out, stderr=out)
-    try:
-        for _ in range(600):
-            with socket.socket() as trial:
-                if trial.connect_ex((HOST, port)) == 0:
-                    break
-            assert process.poll() is None, log.read_text()
-            time.sleep(0.1)
-        yield port
-    finally:
-        process.terminate()
-        process.wait(timeout=120)
+    running = moto.ThreadedMotoServer(HOST, port=0, verbose=False)
+    running.start()
+    yield running.get_host_and_port()[1]
+    running.stop()
 
 
 @pytest.fixture
