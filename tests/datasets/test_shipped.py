@@ -54,8 +54,8 @@ def test_paper_groups_hold_the_truth_that_they_state():
     truth = tomllib.loads((DATASETS / "paper-groups" / "truth.toml").read_text(encoding="utf-8"))
     for recording in read_dataset(DATASETS / "paper-groups"):
         columns, bend = recording.columns, recording.run.total_bend_rad
-        pulling = (columns["x_in_mm"] > 5.0) & (np.gradient(np.convolve(
-            columns["x_in_mm"], np.ones(101) / 101, mode="same")) > 0.002)  # fmt: skip
+        smooth = np.convolve(columns["x_in_mm"], np.ones(101) / 101, mode="same")
+        pulling = (columns["x_in_mm"] > 5.0) & (np.gradient(smooth) > 0.002)
         ratio = columns["f_in_N"][pulling].sum() / columns["f_out_N"][pulling].sum()
         assert np.log(ratio) == pytest.approx(truth["friction_coefficient"] * bend, rel=0.005)
         slope, preload = np.polyfit(columns["x_out_mm"], columns["f_out_N"], 1)

@@ -27,16 +27,32 @@ unit = "N"
 """
 
 
+TABLE = "t,x,f\n" + "".join(f"{i},{i % 7},{i % 5}\n" for i in range(9))
+Make = Callable[[Path], list[object]]  # writes files into a folder and returns the call
+
+
 @dataclass(frozen=True)
 class Case:
-    """`make` writes files into a folder and returns the call; `says` is in the one line of error.
-
-    Without `says` the call has to end well.
-    """
+    """A call that ends with one line that holds `says`; without `says` it ends well."""
 
     name: str
-    make: Callable[[Path], list[object]]
-    says: str = ""
+    make: Make
+    says: str
+
+
+def cases(of: dict[str, dict[str, Make]]) -> tuple[Case, ...]:
+    """Return the cases by what is said of them, and by name."""
+    return tuple(Case(name, make, says) for says, made in of.items() for name, make in made.items())
+
+
+class Evil:
+    """What leaves a mark where it is unpickled."""
+
+    def __init__(self, folder: Path) -> None:
+        self.mark = folder / "touched"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (Path.touch, (self.mark,))
 
 
 def columns(rows: int = 400) -> dict[str, np.ndarray]:
@@ -49,9 +65,7 @@ def dataset(folder: Path, ids: tuple[str, ...] = ("a",)) -> Path:
     """Write a small honest dataset."""
     folder.mkdir(parents=True, exist_ok=True)
     runs = [{"id": i, "file": f"runs/{n}.parquet", "sha256": "0" * 64} for n, i in enumerate(ids)]
-    manifest = Manifest.model_validate(
-        {"format": 1, "name": "bench", "kind": "measured", "run": runs}
-    )
+    manifest = Manifest(format=1, name="bench", kind="measured", run=runs)
     write_dataset(folder, manifest, {i: pa.table(columns()) for i in ids})
     return folder
 

@@ -5,13 +5,12 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.hostile.case import MAP, Case, dataset, ingesting, manifest_text
+from tests.hostile.case import MAP, TABLE, Make, cases, dataset, ingesting, manifest_text
 
-Made = Callable[[Path], list[object]]
 Content = str | bytes | Callable[[], str]  # what is large is made when it is written
 
 
-def manifest(content: Content, command: str = "check") -> Made:
+def manifest(content: Content) -> Make:
     """Return a maker of a dataset whose file is right and whose manifest says this."""
 
     def make(folder: Path) -> list[object]:
@@ -20,67 +19,49 @@ def manifest(content: Content, command: str = "check") -> Made:
         raw = made if isinstance(made, bytes) else made.encode("utf-8", "surrogatepass")
         digest = hashlib.sha256((folder / "runs/0.parquet").read_bytes()).hexdigest()
         (folder / "dataset.toml").write_bytes(raw.replace(b"0" * 64, digest.encode()))
-        return [command, folder]
-
-    return make
-
-
-def file(name: str) -> Made:
-    return manifest(manifest_text(file=name))
-
-
-def run_id(name: str) -> Made:
-    return manifest(manifest_text(run=name))
-
-
-def linked(target: str) -> Made:
-    """Return a maker of a dataset whose run is a link."""
-
-    def make(folder: Path) -> list[object]:
-        dataset(folder / "d")
-        path = folder / "d/runs/0.parquet"
-        path.rename(folder / "outside.parquet")
-        path.symlink_to(target)
-        return ["check", folder / "d"]
-
-    return make
-
-
-def folder_link(folder: Path) -> list[object]:
-    dataset(folder / "d")
-    (folder / "d/runs").rename(folder / "outside")
-    (folder / "d/runs").symlink_to("../outside")
-    return ["check", folder / "d"]
-
-
-def manifest_link(folder: Path) -> list[object]:
-    dataset(folder / "d")
-    (folder / "d/dataset.toml").rename(folder / "outside.toml")
-    (folder / "d/dataset.toml").symlink_to("../outside.toml")
-    return ["check", folder / "d"]
-
-
-def manifest_is(target: str) -> Made:
-    def make(folder: Path) -> list[object]:
-        dataset(folder)
-        (folder / "dataset.toml").unlink()
-        (folder / "dataset.toml").symlink_to(target)
         return ["check", folder]
 
     return make
 
 
-def pipe(*words: str) -> Made:
+def file(name: str) -> Make:
+    return manifest(manifest_text(file=name))
+
+
+def run_id(name: str) -> Make:
+    return manifest(manifest_text(run=name))
+
+
+def two_runs(one: str, other: str) -> Make:
+    return manifest(manifest_text(run=one) + manifest_text(run=other).split("\n", 3)[3])
+
+
+def also(lines: str) -> Make:
+    """Return a maker of a dataset with more lines about its run."""
+    return manifest(f"{manifest_text()}{lines}\n")
+
+
+def linked(path: str, target: str) -> Make:
+    """Return a maker of a dataset of which a part is a link; what it was is outside."""
+
+    def make(folder: Path) -> list[object]:
+        dataset(folder / "d")
+        (folder / "d" / path).rename(folder / "outside")
+        (folder / "d" / path).symlink_to(target)
+        return ["check", folder / "d"]
+
+    return make
+
+
+def pipe(*words: str) -> Make:
     """Return a maker of a call that names a pipe that nobody writes to as `PIPE`."""
 
     def make(folder: Path) -> list[object]:
         dataset(folder / "d")
-        os.mkfifo(folder / "pipe.toml")
         (folder / "a.csv").write_text("t,x,f\n1,2,3\n")
-        os.mkfifo(folder / "pipe.csv")
         (folder / "map.toml").write_text(MAP)
-        os.mkfifo(folder / "pipe.parquet")
-        os.mkfifo(folder / "d/check.json")
+        for name in ("pipe.toml", "pipe.csv", "pipe.parquet", "d/check.json"):
+            os.mkfifo(folder / name)
         return [folder / word.lower() if word.isupper() else word for word in words]
 
     return make
@@ -94,40 +75,28 @@ def run_is_pipe(folder: Path) -> list[object]:
 
 
 def many_runs(folder: Path) -> list[object]:
-    text = 'format = 1\nname = "x"\nkind = "measured"\n' + "".join(
-        f'[[run]]\nid = "{i}"\nfile = "runs/{i}.parquet"\nsha256 = "{"0" * 64}"\n'
-        for i in range(100_000)
-    )
-    (folder / "dataset.toml").write_text(text)
+    runs = [manifest_text(f"{i}", f"{i}").split("\n", 3)[3] for i in range(100_000)]
+    (folder / "dataset.toml").write_text(manifest_text().split("[[", 1)[0] + "".join(runs))
     return ["check", folder]
 
 
-def huge(name: str, *call: str) -> Made:
+def huge(name: str, *call: str) -> Make:
     """Return a maker of a file of 4 GB that takes no room."""
 
     def make(folder: Path) -> list[object]:
         dataset(folder)
-        with (folder / name).open("r+b" if (folder / name).exists() else "wb") as stream:
+        with (folder / name).open("ab") as stream:
             stream.truncate(1 << 32)
         return [folder / word[1:] if word.startswith("@") else word for word in call]
 
     return make
 
 
-def model(content: str | Callable[[], str]) -> Made:
+def model(content: str | Callable[[], str]) -> Make:
     def make(folder: Path) -> list[object]:
         dataset(folder / "d")
         (folder / "m.toml").write_text(content() if callable(content) else content)
         return ["simulate", folder / "d", "--model", folder / "m.toml", "--out", folder / "o"]
-
-    return make
-
-
-def mapped(content: str) -> Made:
-    def make(folder: Path) -> list[object]:
-        path = folder / "a.csv"
-        path.write_text("t,x,f\n" + "".join(f"{i},{i % 7},{i % 5}\n" for i in range(9)))
-        return ingesting(path, content)
 
     return make
 
@@ -141,235 +110,149 @@ def sources(folder: Path) -> list[object]:
     (place / "loop.csv").symlink_to("loop.csv")
     (place / "zero.csv").symlink_to("/dev/zero")
     os.mkfifo(place / "pipe.csv")
-    text = "t,x,f\n" + "".join(f"{i},{i % 7},{i % 5}\n" for i in range(9))
-    (place / "a.csv").write_text(text)
+    (place / "a.csv").write_text(TABLE)
     (folder / "map.toml").write_text(MAP)
     return ["ingest", folder / "in", "--map", folder / "map.toml", "--out", folder / "out"]
 
 
-def named(name: str, run: str = "") -> Made:
-    """Return a maker of an honest table under a hostile file name."""
+def table(name: str = "a.csv", *, mapped: str = "") -> Make:
+    """Return a maker of an honest table under this name, whose map has more lines."""
 
     def make(folder: Path) -> list[object]:
-        path = folder / name
-        path.write_text("t,x,f\n" + "".join(f"{i},{i % 7},{i % 5}\n" for i in range(9)))
-        return ingesting(path, MAP + run)
+        (folder / name).write_text(TABLE)
+        return ingesting(folder / name, MAP + mapped)
 
     return make
 
 
+def named(pattern: str) -> Make:
+    return table(mapped=f'[run]\nid = "{pattern}"\n')
+
+
 def keys(count: int) -> str:
-    return "".join(f"k{i} = 1\n" for i in range(count))
+    """Return a manifest with so many keys of its own."""
+    return manifest_text().replace(
+        "[[run]]", "".join(f"k{i} = 1\n" for i in range(count)) + "[[run]]"
+    )
 
 
-RUN = '[run]\nid = "{}"\n'
-CASES = (
-    Case(
-        "a file in the folder above",
-        file("../outside.parquet"),
-        "must stay inside the dataset's folder",
-    ),
-    Case("a file with NUL", file("runs/0.parquet\0"), "the run's file is missing"),
-    Case("the manifest as a run", file("dataset.toml"), "the checksum differs"),
-    Case("a file of 10,000 letters", file("a" * 10_000), "is too long for a file's name"),
-    Case("a file of many folders", file("a/" * 50_000 + "a"), "is too long for a file's name"),
-    Case("no file", file(""), "the run's file is missing"),
-    Case(
-        "a link to a file outside",
-        linked("../../outside.parquet"),
-        "a link leads out of the dataset's folder",
-    ),
-    Case("a link to /dev/zero", linked("/dev/zero"), "the run's file is missing"),
-    Case("a link to itself", linked("0.parquet"), "the run's file is missing"),
-    Case("a folder that is a link", folder_link, "a link leads out of the dataset's folder"),
-    Case("a manifest that is a link", manifest_link, "a link leads out of the dataset's folder"),
-    Case("a manifest that is /dev/zero", manifest_is("/dev/zero"), "no dataset.toml here"),
-    Case(
-        "a manifest that is a link to itself", manifest_is("dataset.toml"), "no dataset.toml here"
-    ),
-    Case(
-        "a manifest that is /etc/passwd",
-        manifest_is("/etc/passwd"),
-        "a link leads out of the dataset's folder",
-    ),
-    Case("a run that is a pipe", run_is_pipe, "the run's file is missing"),
-    Case(
-        "a pipe as map",
-        pipe("ingest", "A.CSV", "--map", "PIPE.TOML", "--out", "O"),
-        "is a pipe or a device",
-    ),
-    Case(
-        "a pipe as recording",
-        pipe("ingest", "PIPE.CSV", "--map", "MAP.TOML", "--out", "O"),
-        "is a pipe or a device",
-    ),
-    Case("a pipe to guess at", pipe("ingest", "PIPE.CSV", "--guess"), "is a pipe or a device"),
-    Case(
-        "a pipe as model",
-        pipe("simulate", "D", "--model", "PIPE.TOML", "--out", "O"),
-        "is a pipe or a device",
-    ),
-    Case(
-        "a pipe as drive",
-        pipe("track", "--drive", "PIPE.TOML", "--out", "O"),
-        "is a pipe or a device",
-    ),
-    Case(
-        "a pipe as settings",
-        pipe("track", "--settings", "PIPE.TOML", "--out", "O"),
-        "is a pipe or a device",
-    ),
-    Case(
-        "a pipe as reference",
-        pipe("track", "--reference", "PIPE.PARQUET", "--out", "O"),
-        "does not exist",
-    ),
-    Case("a pipe as rig", pipe("plan", "PIPE.TOML"), "is a pipe or a device"),
-    Case(
-        "a pipe to compare",
-        pipe("compare", "PIPE.TOML", "PIPE.TOML", "--out", "O"),
-        "nothing that can be compared is here",
-    ),
-    Case("a pipe as a stage's answer", pipe("report", "D", "--out", "O.HTML")),
-    Case(
-        "a device as map",
-        lambda f: ["ingest", f, "--map", "/dev/zero", "--out", f / "o"],
-        "is a pipe or a device",
-    ),
-    Case(
-        "a device as model",
-        lambda f: ["simulate", dataset(f), "--model", "/dev/zero", "--out", f / "o"],
-        "is a pipe or a device",
-    ),
-    Case("a run called ../x", run_id("../x"), "must be usable as a file name"),
-    Case("a run without a name", run_id(""), "must be usable as a file name"),
-    Case("a run with an escape", run_id("\x1b[2Jx"), "must be usable as a file name (no slash"),
-    Case("a run with script", run_id("<script>alert(1)<script>")),
-    Case(
-        "runs that differ in case only",
-        manifest(manifest_text() + manifest_text(run="A").split("\n", 3)[3]),
-        "name one file on Windows and macOS",
-    ),
-    Case(
-        "runs that look alike",
-        manifest(manifest_text(run="\u00e9") + manifest_text(run="e\u0301").split("\n", 3)[3]),
-        "name one file on Windows and macOS",
-    ),
-    Case("a hundred thousand runs", many_runs, "holds 100000 runs; expected at most 50000"),
-    Case("a manifest of 4 GB", huge("dataset.toml", "check", "@."), "is larger than 16.8 MB"),
-    Case(
-        "a map of 4 GB",
-        huge("m.toml", "ingest", "@.", "--map", "@m.toml", "--out", "@o"),
-        "is larger than 16.8 MB",
-    ),
-    Case(
-        "a million keys",
-        manifest(lambda: manifest_text().replace("[[run]]", keys(1_000_000) + "[[run]]")),
-        "holds 1000006 keys",
-    ),
-    Case(
-        "a million keys in a model",
-        model(lambda: "format = 1\n" + keys(1_000_000)),
-        "holds 1000001 keys",
-    ),
-    Case(
-        "ten thousand keys",
-        manifest(manifest_text().replace("[[run]]", keys(10_100) + "[[run]]")),
-        "10100 keys are unknown, at most 1000",
-    ),
-    Case("arrays, 100,000 deep", manifest("a = " + "[" * 100_000), "is nested too deep"),
-    Case("tables, 100,000 deep", manifest("a = " + "{a=" * 100_000), "is nested too deep"),
-    Case(
-        "dotted keys, 100,000 deep",
-        manifest(manifest_text() + ".".join(["a"] * 100_000) + " = 1\n"),
-        "is nested too deep",
-    ),
-    Case(
-        "dotted keys, 500 deep",
-        manifest(manifest_text() + ".".join(["a"] * 500) + " = 1\n"),
-        "is nested too deep",
-    ),
-    Case(
-        "quoted dotted keys, 500 deep",
-        manifest(manifest_text() + " . ".join(["'a b'"] * 500) + " = 1\n"),
-        "is nested too deep",
-    ),
-    Case(
-        "an integer of 10^5 digits",
-        manifest(manifest_text() + "preload_N = " + "1" * 100_000 + "\n"),
-        "an integer has thousands of digits",
-    ),
-    Case(
-        "an integer of 4000 digits",
-        manifest(manifest_text() + "preload_N = " + "1" * 4000 + "\n"),
-        "should be a valid number",
-    ),
-    Case("1e400", manifest(manifest_text() + "preload_N = 1e400\n"), "should be a finite number"),
-    Case("a key twice", manifest(manifest_text() + 'id = "b"\n'), "is not TOML"),
-    Case("a mark of UTF-8", manifest("\ufeff" + manifest_text())),
-    Case("UTF-16", manifest(manifest_text().encode("utf-16")), "is not TOML"),
-    Case("NULs", manifest(manifest_text() + "\0"), "is not TOML"),
-    Case("a lone surrogate", manifest(manifest_text(run="a\ud800")), "is not TOML"),
-    Case(
-        "a lone surrogate in bytes",
-        manifest(manifest_text().replace("measured", "measured\ud800")),
-        "is not TOML",
-    ),
-    Case("a date beyond all", manifest(manifest_text() + "started = 9999-99-99\n"), "is not TOML"),
-    Case(
-        "no runs",
-        manifest('format = 1\nname = "x"\nkind = "measured"\nrun = []\n'),
-        "at least 1 item",
-    ),
-    Case(
-        "runs that are no tables",
-        manifest('format = 1\nname = "x"\nkind = "measured"\nrun = [1]\n'),
-        "run.0: input should be a valid dictionary",
-    ),
-    Case(
-        "a model with an integer of 4000 digits",
-        model(
-            "format = 1\n[parameters.preload_N]\nunit = 'N'\norigin = 'x'\nvalue = " + "1" * 4000
-        ),
-        "should be a valid number",
-    ),
-    Case(
-        "a model, 500 deep",
-        model("format = 1\ndataset." + ".".join(["a"] * 500) + " = 1\n"),
-        "is nested too deep",
-    ),
-    Case(
-        "a map, 500 deep",
-        mapped(MAP + "[run.table.a]\n" + ".".join(["a"] * 500) + " = 1\n"),
-        "is nested too deep",
-    ),
-    Case(
-        "a map with an integer of 4000 digits",
-        mapped(MAP + "[run]\npreload_N = " + "1" * 4000),
-        "should be a valid number",
-    ),
-    Case("a folder of loops, pipes and devices", sources),
-    Case("a file called ..csv", named("..csv"), "must be usable as a file name"),
-    Case("a file called con.csv", named("con.csv"), "is a device on Windows"),
-    Case(
-        "a file with an escape",
-        named("\x1b[2Jx.csv"),
-        "\\x1b[2Jx.csv: id: must be usable as a file name",
-    ),
-    Case("a file whose name is no text", named(os.fsdecode(b"a\xff.csv")), "its name is not UTF-8"),
-    Case(
-        "an id that leads out",
-        named("a.csv", RUN.replace("{}", "../../x")),
-        "must be usable as a file name",
-    ),
-    Case(
-        "an id without end",
-        named("a.csv", RUN.replace("{}", "{stem}" * 300)),
-        "must be usable as a file name",
-    ),
-    Case(
-        "an id with a line's end",
-        named("a.csv", RUN.replace("{}", "a\\nb")),
-        "must be usable as a file name",
-    ),
+def no_run(run: str) -> Make:
+    return manifest(f'format = 1\nname = "x"\nkind = "measured"\nrun = {run}\n')
+
+
+DEEP = ".".join(["a"] * 500) + " = 1\n"
+CASES = cases(
+    {
+        "must stay inside the dataset's folder": {
+            "a file in the folder above": file("../outside.parquet"),
+        },
+        "the run's file is missing": {
+            "a file with NUL": file("runs/0.parquet\0"),
+            "no file": file(""),
+            "a link to /dev/zero": linked("runs/0.parquet", "/dev/zero"),
+            "a link to itself": linked("runs/0.parquet", "0.parquet"),
+            "a run that is a pipe": run_is_pipe,
+        },
+        "the checksum differs": {"the manifest as a run": file("dataset.toml")},
+        "is too long for a file's name": {
+            "a file of 10,000 letters": file("a" * 10_000),
+            "a file of many folders": file("a/" * 50_000 + "a"),
+        },
+        "a link leads out of the dataset's folder": {
+            "a link to a file outside": linked("runs/0.parquet", "../../outside"),
+            "a folder that is a link": linked("runs", "../outside"),
+            "a manifest that is a link": linked("dataset.toml", "../outside"),
+            "a manifest that is /etc/passwd": linked("dataset.toml", "/etc/passwd"),
+        },
+        "no dataset.toml here": {
+            "a manifest that is /dev/zero": linked("dataset.toml", "/dev/zero"),
+            "a manifest that is a link to itself": linked("dataset.toml", "dataset.toml"),
+        },
+        "is a pipe or a device": {
+            "a pipe as map": pipe("ingest", "A.CSV", "--map", "PIPE.TOML", "--out", "O"),
+            "a pipe as recording": pipe("ingest", "PIPE.CSV", "--map", "MAP.TOML", "--out", "O"),
+            "a pipe to guess at": pipe("ingest", "PIPE.CSV", "--guess"),
+            "a pipe as model": pipe("simulate", "D", "--model", "PIPE.TOML", "--out", "O"),
+            "a pipe as drive": pipe("track", "--drive", "PIPE.TOML", "--out", "O"),
+            "a pipe as settings": pipe("track", "--settings", "PIPE.TOML", "--out", "O"),
+            "a pipe as rig": pipe("plan", "PIPE.TOML"),
+            "a device as map": pipe("ingest", "D", "--map", "/dev/zero", "--out", "O"),
+            "a device as model": pipe("simulate", "D", "--model", "/dev/zero", "--out", "O"),
+        },
+        "does not exist": {
+            "a pipe as reference": pipe("track", "--reference", "PIPE.PARQUET", "--out", "O"),
+        },
+        "nothing that can be compared is here": {
+            "a pipe to compare": pipe("compare", "PIPE.TOML", "PIPE.TOML", "--out", "O"),
+        },
+        "must be usable as a file name": {
+            "a run called ../x": run_id("../x"),
+            "a run without a name": run_id(""),
+            "a file called ..csv": table("..csv"),
+            "an id that leads out": named("../../x"),
+            "an id without end": named("{stem}" * 300),
+            "an id with a line's end": named("a\\nb"),
+        },
+        "must be usable as a file name (no slash": {"a run with an escape": run_id("\x1b[2Jx")},
+        "name one file on Windows and macOS": {
+            "runs that differ in case only": two_runs("a", "A"),
+            "runs that look alike": two_runs("\u00e9", "e\u0301"),
+        },
+        "holds 100000 runs; expected at most 50000": {"a hundred thousand runs": many_runs},
+        "is larger than 16.8 MB": {
+            "a manifest of 4 GB": huge("dataset.toml", "check", "@."),
+            "a map of 4 GB": huge("m.toml", "ingest", "@.", "--map", "@m.toml", "--out", "@o"),
+        },
+        "holds 1000006 keys": {
+            "a million keys": manifest(lambda: keys(1_000_000)),
+            "a million keys in a model": model(lambda: keys(1_000_000)),
+        },
+        "10100 keys are unknown, at most 1000": {"ten thousand keys": manifest(keys(10_100))},
+        "is nested too deep": {
+            "arrays, 100,000 deep": manifest("a = " + "[" * 100_000),
+            "tables, 100,000 deep": manifest("a = " + "{a=" * 100_000),
+            "dotted keys, 100,000 deep": also(".".join(["a"] * 100_000) + " = 1"),
+            "dotted keys, 500 deep": also(DEEP),
+            "quoted dotted keys, 500 deep": also(" . ".join(["'a b'"] * 500) + " = 1"),
+            "a model, 500 deep": model(f"format = 1\ndataset.{DEEP}"),
+            "a map, 500 deep": table(mapped=f"[run.table.a]\n{DEEP}"),
+        },
+        "an integer has thousands of digits": {
+            "an integer of 10^5 digits": also("preload_N = " + "1" * 100_000),
+        },
+        "should be a valid number": {
+            "an integer of 4000 digits": also("preload_N = " + "1" * 4000),
+            "a model with an integer of 4000 digits": model(
+                "format = 1\n[parameters.preload_N]\nunit = 'N'\norigin = 'x'\nvalue = "
+                + "1" * 4000
+            ),
+            "a map with an integer of 4000 digits": table(
+                mapped="[run]\npreload_N = " + "1" * 4000
+            ),
+        },
+        "should be a finite number": {"1e400": also("preload_N = 1e400")},
+        "is not TOML": {
+            "a key twice": also('id = "b"'),
+            "UTF-16": manifest(manifest_text().encode("utf-16")),
+            "NULs": also("\0"),
+            "a lone surrogate": run_id("a\ud800"),
+            "a lone surrogate in bytes": also("a = '\ud800'"),
+            "a date beyond all": also("started = 9999-99-99"),
+        },
+        "at least 1 item": {"no runs": no_run("[]")},
+        "run.0: input should be a valid dictionary": {"runs that are no tables": no_run("[1]")},
+        "is a device on Windows": {"a file called con.csv": table("con.csv")},
+        "\\x1b[2Jx.csv: id: must be usable as a file name": {
+            "a file with an escape": table("\x1b[2Jx.csv"),
+        },
+        "its name is not UTF-8": {
+            "a file whose name is no text": table(os.fsdecode(b"a\xff.csv")),
+        },
+        "": {
+            "a pipe as a stage's answer": pipe("report", "D", "--out", "O.HTML"),
+            "a run with script": run_id("<script>alert(1)<script>"),
+            "a mark of UTF-8": manifest("\ufeff" + manifest_text()),
+            "a folder of loops, pipes and devices": sources,
+        },
+    }
 )

@@ -3,12 +3,13 @@
 import pickle
 import struct
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from scipy.io import savemat
 
-from tests.hostile.case import Case, guessing, ingesting
+from tests.hostile.case import Evil, Make, cases, guessing, ingesting
 
 INT8, INT32, UINT32, DOUBLE, MATRIX, PACKED = 1, 5, 6, 9, 14, 15
 CELL, STRUCT, OBJECT, NUMBERS, OPAQUE, SPARSE = 1, 2, 3, 6, 17, 5
@@ -31,9 +32,26 @@ def packed(stream: bytes) -> bytes:
     return struct.pack("<II", PACKED, len(stream)) + stream
 
 
-def mat(path: Path, *elements: bytes) -> Path:
-    path.write_bytes(b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + b"".join(elements))
-    return path
+def mat(*elements: bytes | Callable[[], bytes]) -> Make:
+    """Return a maker of a file of these elements; what is large is made when it is written."""
+
+    def make(folder: Path) -> list[object]:
+        path = folder / "a.mat"
+        made = [each() if callable(each) else each for each in elements]
+        path.write_bytes(b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + b"".join(made))
+        return ingesting(path)
+
+    return make
+
+
+def variable(kind: int, shape: tuple[int, int], *content: bytes, name: bytes = b"x") -> bytes:
+    return element(MATRIX, head(kind, shape, name) + b"".join(content))
+
+
+def saved(folder: Path, **variables: object) -> list[object]:
+    path = folder / "a.mat"
+    savemat(path, {name: np.arange(5.0) for name in "txf"} | variables)
+    return ingesting(path)
 
 
 def bomb(size: int, claimed: int) -> bytes:
@@ -51,109 +69,78 @@ def bomb(size: int, claimed: int) -> bytes:
     return packed(first + part * (size >> 24) + begun.flush())
 
 
-def zip_bomb(folder: Path) -> list[object]:
-    """A gigabyte of zeros in a megabyte, three times."""
-    size = 1 << 30
-    return ingesting(mat(folder / "a.mat", *[bomb(size, size + 64)] * 3))
-
-
-def lying_zip(folder: Path) -> list[object]:
-    """What is packed says that it is small, and is not."""
-    return ingesting(mat(folder / "a.mat", bomb(1 << 30, 100)))
-
-
-def claims_cells(folder: Path) -> list[object]:
-    body = head(CELL, (2**31 - 1, 1), b"x")
-    return ingesting(mat(folder / "a.mat", element(MATRIX, body)))
-
-
-def claims_structs(folder: Path) -> list[object]:
-    body = head(STRUCT, (2**30, 1), b"x") + element(INT32, struct.pack("<i", 8))
-    body += element(INT8, b"abcdefgh")
-    return ingesting(mat(folder / "a.mat", element(MATRIX, body)))
-
-
-def claims_rows(folder: Path) -> list[object]:
-    body = head(NUMBERS, (2**31 - 1, 1), b"x") + struct.pack("<II", DOUBLE, 2**32 - 8)
-    return ingesting(mat(folder / "a.mat", element(MATRIX, body)))
-
-
 def version_4(folder: Path) -> list[object]:
     path = folder / "a.mat"
     path.write_bytes(struct.pack("<5i", 0, 2**31 - 1, 2, 0, 2) + b"x\0" + bytes(80))
     return ingesting(path)
 
 
-class Evil:
-    """What leaves a mark where it is unpickled."""
-
-    def __init__(self, mark: Path) -> None:
-        self.mark = mark
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return (Path.touch, (self.mark,))
-
-
 def with_pickle(folder: Path) -> list[object]:
     """Numbers that are the bytes of a pickle, beside honest ones."""
-    path = folder / "a.mat"
-    evil = np.frombuffer(pickle.dumps(Evil(folder / "touched")), np.uint8)
-    savemat(path, {"t": np.arange(5.0), "x": np.arange(5.0), "f": np.arange(5.0), "evil": evil})
-    return ingesting(path)
+    return saved(folder, evil=np.frombuffer(pickle.dumps(Evil(folder)), np.uint8))
 
 
-def opaque(folder: Path) -> list[object]:
-    body = element(UINT32, struct.pack("<II", OPAQUE, 0))
-    for word in (b"x", b"java", b"java.lang.Runtime"):
-        body += element(INT8, word)
-    body += element(MATRIX, head(NUMBERS, (1, 1), b"") + element(DOUBLE, bytes(8)))
-    return ingesting(mat(folder / "a.mat", element(MATRIX, body)))
+def opaque() -> bytes:
+    words = b"".join(element(INT8, word) for word in (b"x", b"java", b"java.lang.Runtime"))
+    value = variable(NUMBERS, (1, 1), element(DOUBLE, bytes(8)), name=b"")
+    return element(MATRIX, element(UINT32, struct.pack("<II", OPAQUE, 0)) + words + value)
 
 
-def of_objects(folder: Path) -> list[object]:
-    path = folder / "a.mat"
-    savemat(path, {"t": np.arange(5.0), "x": np.array([1, "a", 2.5], object), "f": np.arange(5.0)})
-    return ingesting(path)
+def npz(name: str) -> Make:
+    """NumPy's format is not read by pickle, whatever its name."""
+
+    def make(folder: Path) -> list[object]:
+        with (folder / name).open("wb") as stream:
+            np.savez(stream, x=np.array([Evil(folder)], object))
+        return guessing(folder / name)
+
+    return make
 
 
-def npz(folder: Path) -> list[object]:
-    """NumPy's format is not read at all, so nothing in it is unpickled."""
-    path = folder / "a.npz"
-    np.savez(path, x=np.array([Evil(folder / "touched")], object))
-    return guessing(path)
-
-
-def npz_as_mat(folder: Path) -> list[object]:
-    path = folder / "a.mat"
-    with path.open("wb") as stream:
-        np.savez(stream, x=np.array([Evil(folder / "touched")], object))
-    return guessing(path)
-
-
-def sparse(folder: Path) -> list[object]:
-    """A sparse matrix of 10^18 cells, of which one is there."""
-    body = head(SPARSE, (10**9, 10**9), b"x") + element(INT32, bytes(4)) + element(INT32, bytes(8))
-    body += element(DOUBLE, bytes(8))
-    return ingesting(mat(folder / "a.mat", element(MATRIX, body)))
-
-
-def many(folder: Path) -> list[object]:
-    body = element(MATRIX, head(NUMBERS, (1, 1), b"v") + element(DOUBLE, bytes(8)))
-    return ingesting(mat(folder / "a.mat", *[body] * 100_000))
-
-
-CASES = (
-    Case("a zip bomb", zip_bomb, "at most 500 times its size"),
-    Case("a zip bomb that says it is small", lying_zip, "at most 500 times its size"),
-    Case("a claim of two billion cells", claims_cells, "needs more memory than is free"),
-    Case("a claim of a billion structs", claims_structs, "needs more memory than is free"),
-    Case("a claim of two billion rows", claims_rows, "needs more memory than is free"),
-    Case("a claim of two billion rows in version 4", version_4, "needs more memory than is free"),
-    Case("the bytes of a pickle", with_pickle),
-    Case("a Java object", opaque, "column t is missing"),
-    Case("an array of objects", of_objects, "column x is missing"),
-    Case("npz", npz, "holds no column of numbers"),
-    Case("npz called mat", npz_as_mat, "cannot be read as a MATLAB file"),
-    Case("a sparse matrix of 10^18 cells", sparse, "cannot be read as a MATLAB file"),
-    Case("a hundred thousand variables of one name", many, "Duplicate variable name"),
+CASES = cases(
+    {
+        "at most 500 times its size": {
+            # A gigabyte of zeros in a megabyte; what is packed says that it is small, or not.
+            "a zip bomb": mat(lambda: bomb(1 << 30, (1 << 30) + 64) * 3),
+            "a zip bomb that says it is small": mat(lambda: bomb(1 << 30, 100)),
+        },
+        "needs more memory than is free": {
+            "a claim of two billion cells": mat(variable(CELL, (2**31 - 1, 1))),
+            "a claim of a billion structs": mat(
+                variable(
+                    STRUCT,
+                    (2**30, 1),
+                    element(INT32, struct.pack("<i", 8)),
+                    element(INT8, b"abcdefgh"),
+                )
+            ),
+            "a claim of two billion rows": mat(
+                variable(NUMBERS, (2**31 - 1, 1), struct.pack("<II", DOUBLE, 2**32 - 8))
+            ),
+            "a claim of two billion rows in version 4": version_4,
+        },
+        "": {"the bytes of a pickle": with_pickle},
+        "column t is missing": {"a Java object": mat(opaque())},
+        "column x is missing": {
+            "an array of objects": lambda folder: saved(folder, x=np.array([1, "a", 2.5], object)),
+        },
+        "holds no column of numbers": {"npz": npz("a.npz")},
+        "cannot be read as a MATLAB file": {
+            "npz called mat": npz("a.mat"),
+            "a sparse matrix of 10^18 cells, one of them there": mat(
+                variable(
+                    SPARSE,
+                    (10**9, 10**9),
+                    element(INT32, bytes(4)),
+                    element(INT32, bytes(8)),
+                    element(DOUBLE, bytes(8)),
+                )
+            ),
+        },
+        "Duplicate variable name": {
+            "a hundred thousand variables of one name": mat(
+                *[variable(NUMBERS, (1, 1), element(DOUBLE, bytes(8)), name=b"v")] * 100_000
+            ),
+        },
+    }
 )

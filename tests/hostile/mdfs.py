@@ -8,14 +8,12 @@ from pathlib import Path
 import numpy as np
 from asammdf import MDF, Signal
 
-from tests.hostile.case import Case, guessing, ingesting
+from tests.hostile.case import Make, cases, guessing, ingesting
 
 Change = Callable[[bytearray], None]
 
 
-def mdf(
-    change: Change, version: str = "4.10", *, guess: bool = False
-) -> Callable[[Path], list[object]]:
+def mdf(change: Change, version: str = "4.10", *, guess: bool = False) -> Make:
     """Return a maker of an MDF file with t, x and f, changed byte by byte."""
 
     def make(folder: Path) -> list[object]:
@@ -33,18 +31,11 @@ def mdf(
     return make
 
 
-def at(content: bytearray, kind: bytes, number: int = 0) -> int:
-    place = -1
-    for _ in range(number + 1):
-        place = content.index(kind, place + 1)
-    return place
-
-
 def ring(kind: bytes, link: int = 0) -> Change:
     """Let a block be the next after itself."""
 
     def change(content: bytearray) -> None:
-        block = at(content, kind)
+        block = content.index(kind)
         struct.pack_into("<Q", content, block + 24 + 8 * link, block)
 
     return change
@@ -61,11 +52,18 @@ def ring_3(kind: bytes) -> Change:
 
 def cycles(count: int) -> Change:
     def change(content: bytearray) -> None:
-        block = at(content, b"##CG")
+        block = content.index(b"##CG")
         links = struct.unpack_from("<Q", content, block + 16)[0]
         struct.pack_into("<Q", content, block + 24 + 8 * links + 8, count)
 
     return change
+
+
+def append(content: bytearray, block: bytes) -> None:
+    """Put a block behind the end, in the place of the data."""
+    content += bytes(-len(content) % 8)
+    struct.pack_into("<Q", content, content.index(b"##DG") + 24 + 16, len(content))
+    content += block
 
 
 def packed(said: int, real: int) -> Change:
@@ -74,11 +72,8 @@ def packed(said: int, real: int) -> Change:
     def change(content: bytearray) -> None:
         begun = zlib.compressobj(9)
         stream = b"".join(begun.compress(bytes(1 << 20)) for _ in range(real >> 20)) + begun.flush()
-        place = len(content) + -len(content) % 8
-        content += bytes(-len(content) % 8)
-        content += struct.pack("<4s4xQQ", b"##DZ", 48 + len(stream), 0)
-        content += struct.pack("<2sBxIQQ", b"DT", 0, 0, said, len(stream)) + stream
-        struct.pack_into("<Q", content, at(content, b"##DG") + 24 + 16, place)
+        block = struct.pack("<4s4xQQ", b"##DZ", 48 + len(stream), 0)
+        append(content, block + struct.pack("<2sBxIQQ", b"DT", 0, 0, said, len(stream)) + stream)
         cycles(said // 32)(content)
 
     return change
@@ -87,32 +82,30 @@ def packed(said: int, real: int) -> Change:
 def deep_list(content: bytearray) -> None:
     """Let a list of data blocks go on with itself."""
     place = len(content) + -len(content) % 8
-    content += bytes(-len(content) % 8)
-    content += struct.pack("<4s4xQQQQ", b"##DL", 48, 2, place, place) + bytes(8)
-    struct.pack_into("<Q", content, at(content, b"##DG") + 24 + 16, place)
+    append(content, struct.pack("<4s4xQQQQ", b"##DL", 48, 2, place, place) + bytes(8))
 
 
 def outside(content: bytearray) -> None:
-    struct.pack_into("<Q", content, at(content, b"##DG") + 24, 2**62)
+    struct.pack_into("<Q", content, content.index(b"##DG") + 24, 2**62)
 
 
-CASES = (
-    Case("a ring of data groups", mdf(ring(b"##DG")), "the blocks form a cycle"),
-    Case("a ring of channel groups", mdf(ring(b"##CG")), "the blocks form a cycle"),
-    Case("a ring of channels", mdf(ring(b"##CN")), "the blocks form a cycle"),
-    Case("a channel made of itself", mdf(ring(b"##CN", 1)), "the blocks form a cycle"),
-    Case("a ring of channels, guessed", mdf(ring(b"##CN"), guess=True), "the blocks form a cycle"),
-    Case(
-        "a ring of data groups in version 3", mdf(ring_3(b"DG"), "3.30"), "the blocks form a cycle"
-    ),
-    Case(
-        "a ring of channel groups in version 3",
-        mdf(ring_3(b"CG"), "3.30"),
-        "the blocks form a cycle",
-    ),
-    Case("a list that goes on with itself", mdf(deep_list), "the blocks form a cycle"),
-    Case("a claim of 10^12 cycles", mdf(cycles(10**12)), "at most 500 times its size"),
-    Case("a claim of 2^63 cycles", mdf(cycles(2**63)), "at most 500 times its size"),
-    Case("a packed block of 4 GB", mdf(packed(1 << 32, 1 << 28)), "at most 500 times its size"),
-    Case("a link behind the end", mdf(outside), "cannot be read as MDF"),
+CASES = cases(
+    {
+        "the blocks form a cycle": {
+            "a ring of data groups": mdf(ring(b"##DG")),
+            "a ring of channel groups": mdf(ring(b"##CG")),
+            "a ring of channels": mdf(ring(b"##CN")),
+            "a channel made of itself": mdf(ring(b"##CN", 1)),
+            "a ring of channels, guessed": mdf(ring(b"##CN"), guess=True),
+            "a ring of data groups in version 3": mdf(ring_3(b"DG"), "3.30"),
+            "a ring of channel groups in version 3": mdf(ring_3(b"CG"), "3.30"),
+            "a list that goes on with itself": mdf(deep_list),
+        },
+        "at most 500 times its size": {
+            "a claim of 10^12 cycles": mdf(cycles(10**12)),
+            "a claim of 2^63 cycles": mdf(cycles(2**63)),
+            "a packed block of 4 GB": mdf(packed(1 << 32, 1 << 28)),
+        },
+        "cannot be read as MDF": {"a link behind the end": mdf(outside)},
+    }
 )

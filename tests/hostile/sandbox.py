@@ -28,7 +28,6 @@ class Ended:
     out: str
     err: str
     taken: int
-    seconds: float
 
 
 class Sandbox:
@@ -69,14 +68,12 @@ def _in_child(call: dict[str, Any], out: int, err: int) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
     sys.argv = ["tsas", *call["arguments"]]
-    code: object = 0
     try:
         main()
     except SystemExit as end:
-        code = end.code
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code if isinstance(code, int) else 0)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(end.code if isinstance(end.code, int) else 0)
 
 
 def _answer(call: dict[str, Any]) -> dict[str, Any]:
@@ -106,7 +103,6 @@ def _answer(call: dict[str, Any]) -> dict[str, Any]:
         "out": texts[0],
         "err": texts[1],
         "taken": 1024 * max(0, usage.ru_maxrss - before),
-        "seconds": time.monotonic() - begun,
     }
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pyarrow as pa
 
-from tests.hostile.case import Case, columns
+from tests.hostile.case import Make, cases, columns
 from tests.reporting.made_folders import (
     make_calibration,
     make_check,
@@ -27,7 +27,7 @@ MAKERS: dict[str, Callable[[Path, Path], Path]] = {
 Change = Callable[[Any], Any]
 
 
-def stage(kind: str, change: Change, command: str = "report") -> Callable[[Path], list[object]]:
+def stage(kind: str, change: Change, command: str = "report") -> Make:
     """Return a maker of a stage's folder whose JSON is changed: content, or text instead."""
 
     def make(folder: Path) -> list[object]:
@@ -56,6 +56,10 @@ def put(*keys: object, value: object) -> Change:
     return change
 
 
+def parameter(value: float) -> Make:
+    return stage("calibration", put("parameters", 0, "value", value=value))
+
+
 def deep(content: Any) -> str:
     return json.dumps(content)[:-1] + ', "x": ' + "[" * 100_000 + "]" * 100_000 + "}"
 
@@ -68,12 +72,15 @@ def very_long(content: Any) -> str:
     return json.dumps(content)[:-1] + ', "x": ' + "1" * 100_000 + "}"
 
 
+FINDING = {"code": "x", "severity": "error", "sentence": "y", "first_s": 10**4000}
+
+
 def outside(content: Any) -> None:
     for result in content["results"]:
         result["run"] = "../../secret"
 
 
-def tracked_outside(command: str) -> Callable[[Path], list[object]]:
+def tracked_outside(command: str) -> Make:
     made = stage("tracking", outside, command)
 
     def make(folder: Path) -> list[object]:
@@ -86,66 +93,40 @@ def tracked_outside(command: str) -> Callable[[Path], list[object]]:
     return make
 
 
-CASES = (
-    Case("nested 100,000 deep", stage("check", deep), "is nested too deep"),
-    Case("nested 400 deep", stage("check", rather_deep), "is nested too deep"),
-    Case(
-        "nested 400 deep, compared",
-        stage("calibration", rather_deep, "compare"),
-        "is nested too deep",
-    ),
-    Case(
-        "an integer of 10^5 digits", stage("check", very_long), "an integer has thousands of digits"
-    ),
-    Case(
-        "a first second of 4000 digits",
-        stage(
-            "check",
-            put(
-                "findings",
-                value=[{"code": "x", "severity": "error", "sentence": "y", "first_s": 10**4000}],
+CASES = cases(
+    {
+        "is nested too deep": {
+            "nested 100,000 deep": stage("check", deep),
+            "nested 400 deep": stage("check", rather_deep),
+            "nested 400 deep, compared": stage("calibration", rather_deep, "compare"),
+        },
+        "an integer has thousands of digits": {
+            "an integer of 10^5 digits": stage("check", very_long),
+        },
+        "should be a valid number": {
+            "a first second of 4000 digits": stage("check", put("findings", value=[FINDING])),
+            "a parameter of 4000 digits": parameter(10**4000),
+        },
+        "has changed since this stage read it": {
+            "hashes of files outside": stage(
+                "check", put("dataset", "hashes", value={"../../x": "0" * 64})
             ),
-        ),
-        "should be a valid number",
-    ),
-    Case(
-        "hashes of files outside",
-        stage("check", put("dataset", "hashes", value={"../../x": "0" * 64})),
-        "has changed since this stage read it",
-    ),
-    Case(
-        "a parameter of 1e400",
-        stage("calibration", put("parameters", 0, "value", value=float("inf"))),
-        "should be a finite number",
-    ),
-    Case(
-        "a parameter that is NaN",
-        stage("calibration", put("parameters", 0, "value", value=float("nan"))),
-        "should be a finite number",
-    ),
-    Case(
-        "a parameter of 4000 digits",
-        stage("calibration", put("parameters", 0, "value", value=10**4000)),
-        "should be a valid number",
-    ),
-    Case(
-        "a similarity with corners missing",
-        stage("diagnosis", put("signatures", "similarity", value=[[1.0], [], [1.0, 2.0, 3.0]])),
-        "visible and similarity need a value",
-    ),
-    Case(
-        "an infinite gain",
-        stage("diagnosis", put("named", 0, "gain_percent", value=float("-inf"))),
-        "should be a finite number",
-    ),
-    Case(
-        "tracked runs outside",
-        tracked_outside("report"),
-        "run id '../../secret' must be usable as a file name",
-    ),
-    Case(
-        "tracked runs outside, compared",
-        tracked_outside("compare"),
-        "run id '../../secret' must be usable as a file name",
-    ),
+        },
+        "should be a finite number": {
+            "a parameter of 1e400": parameter(float("inf")),
+            "a parameter that is NaN": parameter(float("nan")),
+            "an infinite gain": stage(
+                "diagnosis", put("named", 0, "gain_percent", value=float("-inf"))
+            ),
+        },
+        "visible and similarity need a value": {
+            "a similarity with corners missing": stage(
+                "diagnosis", put("signatures", "similarity", value=[[1.0], [], [1.0, 2.0, 3.0]])
+            ),
+        },
+        "run id '../../secret' must be usable as a file name": {
+            "tracked runs outside": tracked_outside("report"),
+            "tracked runs outside, compared": tracked_outside("compare"),
+        },
+    }
 )

@@ -79,9 +79,10 @@ def test_rows_that_repeat_go_only_when_the_map_says_so():
     with pytest.raises(InputError, match=r"a.csv, row 12: .*repeated_times = .first."):
         ask(twice)
     np.testing.assert_allclose(ask(twice, drop_repeated_rows=True)["x_in_mm"], [25.4, 50.8, 76.2])
-    twice["t"][-1] = 0.5
     with pytest.raises(InputError, match=r"a.csv, row 13: .*correct the file"):  # as in the file
-        ask(twice, drop_repeated_rows=True)
+        ask(twice | {"t": [0, 1, 1, 0.5]}, drop_repeated_rows=True)
+    with pytest.raises(InputError, match="does not increase"):  # its other values differ
+        ask({"t": [0, 1, 1]}, drop_repeated_rows=True)
 
 
 @pytest.mark.parametrize(
@@ -101,11 +102,6 @@ def test_what_cannot_be_a_recording_is_refused_with_its_row(values, message):
     assert message in error.value.line()
 
 
-def test_repeated_times_with_other_values_are_not_dropped():
-    with pytest.raises(InputError, match="does not increase"):
-        ask({"t": [0, 1, 1]}, drop_repeated_rows=True)
-
-
 @pytest.mark.parametrize("name", ["x_in_mm", "a\x1b[31m"])
 def test_an_extra_column_may_not_take_a_name_that_is_taken_or_breaks_the_terminal(name):
     with pytest.raises(InputError, match="cannot keep this name") as error:
@@ -113,13 +109,16 @@ def test_an_extra_column_may_not_take_a_name_that_is_taken_or_breaks_the_termina
     assert error.value.line().isprintable()
 
 
+FACTOR = {"source": "x", "unit": "V", "factor": 1e15, "factor_unit": "m"}
+
+
 @pytest.mark.parametrize(
-    ("message", "name"),
+    ("values", "place", "name"),
     [
-        ({"values": {"t": [0, 1, np.inf]}}, "time_s"),
-        ({"place": {"source": "x", "unit": "V", "factor": 1e15, "factor_unit": "m"}}, "x_in_mm"),
+        ({"t": [0, 1, np.inf]}, PLACE, "time_s"),
+        ({"x": [1, 2, 1e300]}, FACTOR, "x_in_mm"),
     ],
 )
-def test_what_grows_infinite_is_refused_without_another_word(message, name):
+def test_what_grows_infinite_is_refused_without_another_word(values, place, name):
     with pytest.raises(InputError, match=f"{name} is infinite"):  # warnings are errors in tests
-        ask(**{"values": {"x": [1, 2, 1e300]}} | message)
+        ask(values, place=place)

@@ -1,11 +1,10 @@
 """A recording that somebody writes to while it is read."""
 
 import os
-from pathlib import Path
 
 import pytest
 
-from tests.hostile.case import MAP
+from tests.hostile.case import MAP, TABLE
 from tsas_cli.recordings import ingest, run_files
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.ingest import find_files, ingest_files
@@ -13,29 +12,33 @@ from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, state_of
 
-CSV = "t,x,f\n" + "".join(f"{i},{i % 7},{i % 5}\n" for i in range(9))
 
-
-def replace(path: Path) -> None:
+def replace(path):
     """Put the same content in its place, as another file."""
     other = path.with_name("other")
     other.write_bytes(path.read_bytes())
     other.replace(path)
 
 
-def touch(path: Path) -> None:
+def touch(path):
     os.utime(path, ns=(1, 1))
 
 
-def append(path: Path) -> None:
+def append(path):
     with path.open("ab") as stream:
         stream.write(b"9,9,9\n")
+
+
+def after_a_change(monkeypatch, module, name, change):
+    """Let a function of a module come after a change."""
+    function = getattr(module, name)
+    monkeypatch.setattr(module, name, lambda *given: (change(), function(*given))[1])
 
 
 @pytest.mark.parametrize("change", [replace, touch, append])
 def test_any_change_is_seen(tmp_path, change):
     path = tmp_path / "a.csv"
-    path.write_text(CSV)
+    path.write_text(TABLE)
     before = state_of(path)
     check_unchanged(path, before)
     change(path)
@@ -45,30 +48,18 @@ def test_any_change_is_seen(tmp_path, change):
 
 def test_a_run_that_changes_between_its_checksum_and_its_rows(dataset, monkeypatch):
     path = dataset / "runs" / "a.parquet"
-    opened = run_files.open_parquet
-
-    def after_a_change(source, where):
-        replace(path)
-        return opened(source, where)
-
     assert read_dataset(dataset)["a"].time_s.size == 500
-    monkeypatch.setattr(run_files, "open_parquet", after_a_change)
+    after_a_change(monkeypatch, run_files, "open_parquet", lambda: replace(path))
     with pytest.raises(InputError, match="changed while it was read"):
         _ = read_dataset(dataset)["a"]
 
 
 def test_a_file_that_changes_while_it_is_ingested(tmp_path, monkeypatch):
     path, mapping, out = tmp_path / "a.csv", tmp_path / "map.toml", tmp_path / "out"
-    path.write_text(CSV)
+    path.write_text(TABLE)
     mapping.write_text(MAP)
     out.mkdir()
-    sha256_of = ingest.sha256_of
-
-    def after_a_change(which):
-        append(path)
-        return sha256_of(which)
-
-    monkeypatch.setattr(ingest, "sha256_of", after_a_change)
+    after_a_change(monkeypatch, ingest, "sha256_of", lambda: append(path))
     with pytest.raises(InputError, match=r"a\.csv: changed while it was read"):
         ingest_files([path], read_map(mapping), mapping, out)
     assert not (out / "dataset.toml").exists()

@@ -32,7 +32,7 @@ offset = 2.0
 
 @pytest.fixture
 def parts(monkeypatch):
-    """Read in parts of so many rows."""
+    """Return a function that lets files be read in parts of so many rows."""
 
     def set_rows(rows):
         for module in (delimited, parquet, table):

@@ -2,24 +2,21 @@
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 
+from tests.recordings.rewritten import rewrite
 from tsas_cli.recordings import pieces as reading
-from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import sha256_of
 
 GROUP, GROUPS = 4096, 60
 
 
 def test_every_row_is_read_and_a_small_part_is_held(dataset, monkeypatch):
-    run, rng = read_dataset(dataset).runs[0], np.random.default_rng(1)
+    rng = np.random.default_rng(1)
     values = {name: rng.standard_normal(GROUP * GROUPS) for name in ("x_in_mm", "f_in_N")}
     table = pa.table({"time_s": np.arange(GROUP * GROUPS) / 100.0} | values)
-    pq.write_table(table, dataset / run.file, row_group_size=GROUP)
-    run = run.model_copy(update={"sha256": sha256_of(dataset / run.file)})
+    run = rewrite(dataset, table, row_group_size=GROUP)
     monkeypatch.setattr(reading, "MOST_ROWS", GROUP)
     before, allocated, seen = pa.total_allocated_bytes(), [], []
     for piece in reading.pieces(open_run(dataset, run), table.column_names):
@@ -30,13 +27,11 @@ def test_every_row_is_read_and_a_small_part_is_held(dataset, monkeypatch):
 
 
 def test_a_value_that_no_rig_has_is_named_with_its_row_in_the_run(dataset, monkeypatch):
-    run, values = read_dataset(dataset).runs[0], np.ones(3000)
+    values = np.ones(3000)
     values[2100] = 1e10
     table = pa.table({"time_s": np.arange(3000) / 100.0, "x_in_mm": values})
-    pq.write_table(table, dataset / run.file)
-    run = run.model_copy(update={"sha256": sha256_of(dataset / run.file)})
     monkeypatch.setattr(reading, "MOST_ROWS", 1000)
-    opened = open_run(dataset, run)
+    opened = open_run(dataset, rewrite(dataset, table))
     with pytest.raises(InputError, match=r"row 2100: x_in_mm is 1e\+10; expected"):
         list(reading.pieces(opened, table.column_names))
     assert len(list(reading.pieces(opened, table.column_names, strict=False))) == 3

@@ -3,27 +3,20 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from tests.recordings.rewritten import rewrite
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.run_files import open_run, read_recording
+from tsas_cli.recordings.run_files import open_run
 from tsas_cli.recordings.writing import columns_of
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import sha256_of
-
-
-def opened(folder):
-    return open_run(folder, read_dataset(folder).runs[0])
 
 
 def rewritten(folder, table):
-    """Write another file for the run, with its checksum."""
-    run = read_dataset(folder).runs[0]
-    pq.write_table(table, folder / run.file)
-    return open_run(folder, run.model_copy(update={"sha256": sha256_of(folder / run.file)}))
+    return open_run(folder, rewrite(folder, pa.table(table)))
 
 
 def test_columns_are_those_of_the_recording(dataset, columns):
-    run = opened(dataset)
-    whole = read_recording(dataset, run.run)
+    data = read_dataset(dataset)
+    run, whole = open_run(dataset, data.runs[0]), data["a"]
     assert run.names == list(columns)
     assert run.rows == 500
     for name in run.names:
@@ -32,7 +25,7 @@ def test_columns_are_those_of_the_recording(dataset, columns):
 
 def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
     table = {"time_s": [0.0, 1.0, 2.0], "f_in_N": [1.0, None, 3.0], "own": [7.0, 8.0, 9.0]}
-    run = rewritten(dataset, pa.table(table | {"text": ["a", "b", "c"]}))
+    run = rewritten(dataset, table | {"text": ["a", "b", "c"]})
     assert run.names == ["time_s", "f_in_N", "own"]
     assert np.isnan(run.read("f_in_N")).tolist() == [False, True, False]
     assert run.read("own").tolist() == [7.0, 8.0, 9.0]
@@ -49,11 +42,11 @@ def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
 )
 def test_a_file_without_time_is_refused(dataset, table, message):
     with pytest.raises(InputError, match=message):
-        rewritten(dataset, pa.table(table))
+        rewritten(dataset, table)
 
 
 def test_time_that_runs_backwards_is_refused_when_it_is_read(dataset):
-    run = rewritten(dataset, pa.table({"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]}))
+    run = rewritten(dataset, {"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]})
     with pytest.raises(InputError, match="row 2: time_s does not increase"):
         run.read("time_s")
 

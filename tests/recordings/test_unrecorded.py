@@ -21,16 +21,15 @@ def test_a_missing_channel_and_one_that_some_runs_lack():
     assert distal.startswith("f_out is not recorded in 1 of 2 runs: without it, the tension at")
 
 
-def test_a_stage_says_it_before_it_is_done(dataset, monkeypatch):
+def test_a_stage_says_it_before_it_is_done(dataset):
     class Heard(Counted):
         said = ()
 
         def say(self, sentence):
             self.said += ((sentence, self.done),)
 
-    monkeypatch.setattr("tsas_cli.stages.calibrate.unrecorded", lambda _: ["x is missing"])
     heard = Heard()
     calibrate(dataset, step=heard)
-    ((sentence, done),) = heard.said
-    assert sentence == "x is missing"
-    assert done < heard.done
+    assert any(
+        s.startswith("f_out is not recorded") and done < heard.done for s, done in heard.said
+    )

@@ -7,8 +7,7 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
-from tests.storage.conftest import HOST, forget
-from tests.storage.faults import FaultyWire
+from tests.storage.conftest import forget
 from tsas_cli.recordings import parquet_files, storage
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.storage_failures import TIMEOUT
@@ -16,20 +15,16 @@ from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
 
 FAULTS = ["drop", "stall", "trickle", "truncate", "503 Slow Down", "500 Internal Error"]
-RUN = b"runs/a.parquet"
+RUN = "runs/a.parquet"
 
 
 @pytest.fixture
-def broken(server, bucket, monkeypatch):
+def broken(wire, bucket, monkeypatch):
     """The wire before the storage, with short limits; the bucket is there."""
-    wire = FaultyWire(server)
-    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{wire.port}")
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
-    forget()
     assert not location_of(f"{bucket}/opened").is_file()  # its libraries take their time
     monkeypatch.setenv(TIMEOUT, "2")
-    yield wire
-    wire.door.close()
+    return wire
 
 
 @pytest.fixture
@@ -49,11 +44,11 @@ def test_what_breaks_off_once_is_asked_again(broken, bucket, dataset, fault, cap
     monkeypatch.setattr(log, "disabled", False)
     monkeypatch.setattr(log, "propagate", True)
     caplog.set_level(logging.WARNING, logger="tsas")
-    broken.faulty(fault, 1, b"PUT")
+    broken.faulty(fault, 1, "PUT")
     tsas.upload(dataset, f"{bucket}/bench")
     broken.faulty(fault, 1, RUN)
     assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
-    broken.faulty(fault, 2, b"dataset.toml")
+    broken.faulty(fault, 2, "dataset.toml")
     assert [run.id for run in tsas.read(f"{bucket}/bench").runs] == ["a"]
     said = [r.getMessage() for r in caplog.records if (r.name, r.levelname) == ("tsas", "WARNING")]
     assert said or fault == "drop"  # aiohttp itself asks again
@@ -79,31 +74,32 @@ def test_what_always_breaks_off_is_one_line_in_time(broken, bucket, dataset, fau
 
 def test_a_shorter_answer_than_asked_for_is_asked_again(broken, bucket, dataset, monkeypatch):
     tsas.upload(dataset, f"{bucket}/bench")
-    broken.faulty("lie", 2, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
+    whole = f"GET /{location_of(bucket).path}/bench/{RUN}"
+    broken.faulty("lie", 2, whole)
     assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
     forget()
     parquet_files._CACHE.clear()
-    broken.faulty("lie", 1000, b"GET /" + location_of(bucket).path.encode() + b"/bench/" + RUN)
+    broken.faulty("lie", 1000, whole)
     with pytest.raises(InputError, match="breaks off"):
         tsas.read(f"{bucket}/bench")["a"]
 
 
-@pytest.mark.parametrize("of", [b"HEAD", b"GET", b"PUT"])
+@pytest.mark.parametrize("of", ["HEAD", "GET", "PUT"])
 def test_an_object_that_is_gone_meanwhile_is_one_line(broken, bucket, dataset, of):
-    if of != b"PUT":
+    if of != "PUT":
         tsas.upload(dataset, f"{bucket}/bench")
-    data = None if of == b"PUT" else tsas.read(f"{bucket}/bench")
+        data = tsas.read(f"{bucket}/bench")
     broken.faulty("404 Not Found", 1000, of)
     with pytest.raises(InputError, match=r"is not on the storage|file is missing"):
-        tsas.upload(dataset, f"{bucket}/bench") if data is None else data["a"]
-    broken.faulty("404 Not Found", 1000, b"GET")
+        tsas.upload(dataset, f"{bucket}/bench") if of == "PUT" else data["a"]
+    broken.faulty("404 Not Found", 1000, "GET")
     with pytest.raises(InputError):
         tsas.check(f"{bucket}/bench")
 
 
 @pytest.mark.parametrize("fault", ["drop", "stall", "404 Not Found"])
 def test_an_interrupted_upload_goes_on_and_never_reads_as_whole(broken, bucket, two_runs, fault):
-    broken.faulty(fault, 1000, b"runs/b.parquet")
+    broken.faulty(fault, 1000, "runs/b.parquet")
     with pytest.raises(InputError) as told:
         tsas.upload(two_runs, f"{bucket}/bench")
     if fault == "404 Not Found":  # of the question whether it is there, too
@@ -112,7 +108,7 @@ def test_an_interrupted_upload_goes_on_and_never_reads_as_whole(broken, bucket, 
         tsas.read(f"{bucket}/bench")
     broken.faulty("", 0)
     tsas.upload(two_runs, f"{bucket}/bench")
-    broken.sent = b""
+    broken.reset()
     tsas.upload(two_runs, f"{bucket}/bench", force=True)
     assert [path for verb, path in broken.requests if verb == "PUT"] == [
         f"/{location_of(bucket).path}/bench/dataset.toml"

@@ -64,10 +64,6 @@ class Object:
         return b"content"[start:end]
 
 
-def put(bucket, name, content):
-    storage.files_of("s3").pipe_file(f"{bucket}/{name}", content)
-
-
 def test_a_recording_is_fetched_once_and_whole(large, wire):
     folder, address = large
     here, there = (open_run(place, read_dataset(place).runs[0]) for place in large)
@@ -107,7 +103,7 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
     folder, _ = large
     content = bytearray((folder / "runs/a.parquet").read_bytes())
     content[len(content) // 2] ^= 1
-    put(bucket, OBJECT, bytes(content))
+    storage.files_of("s3").pipe_file(f"{bucket}/{OBJECT}", bytes(content))
     (folder / "runs/a.parquet").write_bytes(content)
     lines = []
     for place in large:
@@ -115,6 +111,16 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
             open_run(place, read_dataset(place).runs[0])
         lines.append(caught.value.line().removeprefix(f"{place}/"))
     assert lines[0] == lines[1]
+
+
+def test_fewer_bytes_than_were_asked_for_are_refused(bucket, monkeypatch):
+    async def short(*_, **__):
+        return b"con"
+
+    monkeypatch.setattr(storage, "PAUSE_S", 0.01)
+    monkeypatch.setattr(storage.files_of("s3"), "_cat_file", short)
+    with pytest.raises(InputError, match="breaks off"):
+        location_of(f"{bucket}/x").read_part(0, 7)
 
 
 def test_where_there_is_no_room_it_is_said(monkeypatch):

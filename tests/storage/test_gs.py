@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 import tsas_cli as tsas
-from tests.storage.conftest import HOST, free_port
+from tests.storage.conftest import free_port
+from tests.storage.wire import HOST
 from tsas_cli.recordings import storage
 from tsas_cli.support.errors import InputError
 

@@ -16,23 +16,15 @@ def test_the_manifest_comes_last(dataset, bucket, wire):
     for force in (False, True):
         wire.reset()
         tsas.upload(dataset, f"{bucket}/bench", force=force)
-        changes = [
-            (verb, path.split("/bench/")[1]) for verb, path in wire.requests if verb in WRITE
-        ]
+        changes = [(verb, path.split("/bench/")[1]) for verb, path in wire.requests
+                   if verb in ("PUT", "DELETE", "POST")]  # fmt: skip
         assert changes == [("PUT", name) for name in (sent[1:] if force else sent)]
-
-
-WRITE = {"PUT", "DELETE", "POST"}
 
 
 def test_nothing_is_replaced_unasked(dataset, bucket):
     tsas.upload(dataset, f"{bucket}/bench")
     with pytest.raises(InputError, match="already exists"):
         tsas.upload(dataset, f"{bucket}/bench")
-
-
-def delete(address):
-    storage.files_of("s3").rm_file(address)
 
 
 def test_what_belongs_to_no_dataset_is_not_replaced(dataset, bucket):
@@ -46,7 +38,7 @@ def test_what_belongs_to_no_dataset_is_not_replaced(dataset, bucket):
 
 def test_an_upload_that_was_cut_off_goes_on(dataset, bucket):
     tsas.upload(dataset, f"{bucket}/bench")
-    delete(f"{bucket}/bench/dataset.toml")
+    storage.files_of("s3").rm_file(f"{bucket}/bench/dataset.toml")
     tsas.upload(dataset, f"{bucket}/bench")
     assert tsas.read(f"{bucket}/bench").runs[0].id == "a"
 

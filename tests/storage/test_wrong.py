@@ -8,7 +8,8 @@ import time
 import pytest
 
 import tsas_cli as tsas
-from tests.storage.conftest import HOST, KEY, SECRET, forget, free_port
+from tests.storage.conftest import KEY, SECRET, forget, free_port
+from tests.storage.wire import HOST
 from tsas_cli.recordings import storage
 from tsas_cli.recordings.storage_failures import TIMEOUT
 from tsas_cli.support.errors import InputError
@@ -22,9 +23,8 @@ def line_of(address: str) -> str:
 
 
 def test_a_bucket_or_dataset_that_is_not_there(bucket):
-    assert line_of("s3://no-such-bucket/x") == (
-        "s3://no-such-bucket/x/dataset.toml: there is no such bucket"
-    )
+    none = "s3://no-such-bucket/x"
+    assert line_of(none) == f"{none}/dataset.toml: there is no such bucket"
     assert line_of(f"{bucket}/x").startswith(f"{bucket}/x: no dataset.toml here; expected")
 
 
@@ -32,9 +32,8 @@ def test_no_credentials(bucket, monkeypatch):
     monkeypatch.delenv("AWS_ACCESS_KEY_ID")
     monkeypatch.delenv("AWS_SECRET_ACCESS_KEY")
     forget()
-    assert line_of(f"{bucket}/x").startswith(
-        f"{bucket}/x/dataset.toml: no credentials found; set them"
-    )
+    told = line_of(f"{bucket}/x")
+    assert told.startswith(f"{bucket}/x/dataset.toml: no credentials found; set them")
 
 
 def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
@@ -44,18 +43,8 @@ def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
     assert time.monotonic() - before < 40
 
 
-def test_a_server_that_never_answers(keys, monkeypatch):
-    monkeypatch.setenv(TIMEOUT, "0.5")
-    monkeypatch.setattr(storage, "PAUSE_S", 0.05)
-    with socket.create_server((HOST, 0)) as silent:
-        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
-        before = time.monotonic()
-        assert "the storage cannot be reached" in line_of("s3://a/b")
-        assert time.monotonic() - before < 20
-
-
 def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
-    monkeypatch.setenv(TIMEOUT, "1")
+    monkeypatch.setenv(TIMEOUT, "0.5")
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     with socket.create_server((HOST, 0)) as silent:
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
@@ -67,7 +56,6 @@ def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
 def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):
     tsas.upload(dataset, f"{bucket}/bench")
     data = tsas.read(f"{bucket}/bench")
-    wire.door.close()
     wire.target = free_port()
     forget()
     with pytest.raises(InputError) as caught:
@@ -108,17 +96,16 @@ def test_an_output_is_a_local_folder(dataset):
         tsas.check(dataset, out="s3://bucket/x")
 
 
-def test_the_command_says_it_in_one_line_and_no_secret(tsas, bucket, tmp_path):
-    done = tsas("calibrate", f"{bucket}/x", "--out", tmp_path / "out")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == 1
+def test_the_command_says_it_in_one_line_and_no_secret(here, bucket, tmp_path):
+    code, output, messages = here("calibrate", f"{bucket}/x", "--out", tmp_path / "out")
+    assert (code, output, messages.count("\n")) == (2, "", 1)
     assert not (tmp_path / "out").exists()
-    done = tsas("check", f"s3://{KEY}:{SECRET}@bucket/x")
-    assert done.returncode == 2
-    assert SECRET not in done.stderr
+    code, _, messages = here("check", f"s3://{KEY}:{SECRET}@bucket/x")
+    assert code == 2
+    assert SECRET not in messages
 
 
-def test_local_datasets_need_no_storage(tsas, dataset):
+def test_local_datasets_need_no_storage(dataset):
     program = (
         "import sys, tsas_cli as tsas; tsas.check(sys.argv[1]); "
         "print([m for m in ('s3fs', 'gcsfs', 'botocore', 'aiohttp') if m in sys.modules])"

@@ -129,14 +129,9 @@ def test_the_process_ends_with_the_one_that_started_it(path):
         "from pathlib import Path\n"
         f"print(ask(Path({str(path)!r}), prints))\n"
     )
-    root = Path(module.__file__).parents[3]
-    done = subprocess.run(
-        [sys.executable, str(script)],
-        env=os.environ | {"PYTHONPATH": str(root)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    environment = os.environ | {"PYTHONPATH": str(Path(module.__file__).parents[3])}
+    call = [sys.executable, str(script)]
+    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
     for _ in range(400):
         try:
             os.kill(int(done.stdout), 0)

@@ -12,6 +12,7 @@ from tsas_cli.recordings.guess.columns import Proposed
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.ingest_map import QUESTION, IngestMap
 from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.recordings.units import conversion
 
 SHIPPED = Path(__file__).parents[3] / "datasets" / "paper-groups"
@@ -50,18 +51,10 @@ def verdicts(path: Path, truth: dict[str, str | int]) -> dict[str, str]:
     is not the run.
     """
     proposal = propose([path])
-    found = {channel.name: channel for channel in proposal.channels}
-    table = read(path, _options(proposal), list(truth.values()))
-    judged = dict.fromkeys(truth, "missing")
-    for name, channel in found.items():
-        judged[name] = _judged(name, channel, truth, table, path)
-    return judged
-
-
-def _options(proposal):
-    from tsas_cli.recordings.readers.table import ReadOptions
-
-    return ReadOptions.model_validate({key: value for key, (value, _) in proposal.read.items()})
+    options = ReadOptions.model_validate({k: value for k, (value, _) in proposal.read.items()})
+    table = read(path, options, list(truth.values()))
+    judged = {c.name: _judged(c.name, c, truth, table, path) for c in proposal.channels}
+    return dict.fromkeys(truth, "missing") | judged
 
 
 def _judged(name, channel: Proposed, truth, table, path) -> str:

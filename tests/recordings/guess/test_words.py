@@ -39,11 +39,8 @@ def test_words_state_quantity_end_and_reference(name, quantity, end, is_referenc
         ("Force N", "Force", "N"),
         ("x_in_mm", "x_in", "mm"),
         ("time_s", "time", "s"),
-        ("F_s", "F_s", ""),  # a slave, no second
-        ("x_in", "x_in", ""),  # an end, no inch
-        ("x_m", "x_m", ""),
-        ("force_mm", "force_mm", ""),  # no unit of a force
-        ("A", "A", ""),
+        # A slave and no second, an end and no inch; and no unit of a force.
+        *((name, name, "") for name in ("F_s", "x_in", "x_m", "force_mm", "A")),
     ],
 )
 def test_a_unit_behind_a_name_has_to_fit_it(name, stem, unit):

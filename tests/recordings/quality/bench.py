@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.manifest import RigSheet, Run
+from tsas_cli.recordings.quality import RUN_CHECKS
+from tsas_cli.recordings.quality.finding import Remark
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.arrays import Floats
@@ -103,9 +105,21 @@ _LOADS = {"spring": _spring, "force": _force, "displacement": _displacement}
 
 
 def trial(
-    measured: Mapping[str, Floats], rig: Mapping[str, Any] | None = None, load: str = "spring"
+    measured: Mapping[str, Floats], rig: Mapping[str, Any] | None = None, **run: Any
 ) -> RunSignals:
     """Return a run as the checks see it."""
-    entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, "load": load}
+    entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, **run}
     recording = Recording(Run.model_validate(entry), dict(measured))
     return RunSignals(recording, RigSheet.model_validate(dict(rig or {})))
+
+
+def remarks(measured: Mapping[str, Floats], **run: Any) -> list[tuple[str, Remark]]:
+    """Return what the checks of a run remark, each with the check's code."""
+    subject = trial(measured, {"load_stiffness_N_per_mm": LOAD}, **run)
+    return [
+        (check.code, remark)
+        for check in RUN_CHECKS
+        if all(name in subject.channels for name in check.needs)
+        for remark in check.find(subject)
+        if isinstance(remark, Remark)
+    ]

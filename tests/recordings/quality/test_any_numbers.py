@@ -41,9 +41,7 @@ def test_the_checks_never_fail(tmp_path_factory, shapes, rows, load, ordered, se
     time = np.arange(rows) * 0.01 if ordered else rng.standard_normal(rows)
     data = {name: RAW[shape](rng, rows) for name, shape in zip(NAMES, shapes, strict=True)}
     entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, "load": load}
-    manifest = Manifest.model_validate(
-        {"format": 1, "name": "n", "kind": "measured", "run": [entry]}
-    )
+    manifest = Manifest(format=1, name="n", kind="measured", run=[entry])
     folder = tmp_path_factory.mktemp("any")
     write_dataset(folder, manifest, {"a": pa.table({"time_s": time} | data)})
     report = check_dataset(read_dataset(folder))

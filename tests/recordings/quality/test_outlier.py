@@ -1,7 +1,5 @@
 """A sample that stands out is found at any size, and is not held against the other channels."""
 
-from itertools import product
-
 import numpy as np
 import pytest
 
@@ -26,12 +24,8 @@ def with_wild(name, rows, value):
     return GOOD | {name: values}
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    list(
-        product(("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"), (8.0, -60.0, 1e3, -9e5, 1e10, 3.4e38))
-    ),
-)
+@pytest.mark.parametrize("name", ["x_in_mm", "x_out_mm", "f_in_N", "f_out_N"])
+@pytest.mark.parametrize("value", [8.0, -60.0, 1e3, -9e5, 1e10, 3.4e38])
 def test_one_wild_sample_is_found_in_each_channel_and_by_no_other_check(name, value):
     remark = found(with_wild(name, 1234, value), "outlier", name)
     assert remark.severity == "error"

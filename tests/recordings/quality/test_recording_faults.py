@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from tests.recordings.quality.bench import LOAD, Bench, columns, trial
-from tsas_cli.recordings.quality import RUN_CHECKS
-from tsas_cli.recordings.quality.finding import Remark
+from tests.recordings.quality.bench import Bench, columns, remarks
 
 BENCH = Bench(rate_Hz=200.0, step_mm=0.002, step_N=0.01)
 GOOD = columns(BENCH)
@@ -15,15 +13,15 @@ N = TIME.size
 STEPS = {"x_in_mm": 0.002, "x_out_mm": 0.002, "f_in_N": 0.01, "f_out_N": 0.01}
 
 
-def codes(measured):
-    """Return the codes of what is found, and the columns of each."""
-    subject = trial(measured, {"load_stiffness_N_per_mm": LOAD})
-    found = {}
-    for check in RUN_CHECKS:
-        for remark in check.find(subject):
-            if isinstance(remark, Remark):
-                found.setdefault(check.code, []).append(remark)
-    return found
+def told(measured, code, **run):
+    """Return the only remark of a check."""
+    (remark,) = (remark for found, remark in remarks(measured, **run) if found == code)
+    return remark
+
+
+def number(remark, begin, end):
+    """Return the number that a sentence says between two words."""
+    return float(remark.sentence.split(begin)[1].split(end)[0])
 
 
 def rounded(values, column):
@@ -35,7 +33,7 @@ def rows_of(rows):
 
 
 def test_the_recording_without_a_fault_is_sound():
-    assert codes(GOOD) == {}
+    assert remarks(GOOD) == []
 
 
 @pytest.mark.parametrize(
@@ -44,30 +42,30 @@ def test_the_recording_without_a_fault_is_sound():
 def test_a_channel_behind_a_low_pass_filter(column, cut_Hz):
     sections = butter(2, cut_Hz, fs=200.0, output="sos")
     smooth = rounded(sosfiltfilt(sections, GOOD[column]), column)
-    (remark,) = codes(GOOD | {column: smooth})["filtered"]
+    remark = told(GOOD | {column: smooth}, "filtered")
     assert remark.column == column
-    said_Hz = float(remark.sentence.split("about ")[1].split(" Hz")[0])
+    said_Hz = number(remark, "about ", " Hz")
     assert 0.5 * cut_Hz < said_Hz < 2.5 * cut_Hz
 
 
 def test_samples_that_are_lost_and_closed_up():
     lost = 700, 1500
     kept = np.delete(np.arange(N), [*range(lost[0], lost[0] + 12), *range(lost[1], lost[1] + 12)])
-    (remark,) = codes(rows_of(kept))["lost-samples"]
+    remark = told(rows_of(kept), "lost-samples")
     assert "at 2 places" in remark.sentence
     assert remark.first_s == pytest.approx(TIME[lost[0] - 1], abs=0.02)
-    seconds = float(remark.sentence.split("closed up: ")[1].split(" s")[0])
+    seconds = number(remark, "closed up: ", " s")
     assert seconds == pytest.approx(12 * 0.005, rel=0.25)
 
 
 def test_a_gap_that_the_times_show_is_no_lost_sample():
     kept = np.delete(np.arange(N), range(700, 750))
-    assert set(codes({n: v[kept] for n, v in GOOD.items()})) == {"gap"}
+    assert {code for code, _ in remarks({n: v[kept] for n, v in GOOD.items()})} == {"gap"}
 
 
 def test_a_buffer_that_is_written_twice():
     rows = np.concatenate((np.arange(1020), np.arange(1000, N)))[:N]
-    (remark,) = codes(rows_of(rows))["repeated-buffer"]
+    remark = told(rows_of(rows), "repeated-buffer")
     assert "1 block of rows repeat" in remark.sentence
     assert "has 20 rows" in remark.sentence
     assert remark.first_s == pytest.approx(TIME[1020])
@@ -81,22 +79,22 @@ def test_sampling_at_other_times_than_are_written():
         n: np.interp(at, TIME, clean[n]) + 5.0 * step * rng.standard_normal(N)
         for n, step in STEPS.items()
     }
-    (remark,) = codes({"time_s": TIME} | moved)["unsteady-sampling"]
-    said_ms = float(remark.sentence.split("taken ")[1].split(" ms")[0])
+    remark = told({"time_s": TIME} | moved, "unsteady-sampling")
+    said_ms = number(remark, "taken ", " ms")
     assert said_ms == pytest.approx(6.0, rel=0.25)
 
 
 def test_a_hum_is_told_with_its_frequency():
     hum = GOOD["f_out_N"] + 0.7 * np.sin(2.0 * np.pi * 7.3 * TIME)
-    (remark,) = codes(GOOD | {"f_out_N": hum})["hum"]
-    assert float(remark.sentence.split("about ")[1].split(" Hz")[0]) == pytest.approx(7.3, rel=0.1)
+    remark = told(GOOD | {"f_out_N": hum}, "hum")
+    assert number(remark, "about ", " Hz") == pytest.approx(7.3, rel=0.1)
 
 
 def test_bursts_are_counted():
     noisy = GOOD["f_in_N"].copy()
     for start in (500, 1400, 2300):
         noisy[start : start + 80] += np.random.default_rng(start).standard_normal(80)
-    (remark,) = codes(GOOD | {"f_in_N": noisy})["bursts"]
+    remark = told(GOOD | {"f_in_N": noisy}, "bursts")
     assert "3 bursts" in remark.sentence
     assert remark.first_s == pytest.approx(2.5, abs=0.1)
 
@@ -104,7 +102,7 @@ def test_bursts_are_counted():
 def test_many_outliers():
     rng = np.random.default_rng(3)
     off = (rng.random(N) < 0.03) * rng.choice((-1.5, 1.5), N)
-    (remark,) = codes(GOOD | {"f_out_N": GOOD["f_out_N"] + off})["outlier"]
+    remark = told(GOOD | {"f_out_N": GOOD["f_out_N"] + off}, "outlier")
     assert (remark.severity, remark.column) == ("warning", "f_out_N")
     assert float(remark.sentence.split(" %")[0]) == pytest.approx(3.0, abs=0.8)
 
@@ -112,35 +110,28 @@ def test_many_outliers():
 def test_an_amplifier_that_is_coupled_to_ac():
     decay = np.exp(-0.005 / 3.0)
     coupled = lfilter([1.0, -1.0], [1.0, -decay], GOOD["f_in_N"])
-    entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, "preload_N": 25.0}
-    subject = trial(GOOD | {"f_in_N": coupled})
-    run = type(subject.recording.run).model_validate(entry)
-    subject = type(subject)(type(subject.recording)(run, subject.recording.columns), subject.rig)
-    (check,) = (check for check in RUN_CHECKS if check.code == "ac-coupled")
-    (remark,) = check.find(subject)
+    remark = told(GOOD | {"f_in_N": coupled}, "ac-coupled", preload_N=25.0)
     assert remark.column == "f_in_N"
 
 
 @pytest.mark.parametrize(("column", "level"), [("f_in_N", 74.0), ("f_out_N", 46.0)])
 def test_noise_behind_the_end_of_a_range(column, level):
     noise = 0.1 * np.random.default_rng(4).standard_normal(N)
-    (remark,) = codes(GOOD | {column: np.minimum(GOOD[column], level) + noise})["clipped"]
+    remark = told(GOOD | {column: np.minimum(GOOD[column], level) + noise}, "clipped")
     assert remark.column == column
-    assert float(remark.sentence.split("level ")[1].split(" in")[0]) == pytest.approx(
-        level, rel=0.01
-    )
+    assert number(remark, "level ", " in") == pytest.approx(level, rel=0.01)
 
 
 def test_an_interference_that_follows_the_motor():
     speed = np.gradient(columns(Bench(noise_mm=0.0))["x_in_mm"], TIME)
     taken = GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)
-    (remark,) = codes(GOOD | {"f_out_N": taken})["interference"]
-    assert float(remark.sentence.split("by ")[1].split(" N")[0]) == pytest.approx(1.6, rel=0.15)
+    remark = told(GOOD | {"f_out_N": taken}, "interference")
+    assert number(remark, "by ", " N") == pytest.approx(1.6, rel=0.15)
 
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_a_radius_taken_for_a_diameter(factor):
     both = {name: factor * GOOD[name] for name in ("x_in_mm", "x_out_mm")}
-    (remark,) = codes(GOOD | both)["unit"]
+    remark = told(GOOD | both, "unit")
     assert remark.severity == "error"
     assert "of a wheel for its" in remark.sentence

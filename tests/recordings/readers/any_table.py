@@ -57,9 +57,13 @@ def columns_of_numbers(draw: st.DrawFn, least: int = 1, most: int = 4) -> list[l
     return [draw(st.lists(kind, min_size=rows, max_size=rows)) for kind in kinds]
 
 
-def words(most: int = 5) -> st.SearchStrategy[str]:
+def words() -> st.SearchStrategy[str]:
     """Draw a name that is no number and no gap."""
-    return st.text(LETTERS, min_size=1, max_size=most).map(lambda w: f"n{w}")
+    return st.text(LETTERS, min_size=1, max_size=5).map(lambda w: f"n{w}")
+
+
+def titles_of(count: int) -> st.SearchStrategy[list[str]]:
+    return st.lists(words(), min_size=count, max_size=count, unique=True)
 
 
 @st.composite
@@ -70,18 +74,17 @@ def text_tables(draw: st.DrawFn) -> Known:
     delimiter = draw(st.sampled_from([",", ";", "\t", " "]))
     comma = delimiter != "," and draw(st.booleans())
     encoding = draw(st.sampled_from(["utf-8", "utf-8-sig", "utf-16", "cp1252"]))
-    titles = draw(st.lists(words(), min_size=count, max_size=count, unique=True))
+    titles = draw(titles_of(count))
     units = draw(st.lists(st.sampled_from(["mm", "N", "s", "µm"]), min_size=count, max_size=count))
     has_names = draw(st.booleans())
     where = draw(st.sampled_from(["nowhere", "bracket", "row"])) if has_names else "nowhere"
     gap = draw(st.sampled_from(["nan", "NaN", "NULL", *([] if delimiter == " " else [""])]))
     form = draw(st.sampled_from(["{!r}", "{:.17g}", "{:.17e}", "{:+.17g}", "{:.17G}"]))
+    gap = gap if count > 1 else gap or "nan"
     rows = [
         [_cell(value, form, gap, comma=comma) for value in row]
         for row in zip(*columns, strict=True)
     ]
-    if count == 1:
-        rows = [[cell or "nan" for cell in row] for row in rows]
     if where == "bracket":
         glue = "" if delimiter == " " else draw(st.sampled_from(["", " "]))
         titles = [f"{t}{glue}[{u}]" for t, u in zip(titles, units, strict=True)]
@@ -128,19 +131,17 @@ def json_tables(draw: st.DrawFn) -> Known:
     """Draw a table as JSON: rows, records or columns, at the top or under a key."""
     columns = draw(columns_of_numbers())
     count = len(columns)
-    titles = draw(st.lists(words(), min_size=count, max_size=count, unique=True))
+    titles = draw(titles_of(count))
     plain = [[None if v != v else v for v in column] for column in columns]
     rows = [list(row) for row in zip(*plain, strict=True)]
     form = draw(st.sampled_from(["rows", "named rows", "records", "columns"]))
     sources: list[str | int] = list(titles)
     table: Any = dict(zip(titles, plain, strict=True))
     above: dict[str, Any] = {"note": "a"}
-    if form.endswith("rows"):
-        table = rows
-        if form == "named rows":
-            above["columns"] = titles
-        else:
-            sources = list(range(1, count + 1))
+    if form == "rows":
+        table, sources = rows, list(range(1, count + 1))
+    elif form == "named rows":
+        table, above["columns"] = rows, titles
     elif form == "records":
         table = [
             {t: v for t, v in zip(titles, row, strict=True) if i == 0 or v is not None}
@@ -158,7 +159,7 @@ def parquet_tables(draw: st.DrawFn) -> Known:
     """Draw a Parquet file of some type, compression and layout."""
     columns = draw(columns_of_numbers())
     count = len(columns)
-    titles = draw(st.lists(words(), min_size=count, max_size=count, unique=True))
+    titles = draw(titles_of(count))
     kind = draw(st.sampled_from([pa.float64(), pa.float32(), pa.int16(), pa.int64()]))
     if kind == pa.float32():
         with np.errstate(over="ignore"):

@@ -32,23 +32,17 @@ def save_mcap(path: Path) -> Path:
 
 
 def _plain():  # type: ignore[no-untyped-def]
-    joints = [
-        (
-            START_NS + i * 100_000_000 + 1_000_000,
-            {"header": {"stamp": _stamp(i)}, "position": [i / 10], "name": ["a"]},
-        )
-        for i in range(JOINTS)
-    ]
-    forces = [
-        (START_NS + i * 50_000_000, {"newton": 5.0 * i, "counts": [i, 7], "note": "a"})
-        for i in range(FORCES)
-    ]
+    """Return the messages of each topic, with the time at which each is logged [ns]."""
+    joints, forces = [], []
+    for i in range(JOINTS):
+        sent_ns = START_NS + i * 100_000_000
+        stamp = {"sec": sent_ns // 10**9, "nanosec": sent_ns % 10**9}
+        message = {"header": {"stamp": stamp}, "position": [i / 10], "name": ["a"]}
+        joints.append((sent_ns + 1_000_000, message))
+    for i in range(FORCES):
+        message = {"newton": 5.0 * i, "counts": [i, 7], "note": "a"}
+        forces.append((START_NS + i * 50_000_000, message))
     return {"/joint": joints, "/force": forces}
-
-
-def _stamp(i: int) -> dict[str, int]:
-    sent_ns = START_NS + i * 100_000_000
-    return {"sec": sent_ns // 10**9, "nanosec": sent_ns % 10**9}
 
 
 def save_ros1(path: Path) -> Path:
@@ -72,10 +66,8 @@ def save_ros2(folder: Path, *, mcap: bool = False) -> Path:
 
 def _fill(bag, store, serialize, **header):  # type: ignore[no-untyped-def]
     own, joint_state = "own/msg/Force", "sensor_msgs/msg/JointState"
-    state, force, head, time = (
-        store.types[t]
-        for t in (joint_state, own, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
-    )
+    kinds = (joint_state, own, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
+    state, force, head, time = (store.types[kind] for kind in kinds)
     joint = bag.add_connection("/joint", joint_state, typestore=store)
     forces = bag.add_connection("/force", own, typestore=store)
     plain = _plain()

@@ -8,10 +8,7 @@ from tests.recordings.readers.any_table import check, foreign_tables, plain_tabl
 ONE_FOLDER = HealthCheck.function_scoped_fixture  # each example writes its file anew
 
 
-@settings(
-    max_examples=settings.default.max_examples * 3,
-    suppress_health_check=[ONE_FOLDER],
-)
+@settings(suppress_health_check=[ONE_FOLDER])
 @given(known=plain_tables())
 def test_text_json_and_parquet(tmp_path, known):
     check(known, tmp_path)

@@ -1,7 +1,5 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from tsas_cli.recordings.readers import read
 from tsas_cli.recordings.readers.table import ReadOptions
@@ -57,14 +55,8 @@ def test_units_stand_in_a_row_of_their_own_or_in_brackets(ask):
     assert list(row.units.values()) == list(names.units.values()) == ["ms", "lbf"]
 
 
-@pytest.mark.parametrize(
-    "cells",
-    [
-        ["623", "1,237"],
-        ["-1,237", "0"],
-        ["1,237"] * 300 + ["623"],  # a thousand for as long as the head is looked at
-    ],
-)
+# The last: a thousand for as long as the head is looked at.
+@pytest.mark.parametrize("cells", [["623", "1,237"], ["-1,237", "0"], ["1,237"] * 300 + ["623"]])
 def test_commas_that_may_part_thousands_are_asked_about(ask, cells):
     text = "t\tf\n" + "".join(f"{i}\t{cell}\n" for i, cell in enumerate(cells))
     with pytest.raises(InputError, match=r"column 2 holds -?\d+ and -?1,237: .* decimal = \",\""):
@@ -90,16 +82,12 @@ def test_empty_cells_and_nan_are_gaps(ask):
     assert np.isnan(columns["f"]).tolist() == [False, True, True]
 
 
-@pytest.mark.parametrize("end", ["2\t3\n", "2\t3\n# the end\n"])  # read at once, and by lines
-def test_tabs_alone_are_a_row_of_gaps(ask, end):
-    columns, _ = ask(f"t\tf\n0\t1\n\t\n{end}", "t", "f")
+@pytest.mark.parametrize("more", ["", "# the end\n"])  # read at once, and by lines
+def test_tabs_alone_are_a_row_of_gaps_and_spaces_are_none(ask, more):
+    columns, _ = ask(f"t\tf\n0\t1\n\t\n2\t3\n{more}", "t", "f")
     assert columns["f"] == pytest.approx([1.0, np.nan, 3.0], nan_ok=True)
-
-
-@pytest.mark.parametrize("end", ["2 3\n", "2 3\n# the end\n"])
-def test_spaces_alone_are_no_row(ask, end):
-    columns, _ = ask(f"t f\n0 1\n \n{end}", "t", "f")
-    assert list(columns["f"]) == [1.0, 3.0]
+    columns, _ = ask(f"t f\n0 1\n \n2 3\n{more}", "t", "f")
+    assert columns["f"] == [1.0, 3.0]
 
 
 def test_comment_lines_are_the_header(ask):
@@ -117,7 +105,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
     ("text", "message"),
     [
         ("t,f\n0,1\n1,fast\n", ("row 3", "column f", "'fast'")),
-        ("t,f\n" + "0,1\n" * 200_000 + "1,fast\n", ("row 200002", "column f", "'fast'")),
+        ("t,f\n" + "0,1\n" * 20_000 + "1,fast\n", ("row 20002", "column f", "'fast'")),
         ("t,f\n0,1\n1,2,3\n", ("row 3", "3 fields", "expected 2")),
         ("t,f,g\n0,1\n1,2\n", ("row 2", "3 column names and 2 fields")),
         ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),
@@ -143,23 +131,6 @@ def test_what_is_wrong_is_reported_with_its_place(ask, text, message):
 def test_the_wrong_encoding_is_reported(ask):
     with pytest.raises(InputError, match="cp1252"):
         ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")
-
-
-@settings(max_examples=settings.default.max_examples // 2)
-@given(
-    rows=st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), min_size=1, max_size=30),
-    marks=st.sampled_from(
-        [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (" ", ".")]
-    ),
-    names=st.booleans(),
-)
-def test_what_is_written_is_read_back_to_the_last_bit(tmp_path_factory, rows, marks, names):
-    delimiter, decimal = marks
-    lines = [delimiter.join(repr(cell).replace(".", decimal) for cell in row) for row in rows]
-    path = tmp_path_factory.mktemp("made") / "a.csv"
-    path.write_text("\n".join([delimiter.join(["t", "f"])] * names + lines) + "\n")
-    table = read(path, ReadOptions(), [1, 2])
-    assert [*zip(table.columns[1], table.columns[2], strict=True)] == rows
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,9 @@ offset_s = -0.5
 """
 
 
+ALL = ["time", "drive.x [mm]", "load.2"]
+
+
 @pytest.fixture
 def bench(tmp_path):
     drive = [f"{100 * i},{i},a" for i in range(11)]
@@ -51,15 +54,14 @@ def test_a_unit_behind_the_name_of_a_clock_counts(bench, tmp_path):
     path = bench(LIST.replace("t [ms]", "time_ms"))
     drive = tmp_path / "drive.csv"
     drive.write_text(drive.read_text().replace("t [ms]", "time_ms"))
-    table = read(path, ReadOptions(resample=True), ["time", "drive.x [mm]", "load.2"])
+    table = read(path, ReadOptions(resample=True), ALL)
     np.testing.assert_allclose(table.columns["time"], np.arange(11) / 10)
 
 
 def test_all_come_onto_the_clock_with_the_most_samples(bench):
-    wanted = ["time", "drive.x [mm]", "load.2"]
     with pytest.raises(InputError, match="the channels have different times"):
-        read(bench(), ReadOptions(), wanted)
-    table = read(bench(), ReadOptions(resample=True), wanted)
+        read(bench(), ReadOptions(), ALL)
+    table = read(bench(), ReadOptions(resample=True), ALL)
     np.testing.assert_allclose(table.columns["time"], np.arange(11) / 10)
     np.testing.assert_allclose(table.columns["drive.x [mm]"], np.arange(11))
     np.testing.assert_allclose(table.columns["load.2"], 2 * np.arange(11))  # 20 a second

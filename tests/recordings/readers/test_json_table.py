@@ -20,25 +20,10 @@ def ask(tmp_path):
     return call
 
 
-@pytest.mark.parametrize(
-    ("content", "wanted", "table"),
-    [
-        (ROWS, (1, 2), None),
-        ({"data": ROWS, "dt": 1}, (1, 2), "data"),
-        ({"run": {"data": ROWS}}, (1, 2), "run.data"),
-        ({"columns": ["t", "f"], "data": ROWS}, ("t", "f"), "data"),
-        ({"t": [0, 1, 2], "f": [1.5, None, 3.5]}, ("t", "f"), None),
-        ([{"f": 1.5, "t": 0}, {"t": 1}, {"t": 2, "f": 3.5}], ("t", "f"), None),
-    ],
-)
-def test_rows_records_and_columns_give_the_same_numbers(ask, content, wanted, table):
-    columns = ask(content, *wanted, table=table).columns
-    np.testing.assert_array_equal(columns[wanted[0]], [0, 1, 2])
-    np.testing.assert_array_equal(columns[wanted[1]], [1.5, np.nan, 3.5])
-
-
 def test_what_stands_beside_the_table_is_the_header(ask):
-    assert ask({"data": ROWS, "unit": "kip"}, 1, table="data").header == ("unit = kip",)
+    table = ask({"data": ROWS, "unit": "kip"}, 2, table="data")
+    np.testing.assert_array_equal(table.columns[2], [1.5, np.nan, 3.5])
+    assert table.header == ("unit = kip",)
 
 
 def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):

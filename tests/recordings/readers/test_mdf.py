@@ -5,7 +5,7 @@ import pytest
 from asammdf import MDF, Signal
 
 import tsas_cli as tsas
-from tsas_cli.recordings.readers import mdf, read
+from tsas_cli.recordings.readers import mdf
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -15,24 +15,28 @@ F = np.arange(5.0) + 10
 
 @pytest.fixture
 def path(tmp_path):
-    path = tmp_path / "a.mf4"
+    place = Signal((F * 2).astype(np.int16), T, name="place", unit="mm")
     invalid = np.array([0, 1, 0, 0, 0], dtype=bool)
+    return save(
+        tmp_path / "a.mf4",
+        [Signal(F, T, name="force", unit="N"), place],
+        [Signal(F[::2], T[::2], name="slow"), Signal(F[::2], T[::2], name="force")],
+        [Signal(F, T, name="patchy", invalidation_bits=invalid)],
+        [Signal(np.array([b"a"] * 5), T, name="words", encoding="utf-8")],
+    )
+
+
+def save(path, *groups):
+    """Write groups of signals."""
     with MDF(version="4.10") as file:
-        file.append(
-            [
-                Signal(F, T, name="force", unit="N"),
-                Signal((F * 2).astype(np.int16), T, name="place", unit="mm"),
-            ]
-        )
-        file.append([Signal(F[::2], T[::2], name="slow"), Signal(F[::2], T[::2], name="force")])
-        file.append([Signal(F, T, name="patchy", invalidation_bits=invalid)])
-        file.append([Signal(np.array([b"a"] * 5), T, name="words", encoding="utf-8")])
+        for group in groups:
+            file.append(list(group))
         file.save(path)
     return path
 
 
 def ask(path, *wanted, **options):
-    table = read(path, ReadOptions(**options), wanted)
+    table = mdf.read(path, ReadOptions(**options), wanted)
     return {source: values.tolist() for source, values in table.columns.items()}, table
 
 
@@ -43,10 +47,7 @@ def test_channels_units_and_the_master_as_time(path):
 
 
 def test_the_master_beside_a_channel_that_is_called_time_has_a_number(tmp_path):
-    path = tmp_path / "a.mf4"
-    with MDF() as file:
-        file.append([Signal(F, T, name="time", unit="mm")])
-        file.save(path)
+    path = save(tmp_path / "a.mf4", [Signal(F, T, name="time", unit="mm")])
     columns, table = ask(path, 2, 1)
     assert columns == {1: F.tolist(), 2: T.tolist()}
     assert table.units == {1: "mm", 2: "s"}
@@ -84,11 +85,8 @@ def test_what_is_wrong_is_reported(path, wanted, described):
     [(("a", 2), "an angle in deg"), (("d", 3), "a distance in m"), (("i", 4), "a count in index")],
 )
 def test_a_master_that_is_no_time_is_not_taken_for_one(tmp_path, master, described):
-    path = tmp_path / "a.mf4"
-    with MDF() as file:
-        file.append([Signal(F, T, name="force", unit="N", master_metadata=master)])
-        file.append([Signal(F, T, name="place", unit="mm")])
-        file.save(path)
+    force = Signal(F, T, name="force", unit="N", master_metadata=master)
+    path = save(tmp_path / "a.mf4", [force], [Signal(F, T, name="place", unit="mm")])
     with pytest.raises(InputError, match=f"clock of the channels is {described}; .*rate_Hz"):
         ask(path, "time", "force")
     with pytest.raises(InputError, match=f"clock of the channels is {described}, a time in s;"):
@@ -109,10 +107,7 @@ def test_the_unit_of_the_master_counts(tmp_path, version, described, unit):
 
 
 def test_complex_samples_are_refused(tmp_path):
-    path = tmp_path / "a.mf4"
-    with MDF() as file:
-        file.append([Signal(F + 1j, T, name="force", unit="N")])
-        file.save(path)
+    path = save(tmp_path / "a.mf4", [Signal(F + 1j, T, name="force", unit="N")])
     with pytest.raises(InputError, match="column force holds complex128; expected real numbers"):
         ask(path, "force")
 
@@ -135,4 +130,4 @@ def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, capfd, kept
 def test_the_missing_package_is_named(path, monkeypatch):
     monkeypatch.setitem(sys.modules, "asammdf", None)
     with pytest.raises(InputError, match=r"install 'tsas\[mdf\]'"):
-        mdf.read(path, ReadOptions(), ["place"])
+        ask(path, "place")

@@ -68,21 +68,18 @@ def test_numbers_come_back(tmp_path, name, write, time, force):
         assert table.units[force] == "N"
 
 
-def test_dates_have_a_unit_of_their_own(tmp_path):
+def test_dates_have_a_unit_of_their_own_and_text_among_numbers_is_named(tmp_path):
     as_feather(tmp_path / "a.feather")
     table = read(tmp_path / "a.feather", ReadOptions(), ["when"])
-    assert table.units == {"when": "s"}
-    assert table.typed == {"when"}
+    assert (table.units, table.typed) == ({"when": "s"}, {"when"})
+    with pytest.raises(InputError, match="column w holds 'a'"):
+        read(tmp_path / "a.feather", ReadOptions(), ["w"])
 
 
-def test_text_of_hdf5_is_the_header(tmp_path):
-    hdf5(tmp_path / "a.h5")
-    assert read(tmp_path / "a.h5", ReadOptions(), ["bench/t"]).header == ("operator = M",)
-
-
-def test_links_and_objects_are_no_columns(tmp_path):
+def test_text_of_hdf5_is_the_header_and_links_and_objects_are_no_columns(tmp_path):
     hdf5(tmp_path / "a.h5")
     npz(tmp_path / "a.npz")
+    assert read(tmp_path / "a.h5", ReadOptions(), ["bench/t"]).header == ("operator = M",)
     assert not {"link", "elsewhere", "word"} & set(names(tmp_path / "a.h5", ReadOptions()))
     assert "objects" not in names(tmp_path / "a.npz", ReadOptions())
 
@@ -92,19 +89,6 @@ def test_data_in_another_file_are_refused(tmp_path):
         file.create_dataset("x", (5,), "f8", external=[(str(tmp_path / "passwords"), 0, 40)])
     with pytest.raises(InputError, match="data of x are in another file"):
         read(tmp_path / "a.h5", ReadOptions(), ["x"])
-
-
-def test_text_among_the_numbers_is_named(tmp_path):
-    as_feather(tmp_path / "a.feather")
-    with pytest.raises(InputError, match="column w holds 'a'"):
-        read(tmp_path / "a.feather", ReadOptions(), ["w"])
-
-
-@pytest.mark.parametrize("name", ["a.h5", "a.npz", "a.npy", "a.feather"])
-def test_damage_is_one_line(tmp_path, name):
-    (tmp_path / name).write_bytes(b"nothing that a reader knows")
-    with pytest.raises(InputError, match="cannot be read as"):
-        names(tmp_path / name, ReadOptions())
 
 
 def test_zeros_that_fill_the_memory_are_refused(tmp_path):

@@ -2,20 +2,51 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 import tsas_cli as tsas
 from tests.drives import STIFF, columns, speeds
-from tests.recordings.quality.copies.made import (
-    dataset,
-    later,
-    on_spline,
-    recorded,
-    resampled,
-    rounded,
-    rows,
-)
+from tests.recordings.quality.bench import Bench
+from tests.recordings.quality.bench import columns as sensed
 from tsas_cli.recordings import pieces
+from tsas_cli.recordings.dataset import read_dataset
 from tsas_studies.challenge.rig.drive import Gear
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
+
+CONDITIONS = {"sheath_length_mm": 785.4, "total_bend_rad": 3.1416, "preload_N": 25.0}
+
+
+def dataset(folder, conditions=None, **runs):
+    """Write runs, all under the same conditions but for some, and open them."""
+    by_run = conditions or {}
+    made = [Run(name, c, CONDITIONS | by_run.get(name, {})) for name, c in runs.items()]
+    return read_dataset(write_dataset(folder / "runs", made))
+
+
+def recorded(seed=0, **bench):
+    return sensed(Bench(**{"rate_Hz": 100.0, "seed": seed, **bench}))
+
+
+def rows(run, *between):
+    return {name: values[slice(*between)] for name, values in run.items()}
+
+
+def later(run, by_s):
+    return run | {"time_s": run["time_s"] + by_s}
+
+
+def resampled(run, rate_Hz, *, begin_s=0.003, curve=np.interp):
+    time_s = np.arange(begin_s, run["time_s"][-1], 1.0 / rate_Hz)
+    return {n: curve(time_s, run["time_s"], v) for n, v in run.items()} | {"time_s": time_s}
+
+
+def on_spline(at, time_s, values):
+    return CubicSpline(time_s, values)(at)
+
+
+def rounded(run, digits):
+    return {n: v if n == "time_s" else np.round(v, digits) for n, v in run.items()}
+
 
 A, OTHER = recorded(1), recorded(2)
 N, T = A["time_s"].size, A["time_s"][-1]
@@ -23,10 +54,18 @@ DRIVEN = ("time_s", "x_in_mm", "f_in_N")
 HALF, PART = rows(A, 0, 1000), rows(A, 700, N)
 
 
-def reported(data):
+def copies(data):
     """Return severity, run and sentence of each finding of the check."""
     found = [f for f in tsas.check(data).findings if f.code == "copies"]
     return [(f.severity, f.run, f.sentence) for f in found]
+
+
+@pytest.fixture
+def reported(tmp_path_factory):
+    """Return a function that checks a dataset of runs, some under other conditions."""
+    return lambda *conditions, **runs: copies(
+        dataset(tmp_path_factory.mktemp("made"), *conditions, **runs)
+    )
 
 
 ALL = "holds the samples of run a"
@@ -54,71 +93,65 @@ LESS = {
 
 
 @pytest.mark.parametrize("kind", [*SAME, *LESS])
-def test_a_copy_is_found(tmp_path, kind):
+def test_a_copy_is_found(reported, kind):
     copy, sentence = (SAME | LESS)[kind]
-    assert reported(dataset(tmp_path, a=A, b=copy, c=OTHER)) == [("warning", "b", sentence)]
+    assert reported(a=A, b=copy, c=OTHER) == [("warning", "b", sentence)]
 
 
 @pytest.mark.parametrize("kind", LESS)
-def test_what_tells_less_is_the_copy_though_it_comes_first(tmp_path, kind):
+def test_what_tells_less_is_the_copy_though_it_comes_first(reported, kind):
     copy, sentence = LESS[kind]
-    assert reported(dataset(tmp_path, b=copy, c=OTHER, a=A)) == [("warning", "b", sentence)]
+    assert reported(b=copy, c=OTHER, a=A) == [("warning", "b", sentence)]
 
 
-def test_the_end_of_one_run_is_the_beginning_of_another(tmp_path):
-    found = reported(dataset(tmp_path, a=HALF, b=later(PART, -7.0), c=OTHER))
+def test_the_end_of_one_run_is_the_beginning_of_another(reported):
+    found = reported(a=HALF, b=later(PART, -7.0), c=OTHER)
     sentence = "holds, from 0 s to 2.99 s, the samples of run a from 7 s to 9.99 s"
     assert found == [("warning", "b", sentence)]
 
 
-def test_two_runs_share_a_stretch_on_different_clocks(tmp_path):
+def test_two_runs_share_a_stretch_on_different_clocks(reported):
     slower = resampled(PART, 61.7, begin_s=7.01)
     for runs in ({"a": HALF, "b": slower}, {"b": slower, "a": HALF}):
-        ((_, run, sentence),) = reported(dataset(tmp_path, **runs))
+        ((_, run, sentence),) = reported(**runs)
         assert run == "b"
         times = "from 7.01 s to 9.97596 s"
         assert sentence == f"holds, {times}, the samples of run a {times}, resampled at 61.7 Hz"
 
 
-def test_the_copies_under_other_conditions_are_an_error(tmp_path):
-    data = dataset(tmp_path, {"b": {"total_bend_rad": 1.0}}, a=A, b=later(A, 1.0))
-    ((severity, run, sentence),) = reported(data)
+def test_the_copies_under_other_conditions_are_an_error(reported):
+    other = {"b": {"total_bend_rad": 1.0}}
+    ((severity, run, sentence),) = reported(other, a=A, b=later(A, 1.0))
     assert (severity, run) == ("error", "b")
     assert sentence.endswith(", but the manifest says total_bend_rad = 1 here and 3.1416 there")
-    rounded_bend = dataset(
-        tmp_path / "rounded", {"b": {"total_bend_rad": 3.14}}, a=A, b=later(A, 1.0)
-    )
-    assert [severity for severity, *_ in reported(rounded_bend)] == ["warning"]
+    found = reported({"b": {"total_bend_rad": 3.14}}, a=A, b=later(A, 1.0))
+    assert [severity for severity, *_ in found] == ["warning"]
 
 
-def test_a_slow_channel_is_compared_where_it_was_recorded(tmp_path):
-    """The drive is commanded, the same in every repeat; only the slow force tells them apart."""
-
+def test_a_slow_channel_is_compared_where_it_was_recorded(reported):
     def slow(seed):
         run = recorded(seed, noise_mm=0.0)
         force = np.where(np.arange(N) % 10, np.nan, run["f_in_N"])
         return {"time_s": run["time_s"], "x_in_mm": run["x_in_mm"], "f_in_N": force}
 
-    assert reported(dataset(tmp_path, a=slow(1), b=rows(slow(1), 200, None)))
-    assert not reported(dataset(tmp_path / "repeats", a=slow(1), b=rows(slow(2), 200, None)))
+    assert reported(a=slow(1), b=rows(slow(1), 200, None))
+    assert not reported(a=slow(1), b=rows(slow(2), 200, None))
 
 
-def test_what_only_one_run_records_is_evidence(tmp_path):
+def test_what_only_one_run_records_is_evidence(reported):
     """One recording in two files, each with a sensor of its own beside the drive."""
-    drive = {n: A[n] for n in ("time_s", "x_in_mm")}
-    assert not reported(
-        dataset(tmp_path, a=drive | {"f_in_N": A["f_in_N"]}, b=drive | {"f_out_N": A["f_out_N"]})
-    )
+    near, far = ({n: A[n] for n in ("time_s", "x_in_mm", force)} for force in ("f_in_N", "f_out_N"))
+    assert not reported(a=near, b=far)
 
 
-def test_a_long_recording_is_searched_in_pieces(tmp_path, monkeypatch):
+def test_a_long_recording_is_searched_in_pieces(reported, monkeypatch):
     monkeypatch.setattr(pieces, "MOST_ROWS", 300)
-    found = reported(dataset(tmp_path, a=A, b=later(rows(A, 250, 1400), 3.0), c=OTHER))
+    found = reported(a=A, b=later(rows(A, 250, 1400), 3.0), c=OTHER)
     assert found == [("warning", "b", "holds the samples of run a from 2.5 s to 13.99 s")]
 
 
-def test_each_run_is_held_against_one_original(tmp_path):
-    found = reported(dataset(tmp_path, a=A, b=A, c=later(A, 1.0), d=rows(A, 100, 800), e=OTHER))
+def test_each_run_is_held_against_one_original(reported):
+    found = reported(a=A, b=A, c=later(A, 1.0), d=rows(A, 100, 800), e=OTHER)
     assert [run for _, run, _ in found] == ["b", "c", "d"]
     assert all("of run a" in sentence for *_, sentence in found)
 
@@ -135,19 +168,14 @@ def test_runs_that_nothing_can_be_told_of_are_said_to_be(tmp_path):
 def test_a_run_that_cannot_be_read_hides_no_copy(tmp_path):
     data = dataset(tmp_path, a=A, b=OTHER, c=later(A, 1.0))
     (tmp_path / "runs" / "runs" / "b.parquet").write_bytes(b"nothing")
-    assert [run for _, run, _ in reported(data)] == ["c"]
+    assert [run for _, run, _ in copies(data)] == ["c"]
 
 
 SENSORS = {
     "fine": {},
     "stepped": {"step_mm": 0.01, "step_N": 0.1},
     "coarse": {"step_mm": 0.1, "step_N": 1.0},
-    "noise hidden by the steps": {
-        "noise_mm": 1e-3,
-        "step_mm": 0.05,
-        "noise_N": 0.01,
-        "step_N": 0.5,
-    },
+    "noise hidden": {"noise_mm": 1e-3, "step_mm": 0.05, "noise_N": 0.01, "step_N": 0.5},
     "commanded": {"noise_mm": 0.0, "step_N": 0.2},
 }
 
@@ -159,25 +187,25 @@ SENSORS = {
         *((shape, "coarse") for shape in ("sine", "nested", "triangle")),
     ],
 )
-def test_true_repeats_are_never_accused(tmp_path, shape, sensors):
+def test_true_repeats_are_never_accused(reported, shape, sensors):
     """Five runs of one command, begun at the same moment of the clock."""
     runs = {f"r{k}": recorded(10 + k, shape=shape, **SENSORS[sensors]) for k in range(5)}
-    assert not reported(dataset(tmp_path, **runs))
+    assert not reported(**runs)
     two = {name: {n: c[n] for n in ("time_s", "x_in_mm", "f_in_N")} for name, c in runs.items()}
-    assert not reported(dataset(tmp_path / "two", **two))
+    assert not reported(**two)
 
 
-def test_ripple_that_every_repeat_shows_is_no_copy(tmp_path):
+def test_ripple_that_every_repeat_shows_is_no_copy(reported):
     phase = np.arange(N) * 0.37 * 2.0 * np.pi
     ripple = {"x_in_mm": 0.1, "x_out_mm": 0.1, "f_in_N": 1.0, "f_out_N": 1.0}
     runs = {
         f"r{k}": {n: v + ripple.get(n, 0.0) * np.sin(phase) for n, v in recorded(k).items()}
         for k in range(4)
     }
-    assert not reported(dataset(tmp_path, **runs))
+    assert not reported(**runs)
 
 
-def test_a_rest_is_no_evidence_of_a_copy(tmp_path):
+def test_a_rest_is_no_evidence_of_a_copy(reported):
     """Before and after another motion each, both stand still where the encoder reads zero."""
     still = {n: np.full(2000, 25.0 if n.endswith("N") else 0.0) for n in A}
 
@@ -185,32 +213,30 @@ def test_a_rest_is_no_evidence_of_a_copy(tmp_path):
         both = {n: np.concatenate((still[n], np.round(v, 1), still[n])) for n, v in run.items()}
         return both | {"time_s": np.arange(both["time_s"].size) / 100.0}
 
-    assert not reported(dataset(tmp_path, a=rested(A), b=rested(recorded(3, shape="triangle"))))
+    assert not reported(a=rested(A), b=rested(recorded(3, shape="triangle")))
 
 
-def test_the_coarse_copy_is_found_all_the_same(tmp_path):
+def test_the_coarse_copy_is_found_all_the_same(reported):
     coarse = recorded(1, shape="dwells", **SENSORS["coarse"])
-    assert reported(dataset(tmp_path, a=coarse, b=later(rows(coarse, 100, None), 0.5)))
+    assert reported(a=coarse, b=later(rows(coarse, 100, None), 0.5))
 
 
-def test_runs_computed_without_noise_are_copies_where_they_agree(tmp_path):
+def test_runs_computed_without_noise_are_copies_where_they_agree(reported):
     quiet = {"noise_mm": 0.0, "noise_N": 0.0}
     same = {"a": recorded(1, **quiet), "b": later(recorded(2, **quiet), 1.0)}
-    assert [run for _, run, _ in reported(dataset(tmp_path, **same))] == ["b"]
+    assert [run for _, run, _ in reported(**same)] == ["b"]
     # Under other conditions a model may compute the same: that contradicts nothing.
-    data = dataset(tmp_path / "other", {"b": {"total_bend_rad": 1.0}}, **same)
-    assert [severity for severity, *_ in reported(data)] == ["warning"]
-    assert not reported(
-        dataset(tmp_path / "two", a=same["a"], b=recorded(1, shape="triangle", **quiet))
-    )
+    found = reported({"b": {"total_bend_rad": 1.0}}, **same)
+    assert [severity for severity, *_ in found] == ["warning"]
+    assert not reported(a=same["a"], b=recorded(1, shape="triangle", **quiet))
 
 
 @pytest.mark.parametrize("name", ["paper-groups", "drive-chirp"])
 def test_the_shipped_datasets_hold_no_copies(name):
-    assert not reported(f"datasets/{name}")
+    assert not copies(f"datasets/{name}")
 
 
-def test_a_command_beside_a_coarse_force_is_repeated_by_every_repeat(tmp_path):
+def test_a_command_beside_a_coarse_force_is_repeated_by_every_repeat(reported):
     """The force takes a dozen levels: in repeats single samples differ, but for those it is one."""
 
     def repeat(k):
@@ -218,15 +244,15 @@ def test_a_command_beside_a_coarse_force_is_repeated_by_every_repeat(tmp_path):
         run["f_in_N"][100 + k] += 5.0
         return {name: run[name] for name in DRIVEN}
 
-    assert not reported(dataset(tmp_path, **{f"r{k}": repeat(k) for k in range(3)}))
+    assert not reported(**{f"r{k}": repeat(k) for k in range(3)})
 
 
-def test_a_piece_of_a_drive_that_is_commanded_in_steps_is_found(tmp_path):
+def test_a_piece_of_a_drive_that_is_commanded_in_steps_is_found(reported):
     """The command takes few levels, by which no sample is told from others."""
     time_s, speed = speeds(1)["steps"]
 
     def drive(seed):
         return columns(STIFF, Gear(), time_s, speed, seed)
 
-    found = reported(dataset(tmp_path, a=drive(1), b=rows(drive(1), 1000, 4000), c=drive(2)))
+    found = reported(a=drive(1), b=rows(drive(1), 1000, 4000), c=drive(2))
     assert found == [("warning", "b", "holds the samples of run a from 2 s to 7.998 s")]

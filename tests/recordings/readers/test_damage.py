@@ -1,0 +1,41 @@
+"""What is no file of its format, or only the beginning of one, is one line that names the file."""
+
+import gzip
+import lzma
+
+import pytest
+
+from tsas_cli.recordings.readers import names
+from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.support.errors import InputError
+
+NOTHING = b"nothing that a reader knows"
+TEXT = b"t,f\n0,1\n0.5,2\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        *(
+            (f"a.{suffix}", NOTHING, "cannot be read as")
+            for suffix in ("mcap", "bag", "db3", "h5", "npz", "npy", "feather")
+        ),
+        *(
+            (f"a.{suffix}", b"PK\x03\x04 nothing", "cannot be read as a spreadsheet")
+            for suffix in ("xlsx", "xls", "ods")
+        ),
+        ("a.tdms", NOTHING, "holds no channel of numbers"),
+        ("a.lvm", TEXT, "has no"),
+        ("a.csv.gz", NOTHING, r"cannot be read as a \.gz file"),
+        ("a.csv.xz", lzma.compress(TEXT)[:-20], r"cannot be read as a \.xz file"),
+        ("a.zip", b"PK nothing", r"cannot be read as a \.zip file"),
+        ("a.gz", gzip.compress(TEXT, mtime=0), r"unknown file format \(no suffix\) inside"),
+        ("a.csv.gz", gzip.compress(b"", mtime=0), "is empty"),
+    ],
+)
+def test_damage_is_one_line(tmp_path, name, content, message):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=message) as raised:
+        names(tmp_path / name, ReadOptions())
+    assert str(tmp_path / name) in raised.value.line()
+    assert "\n" not in raised.value.line()
