@@ -44,19 +44,11 @@ def folders(tmp_path_factory):
 
 
 @pytest.fixture
-def run(here, monkeypatch, tmp_path):
-    """Call the command line here; only for calls that end by themselves."""
+def refused(refused_here, monkeypatch, tmp_path):
+    """Call the command here, which ends by itself."""
     monkeypatch.setenv("CI", "true")
     monkeypatch.setenv("TSAS_STATE_DIR", str(tmp_path))
-    return here
-
-
-def refused(result):
-    """Return the one line that a refused call prints."""
-    code, out, err = result
-    assert (code, out) == (2, "")
-    assert err.count("\n") == 1
-    return err
+    return lambda *words: refused_here("view", *words)
 
 
 def read(address):
@@ -91,10 +83,10 @@ def test_the_page_is_served_here_alone_and_ends_without_a_trace(stream, tmp_path
         assert alive(processes) == set()
 
 
-def test_a_taken_port_is_refused(stream, run):
+def test_a_taken_port_is_refused(stream, refused):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        line = refused(run("view", stream, "--web", "--port", port))
+        line = refused(stream, "--web", "--port", port)
     assert re.match(rf"tsas: --port: port {port} cannot be had \(.*\); choose", line)
 
 
@@ -134,17 +126,6 @@ def test_a_stream_in_the_folder_is_what_is_shown(folders, stream, tmp_path):
         assert ended(process)[0] == 0
 
 
-def spoilt(name, stream, folder):
-    """Return a path that cannot be shown."""
-    path = folder / name
-    contents = {"junk": b"junk" * 99, "empty": b"", "cut": stream.read_bytes()[:-20_000]}
-    if name == "folder":
-        path.mkdir()
-    elif name in contents:
-        path.write_bytes(contents[name])
-    return path
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [
@@ -155,22 +136,27 @@ def spoilt(name, stream, folder):
         ("folder", "neither a dataset nor what a stage wrote"),
     ],
 )
-def test_what_cannot_be_shown_is_one_line(stream, tmp_path, run, name, message):
-    path = spoilt(name, stream, tmp_path)
-    line = refused(run("view", path))
+def test_what_cannot_be_shown_is_one_line(stream, tmp_path, refused, name, message):
+    path = tmp_path / name
+    contents = {"junk": b"junk" * 99, "empty": b"", "cut": stream.read_bytes()[:-20_000]}
+    if name == "folder":
+        path.mkdir()
+    elif name in contents:
+        path.write_bytes(contents[name])
+    line = refused(path)
     assert line.startswith(f"tsas: {path}: ")
     assert message in line
 
 
-def test_a_file_among_folders_is_refused(folders, stream, run):
-    assert f"{stream}: is a file among others" in refused(run("view", folders / "dataset", stream))
+def test_a_file_among_folders_is_refused(folders, stream, refused):
+    assert f"{stream}: is a file among others" in refused(folders / "dataset", stream)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
-def test_a_screen_that_cannot_be_reached_is_one_line(stream, run, monkeypatch):
+def test_a_screen_that_cannot_be_reached_is_one_line(stream, refused, monkeypatch):
     for name in SCREENS:
         monkeypatch.setenv(name, ":4711" if name == "DISPLAY" else "")
-    line = refused(run("view", stream))
+    line = refused(stream)
     assert line.startswith("tsas: the viewer has failed (")
     assert "tsas view --web" in line
 
@@ -198,8 +184,8 @@ def test_a_window_opens_where_there_is_a_screen(stream, tmp_path):
             screen.terminate()
 
 
-def test_without_the_viewer_it_is_reported_what_to_install(stream, run, monkeypatch):
+def test_without_the_viewer_it_is_reported_what_to_install(stream, refused, monkeypatch):
     monkeypatch.setattr("tsas_cli.reporting.viewer.child.find_spec", lambda name: None)
-    line = refused(run("view", stream, "--web"))
+    line = refused(stream, "--web")
     assert line.startswith("tsas: package rerun-sdk: the viewer's program is not installed")
     assert "pip install" in line

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,24 +16,32 @@ from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.writing import write_dataset, write_parquet
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.tracking.settings import Settings
 
 A = 0.125 * math.pi
 NOISE = 0.1
 
 
+@contextmanager
+def edited(path: Path):
+    """Yield what a JSON file holds, and write what becomes of it."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    yield content
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
 def make_dataset(folder: Path, ids=("a", "b"), *, name="bench", samples=4000) -> Path:
     """Write a dataset of sines through a play operator; return its folder."""
     folder.mkdir(parents=True)
+    told = {"sheath_length_mm": 785.0, "total_bend_rad": math.pi, "preload_N": 25.0}
     runs = [
-        Run(
-            id=run_id,
-            file=f"runs/{number}.parquet",
-            sha256="0" * 64,
-            sheath_length_mm=785.0,
-            total_bend_rad=math.pi,
-            preload_N=25.0,
-        )
+        Run(id=run_id, file=f"runs/{number}.parquet", sha256="0" * 64, **told)
         for number, run_id in enumerate(ids)
     ]
     manifest = Manifest(format=1, name=name, kind="simulated", run=tuple(runs))
@@ -88,25 +97,16 @@ def source(dataset: Path, stage: Path) -> dict:
 
 
 def parameter(name, value, half_width=None, unit="", **more):
-    interval = (
-        {}
-        if half_width is None
-        else {
-            "stderr": half_width / 1.96,
-            "interval_low": value - half_width,
-            "interval_high": value + half_width,
-        }
-    )
-    origin = "data sheet" if half_width is None else "fitted"
-    return {"name": name, "run": None, "value": value, "unit": unit, "origin": origin} | (
-        interval | more
-    )
+    one = {"name": name, "run": None, "value": value, "unit": unit, "origin": "data sheet"}
+    if half_width is not None:
+        one |= {"interval_low": value - half_width, "interval_high": value + half_width}
+        one |= {"stderr": half_width / 1.96, "origin": "fitted"}
+    return one | more
 
 
 def make_check(dataset: Path, folder: Path, findings=()) -> Path:
     usual = {"column": None, "remedy": "", "first_s": None}
-    content = {"format": 1, "stage": "check", "findings": [usual | one for one in findings]}
-    return _write(folder, "check.json", content | {"dataset": source(dataset, folder)})
+    return _write(folder, CheckFile, dataset, findings=[usual | one for one in findings])
 
 
 def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
@@ -134,10 +134,6 @@ def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
         )
     ]
     content = {
-        "format": 1,
-        "stage": "calibrate",
-        "version": "0.1.0",
-        "dataset": source(dataset, folder),
         "segments": {r.run.id: segments(r.time_s) for r in read_dataset(dataset)},
         "stiffness": stiffness,
         "parameters": [
@@ -148,7 +144,7 @@ def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
         "fit": {"converged": True, "message": "", "evaluations": 9, "solver": "trf"},
         "channels": {},
     }
-    return _write(folder, "calibration.json", content)
+    return _write(folder, CalibrationFile, dataset, **content)
 
 
 def make_simulation(dataset: Path, folder: Path) -> Path:
@@ -164,16 +160,8 @@ def make_simulation(dataset: Path, folder: Path) -> Path:
             "unconverged_samples": 0,
             "channels": {"f_in_N": channel, "f_out_N": channel},
         }
-    content = {
-        "format": 1,
-        "stage": "simulate",
-        "version": "0.1.0",
-        "dataset": source(dataset, folder),
-        "model": {"file": "data sheet"},
-        "dynamics": "static",
-        "runs": runs,
-    }
-    return _write(folder, "simulation.json", content)
+    model = {"file": "data sheet"}
+    return _write(folder, SimulationFile, dataset, model=model, dynamics="static", runs=runs)
 
 
 SIGNATURES = {  # how visible, and which look alike
@@ -213,10 +201,6 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
     named = verdict in {"named", "ambiguous", "partly"}
     left = verdict in {"unexplained", "partly"}
     content = {
-        "format": 1,
-        "stage": "diagnose",
-        "version": "0.1.0",
-        "dataset": source(dataset, folder),
         "verdict": verdict,
         "reason": REASONS[verdict],
         "named": [_cause(rivals=verdict == "ambiguous")] if named else [],
@@ -252,7 +236,7 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
             "cannot_tell": ["The preload stays open: no run is at <rest>."],
             "solver": "closed form",
         }
-    return _write(folder, "diagnosis.json", content | more)
+    return _write(folder, DiagnosisFile, dataset, **content | more)
 
 
 def write_predictions(dataset: Path, folder: Path, wrong) -> Path:
@@ -281,16 +265,16 @@ def make_prediction(dataset: Path, folder: Path) -> Path:
 
 
 def _cause(*, rivals):
-    length = {"value": 152.04, "stderr": 3.1, "unit": "mm", "at_bound": False}
-    distal = {"value": 0.0, "stderr": None, "unit": "mm", "at_bound": True}
+    length = {"value": 152.04, "stderr": 3.1, "interval_low": 145.9, "interval_high": 158.1}
+    distal = dict.fromkeys(length) | {"value": 0.0}
     return {
         "effect": "free_tendon",
         "title": "Tendon outside the sheath",
         "equation": "x_in − x_sheath = (T0 − F0)·l/EA",
         "rivals": ["drive_compliance"] if rivals else [],
         "parameters": {
-            "proximal_length_mm": length | {"interval_low": 145.9, "interval_high": 158.1},
-            "distal_length_mm": distal | {"interval_low": None, "interval_high": None},
+            "proximal_length_mm": length | {"unit": "mm", "at_bound": False},
+            "distal_length_mm": distal | {"unit": "mm", "at_bound": True},
         },
         "gain_percent": 48.2,
         "gain_interval_percent": [44.9, 51.0],
@@ -399,9 +383,6 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
     manifest = Manifest(format=1, name="tracking", kind="simulated", run=tuple(runs))
     write_dataset(folder, manifest, tables)
     content = {
-        "format": 1,
-        "stage": "track",
-        "version": "0.1.0",
         "model": {"file": "data sheet"},
         "plant": {"file": "rig.toml", "sha256": "ab" * 32},
         "drive": {"file": "drive.toml", "sha256": "cd" * 32},
@@ -419,7 +400,7 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
         "results": results,
         "notes": ["pid-disturbed: the motor is at its <limit>"],
     }
-    return _write(folder, "tracking.json", content | more)
+    return _write(folder, TrackingFile, **content | more)
 
 
 def _result(controller, condition, run_id, rmse):
@@ -472,26 +453,21 @@ CASES = {  # case: title, hidden, named, and by controller the RMSE from data sh
 
 def make_closing(folder: Path, cases=CASES, **more) -> Path:
     """Write what `tsas close-loop` would say, without the folders of the cases."""
-    content = {
-        "format": 1,
-        "stage": "close-loop",
-        "version": "0.1.0",
-        "settings": Settings().model_dump(mode="json", by_alias=True),
-        "seeds": [3, 7],
-        "cases": [
-            {
-                "case": name,
-                "title": title,
-                "hidden": hidden,
-                "verdict": "named" if named else "sufficient",
-                "reason": "",
-                "named": named,
-                "controllers": [_closed(*row) for row in rows.items()],
-            }
-            for name, (title, hidden, named, rows) in cases.items()
-        ],
-    }
-    return _write(folder, "closing.json", content | more)
+    made = [
+        {
+            "case": name,
+            "title": title,
+            "hidden": hidden,
+            "verdict": "named" if named else "sufficient",
+            "reason": "",
+            "named": named,
+            "controllers": [_closed(*row) for row in rows.items()],
+        }
+        for name, (title, hidden, named, rows) in cases.items()
+    ]
+    settings = Settings().model_dump(mode="json", by_alias=True)
+    content = {"settings": settings, "seeds": [3, 7], "cases": made}
+    return _write(folder, ClosingFile, **content | more)
 
 
 def _closed(controller, rmse):
@@ -503,7 +479,11 @@ def _closed(controller, rmse):
     }
 
 
-def _write(folder: Path, name: str, content: dict) -> Path:
+def _write(folder: Path, kind, dataset: Path | None = None, **content) -> Path:
+    """Write what a stage says under its file's name, with what every stage says."""
+    about = {"format": 1, "stage": kind.model_fields["stage"].default, "version": "0.1.0"}
+    if dataset is not None:
+        about["dataset"] = source(dataset, folder)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / name).write_text(json.dumps(content), encoding="utf-8")
+    (folder / kind.FILE).write_text(json.dumps(about | content), encoding="utf-8")
     return folder

@@ -1,6 +1,5 @@
 """The first screen says what came out, with the numbers that it rests on."""
 
-import json
 import re
 from html import unescape
 
@@ -9,6 +8,7 @@ import pytest
 from tests.reporting.made_folders import (
     CASES,
     NOISE,
+    edited,
     make_closing,
     make_dataset,
     make_diagnosis,
@@ -157,8 +157,8 @@ def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
         "along_stroke": [1.0, 1.1],
     }
     folder = make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
-    path = folder / "diagnosis.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"verdict": "described"}))
+    with edited(folder / "diagnosis.json") as content:
+        content["verdict"] = "described"
     it = of(folder)
     assert it.verdict == "A law of unnamed origin describes what the model misses"
     assert it.numbers.endswith("nominal → extended model")

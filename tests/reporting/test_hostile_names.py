@@ -1,8 +1,8 @@
 """Names from files that look like markup, code or commands are shown as text, everywhere."""
 
-import json
 import re
 import shlex
+from contextlib import contextmanager
 from html import unescape
 from html.parser import HTMLParser
 
@@ -11,6 +11,7 @@ import pytest
 
 from tests.reporting.made_folders import (
     CASES,
+    edited,
     make_calibration,
     make_check,
     make_closing,
@@ -18,9 +19,10 @@ from tests.reporting.made_folders import (
     make_diagnosis,
     make_simulation,
     make_tracking,
+    source,
 )
 from tests.reporting.pages import chromium
-from tests.reporting.test_page import without_script
+from tests.reporting.test_page import commands_of, without_script
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, anchor
@@ -88,12 +90,12 @@ def spoiled(value, keys):
     return value
 
 
-def spoil(path, keys, more=None):
-    content = spoiled(json.loads(path.read_text()), keys)
-    if more:
-        more(content)
-    path.write_text(json.dumps(content))
-    return path.parent
+@contextmanager
+def spoil(path, *keys):
+    """Yield what a file holds, with every text under the keys replaced, to be changed further."""
+    with edited(path) as content:
+        content |= spoiled(content, keys)
+        yield content
 
 
 @pytest.fixture(scope="module")
@@ -102,54 +104,29 @@ def hostile(tmp_path_factory):
     root = tmp_path_factory.mktemp("hostile") / "$(touch x) '<i>"
     dataset = make_dataset(root / "data <b> & 'x'", (RUN, "plain"), samples=400)
     read = read_dataset(dataset)
-    (root / "again").mkdir()
     text = EVIL.replace("\ud800", "")  # which TOML cannot hold
-    manifest = read.manifest.model_copy(
-        update={"name": text, "description": text, "license": text, "source": text}
-    )
-    tables = {
-        r.run.id: pa.table({**{k: r.columns[k] for k in r.columns}, text: r.time_s}) for r in read
-    }
-    write_dataset(root / "again", manifest, tables)
+    texts = dict.fromkeys(("name", "description", "license", "source"), text)
+    manifest = read.manifest.model_copy(update=texts)
+    tables = {r.run.id: pa.table({**r.columns, text: r.time_s}) for r in read}
     dataset = root / "again"
-    check = make_check(
-        dataset,
-        root / "check",
-        [
-            {
-                "code": EVIL,
-                "severity": "error",
-                "run": EVIL,
-                "column": EVIL,
-                "sentence": EVIL,
-                "remedy": EVIL,
-            }
-        ],
-    )
+    dataset.mkdir()
+    write_dataset(dataset, manifest, tables)
+    keys = ("code", "run", "column", "sentence", "remedy")
+    check = make_check(dataset, root / "check", [{"severity": "error"} | dict.fromkeys(keys, EVIL)])
     calibrate = make_calibration(dataset, root / "calibrate", [EVIL])
-    spoil(calibrate / "calibration.json", {"unit", "note", "origin", "version", "name", "message"})
-    content = json.loads((calibrate / "calibration.json").read_text())
-    original = json.loads((check / "check.json").read_text())["dataset"]
-    content["dataset"] = original
-    (calibrate / "calibration.json").write_text(json.dumps(content))
+    keys = ("unit", "note", "origin", "version", "name", "message")
+    with spoil(calibrate / "calibration.json", *keys) as content:
+        content["dataset"] = source(dataset, calibrate)
     simulate = make_simulation(dataset, root / "simulate")
-
-    def own(content):
+    with spoil(simulate / "simulation.json", "unit", "version") as content:
         content["model"] = {"file": EVIL, "sha256": "ab" * 32}
-        content["dataset"] = original
         content["notes"] = [EVIL]
+        cleaned = {"method": EVIL, "window_s": 1, "noise": 1, "unit": EVIL, "reversals": 1}
         for run in content["runs"].values():
-            run["solver"] = run["start"] = EVIL
-            run["conditioning"] = {
-                EVIL: {"method": EVIL, "window_s": 1, "noise": 1, "unit": EVIL, "reversals": 1}
-            }
-
-    spoil(simulate / "simulation.json", {"unit", "version"}, own)
+            run |= {"solver": EVIL, "start": EVIL, "conditioning": {EVIL: cleaned}}
     diagnose = make_diagnosis(dataset, root / "diagnose", "named")
-
-    def caused(content):
-        content["dataset"] = original
-        content["verdict"] = "named"
+    keys = ("unit", "reason", "next_experiment", "sentence", "label", "version")
+    with spoil(diagnose / "diagnosis.json", *keys) as content:
         (cause,) = content["named"]
         cause |= {"effect": EVIL, "title": EVIL, "equation": EVIL, "rivals": [EVIL, EVIL + "2"]}
         cause["parameters"] = {EVIL: next(iter(cause["parameters"].values()))}
@@ -159,12 +136,6 @@ def hostile(tmp_path_factory):
             signals = {EVIL: maps[when]["f_in_N"]["phase"], **maps[when]["f_in_N"]}
             maps[when] = {EVIL: signals}
         content["signatures"]["effects"][0] = EVIL
-
-    spoil(
-        diagnose / "diagnosis.json",
-        {"unit", "reason", "next_experiment", "sentence", "label", "version"},
-        caused,
-    )
     return page(read_inputs([dataset, check, calibrate, simulate, diagnose]))
 
 
@@ -192,27 +163,22 @@ def test_the_title_is_one_line_of_text(hostile):
 
 
 def test_commands_are_quoted_for_the_shell(hostile):
-    commands = unescape(re.search("<pre[^>]*><code>(.*?)</code>", hostile, re.DOTALL)[1])
-    for line in commands.strip().splitlines():
+    for line in commands_of(hostile).strip().splitlines():
         words = shlex.split(line)
         assert words[0] == "tsas"
         assert not {"touch", "x)", "&"} & set(words)
 
 
 def test_a_page_of_tracking_and_of_closing_is_harmless_too(tmp_path):
-    changed = {"file", "origin", "quantity", "shape", "version"}
     tracked = make_tracking(tmp_path / "tracked")
-
-    def own(content):
+    keys = ("file", "origin", "quantity", "shape", "version")
+    with spoil(tracked / "tracking.json", *keys) as content:
         content["notes"] = [EVIL]
         for result in content["results"]:
             result["controller"] += EVIL
             result["condition"] += EVIL
         content["conditions"] = {k + EVIL: v for k, v in content["conditions"].items()}
-
-    spoil(tracked / "tracking.json", changed, own)
-    text = page(read_inputs([tracked]))
-    assert SHOWN in harmless(text)
+    assert SHOWN in harmless(page(read_inputs([tracked])))
     title, hidden, _, rows = CASES["bend"]
     cases = {EVIL: (EVIL + title, {EVIL: 1.0} | hidden, [{"effect": EVIL, "rivals": [EVIL]}], {
         name + EVIL: rmse for name, rmse in rows.items()

@@ -1,12 +1,10 @@
 """The section of the simulations: each model over the measurement, and which models there are."""
 
-import hashlib
-import json
-
 import numpy as np
 import pytest
 
 from tests.reporting.made_folders import (
+    edited,
     make_calibration,
     make_dataset,
     make_diagnosis,
@@ -22,6 +20,7 @@ from tsas_cli.reporting import simulation
 from tsas_cli.reporting.calibration import parameters
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.simulated import rms, simulated_models
+from tsas_cli.support.files import sha256_of
 
 
 @pytest.fixture(scope="module")
@@ -60,10 +59,8 @@ def test_nominal_and_extended_model_stand_beside_the_simulation(dataset, diagnos
 
 def test_a_simulation_of_the_extended_model_is_not_shown_twice(dataset, diagnosed, tmp_path):
     folder = make_simulation(dataset, tmp_path / "simulate")
-    content = json.loads((folder / "simulation.json").read_text())
-    digest = hashlib.sha256((diagnosed / EXTENDED_MODEL).read_bytes()).hexdigest()
-    content["model"] = {"file": "m.toml", "sha256": digest}
-    (folder / "simulation.json").write_text(json.dumps(content))
+    with edited(folder / "simulation.json") as content:
+        content["model"] = {"file": "m.toml", "sha256": sha256_of(diagnosed / EXTENDED_MODEL)}
     labels = [model.label for model in simulated_models(read_inputs([diagnosed, folder]))]
     assert labels == ["nominal model", "extended model"]
 

@@ -24,12 +24,12 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.writing import write_dataset, write_parquet
+from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.seen import seen_runs
 from tsas_cli.reporting.stream.tendon import MOST, moments, sheath_of, view_of_tendon
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 VALUES = {
     "friction_coefficient": (0.125, "1"),
@@ -163,13 +163,16 @@ def view_in(*folders):
     return view_of_tendon(run)
 
 
+def simulated(folder, dataset, one):
+    """Return what a stream shows of a simulation with 20 nodes."""
+    write_model(folder / "m.toml", one, version="0.1.0", dataset={})
+    tsas.simulate(dataset, model=folder / "m.toml", out=folder / "s", nodes=20)
+    write_stream(read_inputs([folder / "s"]), folder / "s.rrd")
+    return read(folder / "s.rrd")
+
+
 def test_a_simulation_shows_its_one_model(made, tmp_path):
-    dataset = read_dataset(made / "dataset")
-    write_model(tmp_path / "m.toml", MODELS[EXTENDED], version="0.1.0", dataset={})
-    out = tmp_path / "simulate"
-    tsas.simulate(dataset, model=tmp_path / "m.toml", out=out, nodes=20)
-    write_stream(read_inputs([out]), tmp_path / "s.rrd")
-    paths = read(tmp_path / "s.rrd")
+    paths = simulated(tmp_path, made / "dataset", MODELS[EXTENDED])
     assert len(paths["/run/a/tendon/simulated/tendon"].static["LineStrips3D:strips"]) == 20
     assert "/run/a/tendon/simulated/tension" in paths
 
@@ -192,29 +195,9 @@ def test_runs_with_gaps_without_x_in_and_with_other_loads(tmp_path):
     gap["f_in_N"][800:1600] = np.nan  # all of the second stroke
     by_force = {name: values for name, values in whole.items() if name != "x_in_mm"}
     given = {"gap": (gap, "spring"), "f_in": (by_force, "spring"), "f_out": (whole, "force")}
-    runs = [
-        Run(
-            id=name,
-            file=f"runs/{name}.parquet",
-            sha256="0" * 64,
-            sheath_length_mm=785.0,
-            total_bend_rad=math.pi,
-            preload_N=25.0,
-            load=load,
-        )
-        for name, (_, load) in given.items()
-    ]
-    (tmp_path / "d").mkdir()
-    tables = {
-        name: pa.table({n: pa.array(v, from_pandas=True) for n, v in table.items()})
-        for name, (table, _) in given.items()
-    }
-    manifest = Manifest(format=1, name="odd", kind="simulated", run=tuple(runs))
-    write_dataset(tmp_path / "d", manifest, tables)
-    write_model(tmp_path / "m.toml", MODELS[NOMINAL], version="0.1.0", dataset={})
-    out = tmp_path / "s"
-    tsas.simulate(tmp_path / "d", model=tmp_path / "m.toml", out=out, nodes=20)
-    write_stream(read_inputs([out]), tmp_path / "s.rrd")
-    paths = read(tmp_path / "s.rrd")
+    told = {"sheath_length_mm": 785.0, "total_bend_rad": math.pi, "preload_N": 25.0}
+    runs = [Run(name, table, told | {"load": load}) for name, (table, load) in given.items()]
+    write_dataset(tmp_path / "d", runs, data_sheet={})
+    paths = simulated(tmp_path, tmp_path / "d", MODELS[NOMINAL])
     for name in given:
         assert len(paths[f"/run/{name}/tendon/simulated/tendon"].at()) > 150
