@@ -1,7 +1,5 @@
 import json
 
-import pytest
-
 from tsas_cli.commands.common import show
 from tsas_cli.commands.progress import progress
 
@@ -11,9 +9,7 @@ TABLES = [
 ]
 
 
-def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(capsys):
     show({}, TABLES, quiet=False, as_json=False)
     assert capsys.readouterr().out.splitlines() == [
         "two runs",
@@ -27,12 +23,12 @@ def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(
     ]
 
 
-def test_json_replaces_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_replaces_the_tables(capsys):
     show({"noise": float("nan")}, TABLES, quiet=True, as_json=True)
     assert json.loads(capsys.readouterr().out) == {"noise": None}
 
 
-def test_no_bar_is_drawn_into_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_bar_is_drawn_into_a_file(capsys):
     with progress("fit", quiet=False) as step:
         step.ahead(2)
         step()

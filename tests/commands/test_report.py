@@ -5,13 +5,7 @@ import shutil
 import pytest
 
 import tsas_cli.stages.report as report_stage
-from tests.reporting.made_folders import (
-    edited,
-    make_calibration,
-    make_check,
-    make_dataset,
-    make_simulation,
-)
+from tests.reporting import made_folders as by_hand
 from tests.reporting.test_page import commands_of
 from tsas_cli.reporting.pdf import PDF_MARK
 from tsas_cli.verifying.seal import sealed
@@ -20,10 +14,10 @@ from tsas_cli.verifying.seal import sealed
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     root = tmp_path_factory.mktemp("report")
-    dataset = make_dataset(root / "dataset", ("a",), samples=400)
-    make_check(dataset, root / "check")
-    make_calibration(dataset, root / "calibrated")
-    make_simulation(dataset, root / "simulated")
+    dataset = by_hand.make_dataset(root / "dataset", ("a",), samples=400)
+    by_hand.make_check(dataset, root / "check")
+    by_hand.make_calibration(dataset, root / "calibrated")
+    by_hand.make_simulation(dataset, root / "simulated")
     return root
 
 
@@ -93,8 +87,8 @@ def test_what_has_changed_is_refused(folder, refused, shown, file, content, says
 
 
 def test_a_simulation_of_another_length_is_refused(folder, refused):
-    other = make_dataset(folder / "longer", ("a",), samples=500)
-    simulated = make_simulation(other, folder / "other")
+    other = by_hand.make_dataset(folder / "longer", ("a",), samples=500)
+    simulated = by_hand.make_simulation(other, folder / "other")
     shutil.copy(simulated / "runs" / "a.parquet", folder / "simulated" / "runs")
     out = ("--out", folder / "r.html")
     refused(folder / "simulated", *out, says=["a.parquet", "500 rows", "400"])
@@ -143,7 +137,7 @@ def test_several_simulations_stand_beside_each_other_by_their_names(folder, here
 )
 def test_a_stage_file_that_is_not_whole_is_refused(folder, refused, spoil, message):
     path = folder / "calibrated" / "calibration.json"
-    with edited(path) as content:
+    with by_hand.edited(path) as content:
         spoil(content)
     refused(folder / "calibrated", "--out", folder / "r.html", says=[str(path), message])
 
