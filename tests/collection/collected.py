@@ -33,15 +33,12 @@ def write(folder: Path, *runs: dict[str, object], channels=("f_out_N",)) -> Path
 def diagnose(dataset: Path, out: Path, verdict: str, *causes: str, chosen=None) -> Path:
     """Write what a diagnosis of a dataset would say."""
     out.mkdir(parents=True)
+    hashes = {"dataset.toml": sha256_of(dataset / "dataset.toml")}
     content = {
         "format": 1,
         "stage": "diagnose",
         "version": "0",
-        "dataset": {
-            "name": dataset.name,
-            "folder": "..",
-            "hashes": {"dataset.toml": sha256_of(dataset / "dataset.toml")},
-        },
+        "dataset": {"name": dataset.name, "folder": "..", "hashes": hashes},
         "verdict": verdict,
         "reason": "because",
         "named": [{"effect": c, "title": c, "equation": "", "rivals": []} for c in causes],
