@@ -113,18 +113,10 @@ def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
     """Write what `tsas calibrate` would say about the made dataset."""
     theory = {"contraction": 2.338, "loosening": 1.066}
     stiffness = [
-        {
-            "run": run.id,
-            "phase": phase,
-            "km": parameter("km", km, 0.02 * km, "N/mm", run=run.id),
-            "kr": None,
-            "theory_N_per_mm": theory.get(phase, 175.1),
-            "theory_elastic_N_per_mm": None,
-            "expected_N_per_mm": km * 1.01,
-            "occurrences": 2,
-            "samples": 500,
-            "note": "",
-        }
+        {"occurrences": 2, "samples": 500, "note": "", "kr": None}
+        | {"run": run.id, "phase": phase, "expected_N_per_mm": km * 1.01}
+        | {"theory_N_per_mm": theory.get(phase, 175.1), "theory_elastic_N_per_mm": None}
+        | {"km": parameter("km", km, 0.02 * km, "N/mm", run=run.id)}
         for run in read_dataset(dataset).manifest.run
         for phase, km in (
             ("contraction", 2.33812),
@@ -194,6 +186,8 @@ REASONS = {
     "unexplained": "Something is left that no effect explains.",
     "undecided": "two strokes are too few to hold any out.",
 }
+EVIDENCE = "each of 4 runs is predicted by a fit to the others; 55 blocks count."
+LEFT = ["time_s (f_in_N swings at 3.1 Hz)", "speed_mm_per_s"]
 
 
 def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
@@ -216,23 +210,12 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
                 "f_out_N": _held_out("N", 0.08, 1.3, 1.2, 1.02),
                 "x_out_mm": _held_out("mm", 0.008, before / 3, 1.15 if named else before / 3, 1.1),
             },
-            "remainder": {
-                "unexplained": left,
-                "depends_on": ["time_s (f_in_N swings at 3.1 Hz)", "speed_mm_per_s"]
-                if left
-                else [],
-                "share_percent": 12.0 if named else 100.0,
-                "mean_square": 38.4 if left else 1.02,
-            },
+            "remainder": {"unexplained": left, "depends_on": LEFT if left else []}
+            | {"share_percent": 12.0 if named else 100.0, "mean_square": 38.4 if left else 1.02},
             "candidates": _candidates(gain=87.2 if named else 0.1),
             "signatures": _signatures(),
             "residual_map": {"before": _maps(before), "after": _maps(0.2 if named else before)},
-            "evidence": {
-                "held_out": "runs",
-                "blocks": 55,
-                "runs": 4,
-                "sentence": "each of 4 runs is predicted by a fit to the others; 55 blocks count.",
-            },
+            "evidence": {"held_out": "runs", "blocks": 55, "runs": 4, "sentence": EVIDENCE},
             "cannot_tell": ["The preload stays open: no run is at <rest>."],
             "solver": "closed form",
         }
@@ -294,15 +277,9 @@ def _held_out(unit, noise, before, after, best):
 
 def _candidates(*, gain):
     return [
-        {
-            "effects": effects,
-            "gain_percent": gain / 2**place,
-            "test_statistic": 6.0 - place,
-            "convincing": gain / 2**place > 0.5 and place < 4,
-            "mean_square": 1.02 + place,
-            "converged": place != 5,
-            "parameters": {},
-        }
+        {"effects": effects, "parameters": {}, "converged": place != 5}
+        | {"gain_percent": gain / 2**place, "test_statistic": 6.0 - place}
+        | {"mean_square": 1.02 + place, "convincing": gain / 2**place > 0.5 and place < 4}
         for place, effects in enumerate(
             [["free_tendon", "backlash"], *([name] for name in (*SIGNATURES, "bend_drift"))]
         )
@@ -355,14 +332,9 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
     time_s = np.arange(0.0, 4 * math.pi, 0.01)
     wanted = 43.0 - 18.0 * np.cos(time_s)
     x_inv = 12.0 - 12.0 * np.cos(time_s)
-    table = {
-        "time_s": time_s,
-        "x_in_mm": x_inv - 0.25 * (1.0 - np.cos(time_s)),
-        "f_out_N": wanted,
-        "motor_speed_rpm": 500.0 * np.sin(time_s),
-        "f_out_ref_N": wanted,
-        "x_inv_mm": x_inv,
-    }
+    table = {"time_s": time_s, "f_out_N": wanted, "f_out_ref_N": wanted, "x_inv_mm": x_inv}
+    table["x_in_mm"] = x_inv - 0.25 * (1.0 - np.cos(time_s))
+    table["motor_speed_rpm"] = 500.0 * np.sin(time_s)
     estimates = {
         "phi1_rpm_s3_per_mm": np.where(time_s < 2 * math.pi, 0.005, 0.1),
         "phi2_rpm_s_per_mm": 18.0 + time_s,
@@ -405,25 +377,17 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
 
 def _result(controller, condition, run_id, rmse):
     at_limit = {"mean": 12.5 if condition == "disturbed" else 0.0, "sd": 0.5}
-    return {
-        "controller": controller,
-        "condition": condition,
-        "run": run_id,
-        "scores": _scores(rmse, 0.0031) | {"at_limit_percent": at_limit},
-        "unsettled_steps": 0,
-    }
+    scores = _scores(rmse, 0.0031) | {"at_limit_percent": at_limit}
+    result = {"controller": controller, "condition": condition, "run": run_id}
+    return result | {"scores": scores, "unsettled_steps": 0}
 
 
 def _scores(rmse, spread):
-    return {
-        "rmse_N": {"mean": rmse, "sd": spread},
-        "lowest_error_N": {"mean": -2.5, "sd": 0.02},
-        "highest_error_N": {"mean": 1.5, "sd": 0.02},
-        "outside_percent": {"mean": 0.0, "sd": 0.0},
-        "effort_rpm": {"mean": 353.6, "sd": 0.1},
-        "chatter_rpm_per_s": {"mean": 1234.0, "sd": None},
-        "at_limit_percent": {"mean": 0.0, "sd": 0.5},
-    }
+    scores = {"lowest_error_N": (-2.5, 0.02), "highest_error_N": (1.5, 0.02)}
+    scores |= {"outside_percent": (0.0, 0.0), "at_limit_percent": (0.0, 0.5)}
+    scores |= {"effort_rpm": (353.6, 0.1), "chatter_rpm_per_s": (1234.0, None)}
+    scores["rmse_N"] = (rmse, spread)
+    return {name: {"mean": mean, "sd": sd} for name, (mean, sd) in scores.items()}
 
 
 CASES = {  # case: title, hidden, named, and by controller the RMSE from data sheet to true
@@ -454,15 +418,9 @@ CASES = {  # case: title, hidden, named, and by controller the RMSE from data sh
 def make_closing(folder: Path, cases=CASES, **more) -> Path:
     """Write what `tsas close-loop` would say, without the folders of the cases."""
     made = [
-        {
-            "case": name,
-            "title": title,
-            "hidden": hidden,
-            "verdict": "named" if named else "sufficient",
-            "reason": "",
-            "named": named,
-            "controllers": [_closed(*row) for row in rows.items()],
-        }
+        {"case": name, "title": title, "hidden": hidden, "reason": "", "named": named}
+        | {"verdict": "named" if named else "sufficient"}
+        | {"controllers": [_closed(*row) for row in rows.items()]}
         for name, (title, hidden, named, rows) in cases.items()
     ]
     settings = Settings().model_dump(mode="json", by_alias=True)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from tests.reporting.conftest import no_curves
 from tests.reporting.made_folders import REASONS, edited, make_dataset, make_diagnosis
-from tests.reporting.test_page import Outline, headings
+from tests.reporting.test_page import Outline, headings, rows
 from tsas_cli.effects import EFFECTS
 from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
@@ -63,13 +63,6 @@ def words(text):
 
 def labels(text):
     return [unescape(label) for label in re.findall('aria-label="([^"]*)"', text)]
-
-
-def rows(text):
-    return [
-        [unescape(cell) for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)]
-        for row in re.findall(r"<tr>(.*?)</tr>", text, re.DOTALL)
-    ]
 
 
 @pytest.mark.parametrize("verdict", REASONS)

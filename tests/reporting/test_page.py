@@ -10,27 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.reporting.made_folders import (
-    edited,
-    make_calibration,
-    make_check,
-    make_dataset,
-    make_simulation,
-)
+from tests.reporting import made_folders as by_hand
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.support.errors import InputError
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
-FINDING = {
-    "code": "time-jitter",
-    "severity": "warning",
-    "run": "a",
-    "column": "time_s",
-    "sentence": "Steps <vary>\x07 by 12 %.",
-    "remedy": "",
-    "first_s": None,
-}
+FINDING = {"code": "time-jitter", "severity": "warning", "run": "a", "column": "time_s"}
+FINDING["sentence"] = "Steps <vary>\x07 by 12 %."
 
 
 class Outline(HTMLParser):
@@ -39,6 +26,7 @@ class Outline(HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.headings, self.ids, self.addresses, self.pictures = [], [], [], [], []
+        self.tags, self.attributes, self.text = set(), [], []
         self.feed(text)
         assert self.open == []
         assert self.headings[0] == 1 not in self.headings[1:]
@@ -55,6 +43,8 @@ class Outline(HTMLParser):
             self.open.append(tag)
 
     def handle_startendtag(self, tag, attrs):
+        self.tags.add(tag)
+        self.attributes += attrs
         attrs = dict(attrs)
         self.headings += [int(tag[1])] if re.fullmatch("h[1-6]", tag) else []
         self.ids += [attrs["id"]] if "id" in attrs else []
@@ -64,6 +54,9 @@ class Outline(HTMLParser):
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
 
 
 def headings(text, level):
@@ -79,11 +72,15 @@ def commands_of(text):
     return unescape(re.search("<pre[^>]*><code>(.*?)</code>", text, re.DOTALL)[1])
 
 
+def rows(text):
+    """Return the cells of each row of the tables in a text."""
+    found = re.findall(r"<tr>(.*?)</tr>", text, re.DOTALL)
+    return [[unescape(c) for c in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)] for row in found]
+
+
 def cells(text, caption):
-    """Return the rows of a table."""
-    table = text[text.index(f"<caption>{caption}") :].partition("</table>")[0]
-    rows = re.findall(r"<tr>(.*?)</tr>", table, re.DOTALL)
-    return [[unescape(c) for c in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)] for row in rows]
+    """Return the rows of one table."""
+    return rows(text[text.index(f"<caption>{caption}") :].partition("</table>")[0])
 
 
 def script_of(text):
@@ -104,12 +101,12 @@ def without_script(text):
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory):
     root = tmp_path_factory.mktemp("report")
-    dataset = make_dataset(root / "dataset", ("a", "<script>$x$"), name="bench & <b>")
+    dataset = by_hand.make_dataset(root / "dataset", ("a", "<script>$x$"), name="bench & <b>")
     return {
         "dataset": dataset,
-        "check": make_check(dataset, root / "check", [FINDING]),
-        "calibration": make_calibration(dataset, root / "cal", ["The <sheath> is silent."]),
-        "simulation": make_simulation(dataset, root / "sim"),
+        "check": by_hand.make_check(dataset, root / "check", [FINDING]),
+        "calibration": by_hand.make_calibration(dataset, root / "cal", ["The <sheath> is silent."]),
+        "simulation": by_hand.make_simulation(dataset, root / "sim"),
     }
 
 
@@ -164,7 +161,7 @@ def test_a_dataset_alone_makes_a_page_that_says_what_is_missing(folders):
 def test_of_many_findings_of_one_kind_the_first_are_shown_and_the_others_named(folders, tmp_path):
     findings = [FINDING | {"run": f"r{n}", "sentence": f"`x` in r{n}"} for n in range(9)]
     alone = FINDING | {"severity": "error", "sentence": "broken"}
-    check = make_check(folders["dataset"], tmp_path / "check", [*findings, alone])
+    check = by_hand.make_check(folders["dataset"], tmp_path / "check", [*findings, alone])
     text = page(read_inputs([check]))
     assert "<code>x</code> in r3<" in text
     assert "in r4<" not in text
@@ -180,11 +177,15 @@ def test_every_section_is_on_the_page():
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_note_says_for_which_rows_it_holds(folders, tmp_path):
-    calibrated = make_calibration(folders["dataset"], tmp_path)
-    with edited(calibrated / "calibration.json") as content:
-        content["stiffness"][0]["note"] = "few samples"
-    assert "<li>few samples: a contraction</li>" in page(read_inputs([calibrated]))
+def test_a_note_says_for_which_rows_it_holds_and_missing_values_are_dashes(folders, tmp_path):
+    calibrated = by_hand.make_calibration(folders["dataset"], tmp_path)
+    with by_hand.edited(calibrated / "calibration.json") as content:
+        content["stiffness"][0] |= {"note": "few samples", "expected_N_per_mm": None}
+        content["stiffness"][0]["km"] |= dict.fromkeys(("value", "interval_low", "interval_high"))
+    text = page(read_inputs([calibrated]))
+    Outline(text)
+    assert "<li>few samples: a contraction</li>" in text
+    assert ["a", "contraction", "–", "2.338", "2"] in [row[:2] + row[-3:] for row in rows(text)]
 
 
 @pytest.mark.parametrize("same", [True, False])
@@ -196,7 +197,7 @@ def test_the_commands_name_the_calibrated_model_only_where_it_was_simulated(
     (calibrated / "model.toml").write_text("mine" if same else "another")
     simulated = shutil.copytree(folders["simulation"], tmp_path / "sim")
     digest = hashlib.sha256(b"mine").hexdigest()
-    with edited(simulated / "simulation.json") as content:
+    with by_hand.edited(simulated / "simulation.json") as content:
         content["model"] = {"file": "model.toml", "sha256": digest}
     text = page(read_inputs([folders["dataset"], calibrated, simulated]))
     assert (f"--model {calibrated}/model.toml" in text) is same
@@ -211,20 +212,11 @@ def test_a_simulation_of_the_data_sheet_is_repeated_without_a_model(whole):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):
-    calibrated = make_calibration(folders["dataset"], tmp_path)
-    with edited(calibrated / "calibration.json") as content:
-        for row in content["stiffness"]:
-            row["km"] |= {"value": None, "interval_low": None, "interval_high": None}
-    Outline(page(read_inputs([calibrated])))
-
-
-@pytest.mark.usefixtures("undrawn")
 def test_conditions_that_were_told_are_those_of_the_page_and_no_command_repeats_them(
     folders, tmp_path
 ):
     told = shutil.copytree(folders["simulation"], tmp_path / "sim")
-    with edited(told / "simulation.json") as content:
+    with by_hand.edited(told / "simulation.json") as content:
         content["conditions"] = {"total_bend_rad": 1.5}
     given = [folders["dataset"], told]
     assert {run.total_bend_rad for run in read_inputs(given).dataset.runs} == {1.5}

@@ -9,14 +9,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from tests.reporting.made_folders import (
-    edited,
-    make_calibration,
-    make_check,
-    make_dataset,
-    make_simulation,
-    make_tracking,
-)
+from tests.reporting import made_folders as by_hand
 from tests.reporting.stream.streams import make_diagnosed, read
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.reporting.colours import dark
@@ -43,9 +36,9 @@ def overview(found: dict) -> str:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("made")
-    dataset = make_dataset(folder / "dataset", samples=SAMPLES)
-    make_simulation(dataset, folder / "simulate")
-    make_calibration(dataset, folder / "calibrate")
+    dataset = by_hand.make_dataset(folder / "dataset", samples=SAMPLES)
+    by_hand.make_simulation(dataset, folder / "simulate")
+    by_hand.make_calibration(dataset, folder / "calibrate")
     make_diagnosed(dataset, folder / "diagnose")
     return folder
 
@@ -185,11 +178,11 @@ def test_a_start_puts_all_of_a_run_on_the_session(tmp_path):
 
 
 def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
-    dataset = make_dataset(tmp_path / "dataset")
+    dataset = by_hand.make_dataset(tmp_path / "dataset")
     finding = {"code": "clipped", "run": "b", "sentence": "f_in_N is clipped"}
     late = finding | {"severity": "error", "first_s": 1.25}
     whole = finding | {"severity": "note", "first_s": None, "sentence": "rate is low"}
-    found = stream(tmp_path, make_check(dataset, tmp_path / "check", [late, whole]))
+    found = stream(tmp_path, by_hand.make_check(dataset, tmp_path / "check", [late, whole]))
     faults = found["/run/b/faults"]
     assert faults.at().tolist() == [0, 1_250_000_000]
     assert [row[0] for row in faults.rows["TextLog:level"]] == ["INFO", "ERROR"]
@@ -199,9 +192,9 @@ def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
 
 
 def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
-    dataset = make_dataset(tmp_path / "dataset")
+    dataset = by_hand.make_dataset(tmp_path / "dataset")
     finding = {"code": "unreadable", "run": "a", "sentence": "a.parquet is empty"}
-    check = make_check(dataset, tmp_path / "check", [finding | {"severity": "error"}])
+    check = by_hand.make_check(dataset, tmp_path / "check", [finding | {"severity": "error"}])
     (dataset / "runs" / "0.parquet").write_bytes(b"")
     found = stream(tmp_path, check)
     assert "/run/b/f_in_N/measured" in found
@@ -211,7 +204,7 @@ def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
 
 def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_path):
     """The made force is missed by 1 N undisturbed, and by 2 N disturbed."""
-    found = stream(tmp_path, make_tracking(tmp_path / "tracked"))
+    found = stream(tmp_path, by_hand.make_tracking(tmp_path / "tracked"))
     for condition, missed_N in (("undisturbed", 1.0), ("disturbed", 2.0)):
         run = f"/run/pid-{condition}"
         assert found[f"{run}/tracking_error_N"].scalars == pytest.approx(missed_N)
@@ -265,8 +258,8 @@ def test_each_column_is_read_once(made, tmp_path, monkeypatch):
 
 
 def test_only_runs_that_a_stage_took_are_shown(made, tmp_path):
-    folder = make_simulation(made / "dataset", made / "some")
-    with edited(folder / "simulation.json") as content:
+    folder = by_hand.make_simulation(made / "dataset", made / "some")
+    with by_hand.edited(folder / "simulation.json") as content:
         content["chosen"] = ["b"]
     found = stream(tmp_path, folder)
     assert "/run/b/f_in_N/simulated" in found
@@ -274,8 +267,8 @@ def test_only_runs_that_a_stage_took_are_shown(made, tmp_path):
 
 
 def test_answers_to_another_recording_are_refused_and_nothing_is_left(tmp_path):
-    dataset = make_dataset(tmp_path / "dataset")
-    folder = make_simulation(dataset, tmp_path / "simulate")
+    dataset = by_hand.make_dataset(tmp_path / "dataset")
+    folder = by_hand.make_simulation(dataset, tmp_path / "simulate")
     path = folder / "runs" / "b.parquet"
     pq.write_table(pq.read_table(path).slice(0, 100), path)
     with pytest.raises(InputError, match=r"b\.parquet: 100 rows"):

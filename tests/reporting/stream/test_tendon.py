@@ -9,13 +9,7 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
-from tests.reporting.made_folders import (
-    columns,
-    make_dataset,
-    make_diagnosis,
-    make_simulation,
-    source,
-)
+from tests.reporting import made_folders as by_hand
 from tests.reporting.stream.streams import read
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -61,10 +55,10 @@ def answer(recording, one, samples=None):
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("tendon")
-    dataset = make_dataset(folder / "dataset", ids=("a",), samples=3000)
-    out = make_diagnosis(dataset, folder / "diagnose", "named")
+    dataset = by_hand.make_dataset(folder / "dataset", ids=("a",), samples=3000)
+    out = by_hand.make_diagnosis(dataset, folder / "diagnose", "named")
     for name, one in (("model-nominal.toml", NOMINAL), ("model-extended.toml", EXTENDED)):
-        write_model(out / name, MODELS[one], version="0.1.0", dataset=source(dataset, out))
+        write_model(out / name, MODELS[one], version="0.1.0", dataset=by_hand.source(dataset, out))
     (out / "runs").mkdir()
     for recording in read_dataset(dataset):
         told = {"time_s": recording.time_s, "x_in_mm": recording.columns["x_in_mm"]}
@@ -179,8 +173,8 @@ def test_a_simulation_shows_its_one_model(made, tmp_path):
 
 def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
     dataset = made / "dataset"
-    assert view_in(make_simulation(dataset, tmp_path / "simulate")) is None
-    assert view_in(make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
+    assert view_in(by_hand.make_simulation(dataset, tmp_path / "simulate")) is None
+    assert view_in(by_hand.make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
     out = tmp_path / "static"
     tsas.simulate(dataset, dynamics="static", out=out)
     assert json.loads((out / "simulation.json").read_text())["dynamics"] == "static"
@@ -190,7 +184,7 @@ def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
 
 def test_runs_with_gaps_without_x_in_and_with_other_loads(tmp_path):
     """A stage does not write down how it has cleaned forces; they are cleaned again."""
-    whole = columns(3000)
+    whole = by_hand.columns(3000)
     gap = whole | {"f_in_N": whole["f_in_N"].copy()}
     gap["f_in_N"][800:1600] = np.nan  # all of the second stroke
     by_force = {name: values for name, values in whole.items() if name != "x_in_mm"}
