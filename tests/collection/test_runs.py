@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 import tsas_cli as tsas
-from tests.collection.collected import ROWS, RATE_Hz, diagnose, write
+from tests.collection.collected import ROWS, RATE_Hz, write
 from tests.counted import Counted
+from tests.reporting.made_folders import make_diagnosis
 from tsas_cli.collection import COLUMNS
 from tsas_cli.collection.entries import entry_of
 from tsas_cli.collection.query import connected
@@ -71,10 +72,10 @@ def test_dates_and_channels_need_no_quotes():
 
 
 def test_verdicts_are_those_of_the_latest_diagnosis_of_the_same_manifest(rigs):
-    old = diagnose(rigs / "two", rigs / "results" / "old", "named", "backlash")
-    diagnose(rigs / "two", rigs / "results" / "new", "sufficient")
+    old = make_diagnosis(rigs / "two", rigs / "results" / "old", "named")
+    make_diagnosis(rigs / "two", rigs / "results" / "new", "sufficient")
     os.utime(old / "diagnosis.json", (1, 1))
-    diagnose(rigs / "one" / "a", rigs / "one" / "a" / "d", "named", "free_tendon", chosen=["r1"])
+    make_diagnosis(rigs / "one" / "a", rigs / "one" / "a" / "d", "named", chosen=["r1"])
     rows = tsas.runs(columns=["verdict", "causes"]).summary["runs"]
     assert [(row["verdict"], row["causes"]) for row in rows] == [
         (None, None), ("named", ["free_tendon"]), ("sufficient", [])

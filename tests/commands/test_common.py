@@ -1,5 +1,3 @@
-import json
-
 from tsas_cli.commands.common import show
 from tsas_cli.commands.progress import progress
 
@@ -21,11 +19,6 @@ def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(capsys):
         "none",
         "",
     ]
-
-
-def test_json_replaces_the_tables(capsys):
-    show({"noise": float("nan")}, TABLES, quiet=True, as_json=True)
-    assert json.loads(capsys.readouterr().out) == {"noise": None}
 
 
 def test_no_bar_is_drawn_into_a_file(capsys):

@@ -14,7 +14,7 @@ from tsas_cli.project.start import start
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.support.errors import InputError
 
-needs_make = pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
+pytestmark = pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
 SETTINGS = {"RAW": "raw", "MAP": "bench.toml", "DATASET": "dataset", "OUT": "result"}
 FROM_THE_ISSUE = [f";id>{RAN};.csv", f"';id>{RAN};'.csv", "a|b.csv", "a\tb.csv", "a\nb.csv"]
 
@@ -34,7 +34,6 @@ def folder(tmp_path_factory):
     return lambda: tmp_path_factory.mktemp("example")
 
 
-@needs_make
 @pytest.mark.parametrize("name", FROM_THE_ISSUE)
 def test_a_file_is_no_code_whether_it_came_with_the_project_or_later(tmp_path, recording, name):
     bench = Bench(tmp_path)
@@ -52,7 +51,6 @@ def test_a_file_is_no_code_whether_it_came_with_the_project_or_later(tmp_path, r
     assert nothing_ran(tmp_path)
 
 
-@needs_make
 @settings(max_examples=6)
 @given(name=odd_names(), sources=st.sets(odd_names(end=".csv"), min_size=1, max_size=8))
 def test_a_new_project_is_made_and_run_under_any_name(folder, recording, name, sources):
@@ -88,7 +86,6 @@ def test_the_map_of_an_empty_project_is_a_map_under_any_name(folder, name):
     assert (title[:2], below) == ("# ", "")
 
 
-@needs_make
 @settings(max_examples=6)
 @given(
     first=st.sets(odd_names(), min_size=1, max_size=8),
@@ -112,7 +109,6 @@ def test_a_file_that_comes_or_goes_is_noticed_under_any_name(folder, first, late
     assert nothing_ran(home)
 
 
-@needs_make
 @settings(max_examples=15)
 @given(setting=st.sampled_from(sorted(SETTINGS)), name=odd_names())
 @example(setting="MAP", name="map (2)")
@@ -137,7 +133,6 @@ def test_a_setting_is_a_name_or_refused(folder, setting, name):
     assert nothing_ran(home)
 
 
-@needs_make
 @pytest.mark.parametrize(
     ("setting", "name", "message"),
     [
@@ -175,7 +170,6 @@ def test_a_setting_that_is_odd_and_no_code_is_taken_and_another_is_named(
         assert message in done.stderr
 
 
-@needs_make
 def test_a_makefile_may_build_a_name_of_others(tmp_path):
     bench, project = Bench(tmp_path), project_in(tmp_path)
     path = project / "Makefile"
@@ -186,7 +180,6 @@ def test_a_makefile_may_build_a_name_of_others(tmp_path):
     assert "OUT is no plain name" in done.stderr
 
 
-@needs_make
 @settings(max_examples=8)
 @given(name=odd_names())
 def test_a_quoted_run_among_the_options_reaches_the_program_as_it_is(folder, name):
@@ -200,7 +193,6 @@ def test_a_quoted_run_among_the_options_reaches_the_program_as_it_is(folder, nam
     assert nothing_ran(home)
 
 
-@needs_make
 def test_rules_that_make_brings_along_are_not_used(tmp_path):
     bench, project = Bench(tmp_path), project_in(tmp_path)
     (project / f"`>{RAN}`,v").touch()  # make would have it checked out of RCS

@@ -99,10 +99,8 @@ def test_words_stay_whole_where_there_is_too_little_room():
     assert narrow == list(table_text("t", HEADER, ROWS, 1))
 
 
-def test_a_cell_of_blanks_needs_no_room():
+def test_a_cell_of_blanks_needs_no_room_and_without_rows_there_is_the_title_alone():
     lines = list(table_text("t", ["a", "b"], [["   ", "x"]], 6))
     assert lines == ["t", "  a  b", "  -  -", "     x"]
 
-
-def test_without_rows_there_is_the_title_alone():
     assert list(table_text("t", HEADER, [], 20)) == ["t"]
