@@ -61,22 +61,11 @@ def test_the_worked_case(done, tmp_path):
     assert drive.kA_rpm_s2_per_mm == pytest.approx(44.19 * (0.002 + 0.007 / 54.34), rel=2e-3)
 
 
-MOTOR, X_IN = "motor_speed_rpm", "x_in_mm"
-
-
-@pytest.mark.parametrize(
-    ("spoil", "message"),
-    [
-        (lambda made: {MOTOR: 0.0 * made[MOTOR]}, "the motor stands still"),
-        (lambda made: {X_IN: made[MOTOR], MOTOR: made[X_IN]}, "does not follow the turns of the"),
-        (lambda made: {"f_in_N": made.pop(MOTOR)}, "column motor_speed_rpm is missing"),
-    ],
-)
-def test_what_does_not_serve_is_refused_in_one_line(refused, recorded, tmp_path, spoil, message):
+def test_what_does_not_serve_is_refused_in_one_line(refused, recorded, tmp_path):
     made = dict(recorded)
-    made |= spoil(made)
+    made["f_in_N"] = made.pop("motor_speed_rpm")
     folder = write_dataset(tmp_path / "dataset", [Run("a", made)], data_sheet=DATA_SHEET)
     said = refused("identify-harmonic-drive", folder, "--out", tmp_path / "out")
-    assert message in said
+    assert "column motor_speed_rpm is missing" in said
     assert "runs/a.parquet" in said
     assert not (tmp_path / "out").exists()

@@ -170,10 +170,7 @@ def test_a_recorded_force_is_a_reference(track, quick, tmp_path):
         ("", ("--controller", "pidd"), "unknown controller pidd; did you mean pid?"),
         ("", ("--controller", ""), "unknown controller ; known are pid, sliding-mode"),
         ("", ("--disturb", "friction=0.2"), "--disturb: unknown quantity friction"),
-        ("", ("--disturb", "friction_coefficient=0.2@9"), "the plant changes at 9 s"),
-        ("", ("--reference", "sinus"), "unknown reference sinus; did you mean sine?"),
         ("[loops]\n", (), "settings.toml: unknown key loops"),
-        ("[controllers.pid]\nk = 1\n", (), "unknown key controllers.pid.k"),
     ],
 )
 def test_what_is_wrong_is_reported_and_nothing_is_written(

@@ -101,18 +101,10 @@ def test_sentence_json_and_tables_name_the_same_of_a_stiff_drive(tmp_path):
             assert told[key] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "why"),
-    [
-        ({"turntable_radius_mm": 54.2}, "2 times the kinematic one of the data sheet, 21.14"),
-        ({"gear_ratio": 1.0}, "a gear_ratio of 120 would agree in place of 1."),
-        ({}, None),
-    ],
-)
-def test_a_lead_that_contradicts_the_data_sheet_is_told(tmp_path, wrong, why):
-    summary = identified(tmp_path, LAGGING, data_sheet=DATA_SHEET | wrong)
-    notes = [note for note in summary["cannot_tell"] if "fitted lead" in note]
-    assert [why in note for note in notes] == ([] if why is None else [True])
+def test_a_lead_that_contradicts_the_data_sheet_is_told(tmp_path):
+    summary = identified(tmp_path, LAGGING, data_sheet=DATA_SHEET | {"turntable_radius_mm": 54.2})
+    (note,) = (note for note in summary["cannot_tell"] if "fitted lead" in note)
+    assert "2 times the kinematic one of the data sheet, 21.14" in note
 
 
 def test_a_slow_chirp_does_not_tell_them_and_says_so(tmp_path):
