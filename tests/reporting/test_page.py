@@ -179,13 +179,21 @@ def test_every_section_is_on_the_page():
 @pytest.mark.usefixtures("undrawn")
 def test_a_note_says_for_which_rows_it_holds_and_missing_values_are_dashes(folders, tmp_path):
     calibrated = by_hand.make_calibration(folders["dataset"], tmp_path)
+    missing = dict.fromkeys(("value", "interval_low", "interval_high"))
     with by_hand.edited(calibrated / "calibration.json") as content:
         content["stiffness"][0] |= {"note": "few samples", "expected_N_per_mm": None}
-        content["stiffness"][0]["km"] |= dict.fromkeys(("value", "interval_low", "interval_high"))
+        content["stiffness"][0]["km"] |= missing
     text = page(read_inputs([calibrated]))
     Outline(text)
     assert "<li>few samples: a contraction</li>" in text
     assert ["a", "contraction", "–", "2.338", "2"] in [row[:2] + row[-3:] for row in rows(text)]
+    with by_hand.edited(calibrated / "calibration.json") as content:
+        for row in content["stiffness"]:
+            row["expected_N_per_mm"] = None
+            row["km"] |= missing
+    text = page(read_inputs([calibrated]))
+    Outline(text)
+    assert ["run", "phase", "theory", "strokes"] in rows(text)
 
 
 @pytest.mark.parametrize("same", [True, False])

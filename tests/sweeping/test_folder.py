@@ -59,6 +59,11 @@ def test_a_folder_of_something_else_stays_as_it_is(tmp_path, others):
     assert sorted(there) == others
 
 
+def test_a_file_is_no_folder_of_a_sweep(tmp_path):
+    (tmp_path / "file").touch()
+    refused(sweep_folder(tmp_path / "file", []), "file: is a file")
+
+
 def test_a_kill_at_the_start_leaves_the_mark_first(tmp_path, monkeypatch):
     def kill(journal, out):
         journal.close()
