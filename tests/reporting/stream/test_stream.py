@@ -3,30 +3,22 @@
 import json
 from datetime import datetime
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
 from tests.reporting import made_folders as by_hand
-from tests.reporting.stream.streams import make_diagnosed, read
+from tests.reporting.stream.streams import make_diagnosed, stream
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.phases import BY_KEY
-from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.reporting.stream.stream import plain_text
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 SAMPLES = 2 * ROWS + 100
-
-
-def stream(folder: Path, *stages: Path) -> dict:
-    write_stream(read_inputs(list(stages)), folder / "s.rrd")
-    return read(folder / "s.rrd")
 
 
 def overview(found: dict) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 import tsas_cli as tsas
 from tests.reporting import made_folders as by_hand
-from tests.reporting.stream.streams import read
+from tests.reporting.stream.streams import stream
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
@@ -20,7 +20,6 @@ from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.seen import seen_runs
 from tsas_cli.reporting.stream.tendon import MOST, moments, sheath_of, view_of_tendon
 from tsas_studies.challenge.rig.recordings import Run, write_dataset
@@ -65,13 +64,12 @@ def made(tmp_path_factory) -> Path:
         told["f_in_N"] = answer(recording, MODELS[EXTENDED]).f_in_N
         told[nominal_name("f_in_N")] = answer(recording, MODELS[NOMINAL]).f_in_N
         write_parquet(out / "runs" / f"{recording.run.id}.parquet", pa.table(told))
-    write_stream(read_inputs([out]), folder / "s.rrd")
     return folder
 
 
 @pytest.fixture(scope="module")
 def found(made):
-    return read(made / "s.rrd")
+    return stream(made, made / "diagnose")
 
 
 @pytest.fixture(scope="module")
@@ -161,8 +159,7 @@ def simulated(folder, dataset, one):
     """Return what a stream shows of a simulation with 20 nodes."""
     write_model(folder / "m.toml", one, version="0.1.0", dataset={})
     tsas.simulate(dataset, model=folder / "m.toml", out=folder / "s", nodes=20)
-    write_stream(read_inputs([folder / "s"]), folder / "s.rrd")
-    return read(folder / "s.rrd")
+    return stream(folder, folder / "s")
 
 
 def test_a_simulation_shows_its_one_model(made, tmp_path):
