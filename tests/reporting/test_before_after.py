@@ -9,7 +9,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from tests.reporting.made_folders import (
-    make_dataset,
     make_diagnosis,
     off_at_the_end,
     write_predictions,
@@ -24,11 +23,6 @@ from tsas_cli.reporting.inputs import read_inputs
 
 def answered(dataset, folder, wrong, verdict="named"):
     return write_predictions(dataset, make_diagnosis(dataset, folder, verdict), wrong)
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    return make_dataset(tmp_path_factory.mktemp("first") / "dataset", samples=2000)
 
 
 def test_the_run_and_the_place_with_the_largest_gain_are_shown(dataset, tmp_path):

@@ -15,11 +15,6 @@ from tsas_cli.reporting.simulated import rms, simulated_models
 from tsas_cli.support.files import sha256_of
 
 
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    return by_hand.make_dataset(tmp_path_factory.mktemp("simulation") / "dataset", samples=2000)
-
-
 @pytest.fixture
 def diagnosed(dataset, tmp_path):
     folder = by_hand.make_diagnosis(dataset, tmp_path / "diagnose", "named")

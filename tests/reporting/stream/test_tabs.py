@@ -1,7 +1,5 @@
 """What the viewer opens with."""
 
-import pytest
-
 from tests.reporting import made_folders as by_hand
 from tests.reporting.stream.streams import make_diagnosed, read, shown, views
 from tsas_cli.reporting.inputs import read_inputs
@@ -19,11 +17,6 @@ def tabs(folder):
 
 def of_kind(part, *kinds):
     return [view for view in views(part) if view.class_identifier in kinds]
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    return by_hand.make_dataset(tmp_path_factory.mktemp("tabs") / "dataset")
 
 
 def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
