@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import tsas_cli as tsas
+from tests.commands.test_ingest import CSV, MAP
 from tests.counted import Counted
 from tests.rigs import dataset_of, recorded
 from tsas_cli.identification.estimate import Estimate
@@ -202,19 +203,9 @@ def test_nothing_is_written_unasked(folder, monkeypatch, tmp_path):
     assert sorted(folder.rglob("*")) == before
 
 
-MAP = """
-[dataset]
-name = "bench"
-[columns]
-time_s = {source = "t", unit = "s"}
-x_in_mm = {source = "x", unit = "mm"}
-f_in_N = {source = "f", unit = "N"}
-"""
-
-
 def test_files_become_a_dataset(tmp_path):
     (tmp_path / "map.toml").write_text(MAP)
-    (tmp_path / "a.csv").write_text("t,x,f\n0,1,25\n0.5,2,\n1,3,27\n")
+    (tmp_path / "a.csv").write_text(CSV)
     counted, call = Counted(), {"map": tmp_path / "map.toml", "out": tmp_path / "out"}
     result = tsas.ingest(tmp_path / "a.csv", **call, step=counted)
     assert counted.all_of(least=2)

@@ -1,7 +1,6 @@
 """A real scheduler with workers, all of them processes of their own, over TCP."""
 
 import filecmp
-import json
 import logging
 import os
 import shutil
@@ -16,6 +15,7 @@ import pytest
 
 import tsas_cli as tsas
 from tests.sweeping.clusters import HERE, ROOT, cluster, wait_for
+from tests.sweeping.works import texts
 from tsas_cli.sweeping.cluster import _refuse, on_cluster
 from tsas_cli.sweeping.versions import versions
 
@@ -67,10 +67,6 @@ def recordings(tmp_path, dataset):
     manifest = tmp_path / "rigs/b/dataset.toml"
     manifest.write_text(manifest.read_text().replace("bench-42", "bench-43"))
     return tmp_path / "rigs"
-
-
-def texts(numbers, **more):
-    return [json.dumps({"number": number, **more}) for number in numbers]
 
 
 def outcomes_of(made, work, content, shared):
