@@ -42,6 +42,8 @@ def checked(folder):
     counted = Counted()
     result = tsas.check(folder, out=folder.parent / "check", step=counted)
     assert counted.all_of(least=1)
+    assert len(result.findings) == len(result.summary["findings"])
+    assert len(result.not_checked) == len(result.summary["not_checked"])
     return result
 
 
