@@ -100,6 +100,30 @@ def strict(
 
 
 @pytest.fixture
+def done(strict: Callable[..., subprocess.CompletedProcess[str]]) -> Callable[..., str]:
+    """Run the command line, which succeeds without a word beside what it prints; return that."""
+
+    def run(*words: object, **keywords: object) -> str:
+        ended = strict(*words, **keywords)
+        assert (ended.returncode, ended.stderr) == (0, "")
+        return ended.stdout
+
+    return run
+
+
+@pytest.fixture
+def refused(strict: Callable[..., subprocess.CompletedProcess[str]]) -> Callable[..., str]:
+    """Run the command line, which refuses the call in one line and prints nothing; return that."""
+
+    def run(*words: object, **keywords: object) -> str:
+        ended = strict(*words, **keywords)
+        assert (ended.returncode, ended.stdout, ended.stderr.count("\n")) == (2, "", 1)
+        return ended.stderr
+
+    return run
+
+
+@pytest.fixture
 def here(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., tuple[object, str, str]]:
@@ -110,6 +134,18 @@ def here(
         with pytest.raises(SystemExit) as end:
             main()
         return end.value.code or 0, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def refused_here(here: Callable[..., tuple[object, str, str]]) -> Callable[..., str]:
+    """Run the command line in this process, which refuses the call as in `refused`."""
+
+    def run(*words: object) -> str:
+        code, out, err = here(*words)
+        assert (code, out, err.count("\n")) == (2, "", 1)
+        return err
 
     return run
 

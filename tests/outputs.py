@@ -4,6 +4,9 @@ import json
 from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
+
+from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file, new_folder, stage_folder, write_sums
 
 STAGE = "check"
@@ -39,3 +42,20 @@ def written(path: Path, *, inputs=(), force=False, **texts: str):
     with stage_folder(path, stage=STAGE, inputs=inputs, force=force) as folder:
         fill(folder, **texts)
         yield folder
+
+
+def write(path: Path, *, force=False) -> None:
+    """Write a new output."""
+    with folder_of(path, force=force) as folder:
+        (folder / "result").write_text("new")
+
+
+def refused(block, why: str) -> None:
+    """Enter a block that is refused before anything in it is done."""
+    with pytest.raises(InputError, match=why), block:
+        pytest.fail("the block must not run")
+
+
+def names(folder: Path) -> list[str]:
+    """Return the names of what is in a folder."""
+    return sorted(path.name for path in folder.iterdir())

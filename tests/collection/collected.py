@@ -1,6 +1,5 @@
-"""Datasets below a folder, and what a diagnosis says of one."""
+"""Datasets below a folder."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +7,6 @@ import pyarrow as pa
 
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.support.files import sha256_of
 
 ROWS, RATE_Hz = 101, 50.0
 
@@ -28,23 +26,3 @@ def write(folder: Path, *runs: dict[str, object], channels=("f_out_N",)) -> Path
     columns = {"time_s": time_s, "x_in_mm": np.sin(time_s)} | dict.fromkeys(channels, time_s)
     write_dataset(folder, manifest, {run.id: pa.table(columns) for run in manifest.run})
     return folder
-
-
-def diagnose(dataset: Path, out: Path, verdict: str, *causes: str, chosen=None) -> Path:
-    """Write what a diagnosis of a dataset would say."""
-    out.mkdir(parents=True)
-    content = {
-        "format": 1,
-        "stage": "diagnose",
-        "version": "0",
-        "dataset": {
-            "name": dataset.name,
-            "folder": "..",
-            "hashes": {"dataset.toml": sha256_of(dataset / "dataset.toml")},
-        },
-        "verdict": verdict,
-        "reason": "because",
-        "named": [{"effect": c, "title": c, "equation": "", "rivals": []} for c in causes],
-    } | ({} if chosen is None else {"chosen": chosen})
-    (out / "diagnosis.json").write_text(json.dumps(content), encoding="utf-8")
-    return out

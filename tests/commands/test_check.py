@@ -1,68 +1,43 @@
 import json
 
-import pyarrow as pa
 import pytest
 
 from tests.recordings.quality.bench import LOAD, Bench, columns
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality import check_dataset
-from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.files import sha256_of
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
+
+GOOD = columns(Bench())
+TIME_S = GOOD["time_s"]
+BACKWARDS = GOOD | {"time_s": TIME_S - 0.05 * (TIME_S[1000] <= TIME_S)}
 
 
 @pytest.fixture
 def make(tmp_path):
     def make(**runs):
-        folder = tmp_path / "bench"
-        folder.mkdir()
-        entries = [
-            {"id": run, "file": f"runs/{run}.parquet", "sha256": "0" * 64, "preload_N": 25.0}
-            for run in runs
-        ]
-        manifest = Manifest.model_validate(
-            {
-                "format": 1,
-                "name": "bench",
-                "kind": "simulated",
-                "rig": {"load_stiffness_N_per_mm": LOAD},
-                "run": entries,
-            }
-        )
-        write_dataset(folder, manifest, {run: pa.table(data) for run, data in runs.items()})
-        return folder
+        written = [Run(name, data, {"preload_N": 25.0}) for name, data in runs.items()]
+        sheet = {"load_stiffness_N_per_mm": LOAD}
+        return write_dataset(tmp_path / "bench", written, data_sheet=sheet)
 
     return make
 
 
-def good(**changes):
-    return columns(Bench()) | changes
+def test_a_good_dataset_has_no_findings(make, done):
+    assert "the checks found nothing" in done("check", make(a=GOOD))
 
 
-def backwards():
-    time = columns(Bench())["time_s"].copy()
-    time[1000:] -= 0.05
-    return good(time_s=time)
+def test_findings_are_the_result_and_no_failure(make, done):
+    printed = done("check", make(a=GOOD, b=BACKWARDS))
+    assert "time-order" in printed
+    assert "correct the clock" in printed
 
 
-def test_a_good_dataset_has_no_findings(make, tsas):
-    done = tsas("check", make(a=good()))
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "the checks found nothing" in done.stdout
-
-
-def test_findings_are_the_result_and_no_failure(make, tsas):
-    done = tsas("check", make(a=good(), b=backwards()))
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "time-order" in done.stdout
-    assert "correct the clock" in done.stdout
-
-
-def test_json_and_the_written_file_agree(make, tsas, tmp_path):
-    folder = make(a=good(), b=backwards())
-    done = tsas("check", folder, "--json", "--out", tmp_path / "out")
+def test_json_and_the_written_file_agree(make, done, tmp_path):
+    folder = make(a=GOOD, b=BACKWARDS)
+    printed = done("check", folder, "--json", "--out", tmp_path / "out")
     written = json.loads((tmp_path / "out" / "check.json").read_text())
-    assert json.loads(done.stdout) == written
+    assert json.loads(printed) == written
     assert (written["format"], written["stage"]) == (1, "check")
     assert (tmp_path / "out" / written["dataset"]["folder"]).resolve() == folder.resolve()
     assert written["dataset"]["hashes"]["runs/a.parquet"] == sha256_of(folder / "runs/a.parquet")
@@ -73,31 +48,26 @@ def test_json_and_the_written_file_agree(make, tsas, tmp_path):
     assert ("time-jitter", "a") not in reasons
 
 
-def test_what_is_no_dataset_is_refused_in_one_line(tsas, tmp_path):
-    done = tsas("check", tmp_path, "--out", tmp_path / "out")
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert "dataset.toml" in done.stderr
+def test_what_is_no_dataset_is_refused_in_one_line(refused, tmp_path):
+    assert "dataset.toml" in refused("check", tmp_path, "--out", tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
 def test_one_run_that_cannot_be_read_is_a_finding_and_the_others_are_checked(make):
-    folder = make(a=good(), b=backwards())
+    folder = make(a=GOOD, b=BACKWARDS)
     (folder / "runs" / "a.parquet").write_bytes(b"")
     findings = check_dataset(read_dataset(folder)).findings
     assert [(f.code, f.run) for f in findings] == [("unreadable", "a"), ("time-order", "b")]
 
 
-def test_a_dataset_of_which_no_run_can_be_read_is_refused(make, tsas):
-    folder = make(a=good())
+def test_a_dataset_of_which_no_run_can_be_read_is_refused(make, refused):
+    folder = make(a=GOOD)
     (folder / "runs" / "a.parquet").write_bytes(b"")
-    done = tsas("check", folder)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
+    refused("check", folder)
 
 
 def test_a_check_whose_columns_are_missing_has_not_passed(make):
-    drive = {name: good()[name] for name in ("time_s", "x_in_mm", "f_in_N")}
+    drive = {name: GOOD[name] for name in ("time_s", "x_in_mm", "f_in_N")}
     report = check_dataset(read_dataset(make(a=drive)))
     reasons = {entry.code: entry.reason for entry in report.not_checked}
     assert report.findings == ()

@@ -1,7 +1,3 @@
-import json
-
-import pytest
-
 from tsas_cli.commands.common import progress, show
 
 TABLES = [
@@ -10,9 +6,7 @@ TABLES = [
 ]
 
 
-def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(capsys):
     show({}, TABLES, quiet=False, as_json=False)
     assert capsys.readouterr().out.splitlines() == [
         "two runs",
@@ -26,12 +20,7 @@ def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(
     ]
 
 
-def test_json_replaces_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
-    show({"noise": float("nan")}, TABLES, quiet=True, as_json=True)
-    assert json.loads(capsys.readouterr().out) == {"noise": None}
-
-
-def test_no_bar_is_drawn_into_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_bar_is_drawn_into_a_file(capsys):
     with progress("fit", quiet=False) as step:
         step.ahead(2)
         step()

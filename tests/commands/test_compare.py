@@ -6,6 +6,7 @@ import pytest
 
 from tests.commands.documented import documented
 from tests.comparing.made import NOMINAL, ROUGH, calibrated
+from tests.reporting.made_folders import edited
 
 
 @pytest.fixture(scope="module")
@@ -16,7 +17,7 @@ def root(tmp_path_factory):
     return root
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def run(here, monkeypatch, root):
     monkeypatch.chdir(root)
     return partial(here, "compare")
@@ -37,13 +38,10 @@ def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
     models = ("calibrated-1/model.toml", "calibrated-2/model.toml")
     code, message, _ = run(*models, "--on", "data-2", "--runs", "slow", "--out", out, "--json")
     assert code == 0
-    assert sorted(path.name for path in out.iterdir()) == [
-        "SHA256SUMS",
-        "compare.json",
-        "report.html",
-    ]
+    assert {path.name for path in out.iterdir()} == {"SHA256SUMS", "compare.json", "report.html"}
     content = json.loads((out / "compare.json").read_text())
     assert json.loads(message) == content
+    assert set(content) <= documented("compare.json")
     assert {row["run_a"] for row in content["errors"]} == {"slow"}
     assert content["on"]["chosen"] == ["slow"]
     page = (out / "report.html").read_text()
@@ -51,17 +49,11 @@ def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
     assert "tsas compare calibrated-1/model.toml" in page
 
 
-def test_the_keys_are_documented(run):
-    content = json.loads(run("calibrated-1", "calibrated-2", "--json")[1])
-    assert set(content) <= documented("compare.json")
-
-
 def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
     folder = shutil.copytree(root / "calibrated-1", tmp_path / "c")
     path = folder / "calibration.json"
-    content = json.loads(path.read_text())
-    content["dataset"]["name"] = "\x1b[2Jbench"
-    path.write_text(json.dumps(content))
+    with edited(path) as content:
+        content["dataset"]["name"] = "\x1b[2Jbench"
     code, out, _ = run(folder, "calibrated-2")
     assert code == 0
     assert "no longer at" in out  # the copy does not stand beside its dataset
@@ -79,8 +71,6 @@ def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
         (("calibrated-1", "calibrated-2", "--on", "data-1", "--runs", "sl"), "no run 'sl'"),
     ],
 )
-def test_a_wrong_call_is_one_line_and_writes_nothing(run, tmp_path, words, message):
-    code, out, err = run(*words, "--out", tmp_path / "o")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert message in err
+def test_a_wrong_call_is_one_line_and_writes_nothing(refused_here, tmp_path, words, message):
+    assert message in refused_here("compare", *words, "--out", tmp_path / "o")
     assert list(tmp_path.iterdir()) == []

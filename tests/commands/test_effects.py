@@ -3,25 +3,19 @@ import json
 from tsas_cli.effects import EFFECTS
 
 
-def test_the_table_has_every_effect_and_every_parameter_once(tsas):
-    done = tsas("effects")
-    assert (done.returncode, done.stderr) == (0, "")
-    rows = [line.split() for line in done.stdout.splitlines()[3:] if line]
-    first = [row[0] for row in rows if row[0] in {effect.name for effect in EFFECTS}]
-    assert first == [effect.name for effect in EFFECTS]
-    assert len(rows) == sum(len(effect.parameters) for effect in EFFECTS)
-    lines = iter(done.stdout.splitlines()[3:])
-    for effect in EFFECTS:
-        for number, p in enumerate(effect.parameters):
-            line = next(lines)
-            assert f" {p.name}  " in line
-            assert p.unit in line
-            assert (effect.sentence in line) == (effect.acts_on in line.split()) == (number == 0)
+def test_the_table_has_every_effect_and_every_parameter_once(done):
+    lines = [line for line in done("effects").splitlines()[3:] if line]
+    shown = [(effect, p) for effect in EFFECTS for p in effect.parameters]
+    for line, (effect, p) in zip(lines, shown, strict=True):
+        first = p == effect.parameters[0]
+        assert f" {p.name}  " in line
+        assert p.unit in line
+        assert (effect.name == line.split()[0]) == first
+        assert (effect.sentence in line) == (effect.acts_on in line.split()) == first
 
 
-def test_json_holds_the_whole_records(tsas):
-    done = tsas("effects", "--json")
-    content = json.loads(done.stdout)
+def test_json_holds_the_whole_records(done):
+    content = json.loads(done("effects", "--json"))
     assert content["format"] == 1
     assert [effect["name"] for effect in content["effects"]] == [e.name for e in EFFECTS]
     (backlash,) = (effect for effect in content["effects"] if effect["name"] == "backlash")

@@ -28,26 +28,29 @@ def bench(tmp_path):
     return tmp_path
 
 
+OPTIONS = ("--map", "map.toml", "--out", "out")
+
+
 @pytest.fixture
-def ingest(bench, tsas):
-    def call(*words):
-        return tsas("ingest", *words, "--map", "map.toml", "--out", "out", cwd=bench)
+def ingest(bench, done):
+    return lambda *words: done("ingest", *words, *OPTIONS, cwd=bench)
+
+
+@pytest.fixture
+def wrong(bench, refused):
+    """Call the command, which refuses in one line that holds some words, and writes nothing."""
+
+    def call(*words, says, options=OPTIONS):
+        line = refused("ingest", *words, *options, cwd=bench)
+        assert [word for word in says if word not in line] == []
+        assert line.rstrip("\n").isprintable()
+        assert not list(bench.glob("*out*"))
 
     return call
 
 
-def refused(done, folder, *message):
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == 1
-    for words in message:
-        assert words in done.stderr
-    assert not list(folder.glob("*out*"))
-
-
 def test_a_file_becomes_a_dataset_that_knows_what_it_was_made_from(bench, ingest):
-    done = ingest("a.csv")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "a    3     1 s" in done.stdout
+    assert "a    3     1 s" in ingest("a.csv")
     (recording,) = read_dataset(bench / "out")
     np.testing.assert_allclose(recording.columns["x_in_mm"], [25.4, 50.8, 76.2])
     np.testing.assert_array_equal(recording.columns["f_in_N"], [25, np.nan, 27])
@@ -55,10 +58,10 @@ def test_a_file_becomes_a_dataset_that_knows_what_it_was_made_from(bench, ingest
     assert source["sha256"] == hashlib.sha256(CSV.encode()).hexdigest()
 
 
-def test_the_command_that_proposes_a_map_can_be_pasted(bench, tsas):
-    done = tsas("ingest", "$(touch ran) it's.csv", cwd=bench)
+def test_the_command_that_proposes_a_map_can_be_pasted(wrong):
     command = """`tsas ingest '$(touch ran) it'"'"'s.csv' --guess --out MAP.toml`"""
-    refused(done, bench, "--map is missing; ", f"; {command} proposes a map")
+    says = ["--map is missing; ", f"; {command} proposes a map"]
+    wrong("$(touch ran) it's.csv", says=says, options=())
 
 
 def test_a_folder_is_searched_and_other_files_are_left_alone(bench, ingest):
@@ -67,42 +70,35 @@ def test_a_folder_is_searched_and_other_files_are_left_alone(bench, ingest):
     (bench / "runs" / "deep" / "c.csv").write_text(CSV)
     (bench / "runs" / "photo.png").write_bytes(b"")
     (bench / "runs" / "._b.csv").write_bytes(b"left by a file manager")
-    done = ingest("runs", "a.csv", "--json")
-    runs = json.loads(done.stdout)["runs"]
+    runs = json.loads(ingest("runs", "a.csv", "--json"))["runs"]
     assert [run["run"] for run in runs] == ["b", "c", "a"]
     assert runs[0]["rate_Hz"] == 2
 
 
-def test_the_map_can_choose_among_a_folders_files(bench, ingest):
+def test_the_map_can_choose_among_a_folders_files(bench, ingest, wrong):
     (bench / "notes.txt").write_text("bent by hand")
-    refused(ingest("."), bench, "notes.txt")
+    wrong(".", says=["notes.txt"])
     with (bench / "map.toml").open("a") as stream:
         stream.write('[read]\nfiles = "*.csv"\n')
-    assert ingest(".", "-q").stdout == ""
+    assert ingest(".", "-q") == ""
     assert len(read_dataset(bench / "out").manifest.run) == 1
 
 
-def test_two_files_with_one_id_are_refused_and_both_named(bench, ingest):
+def test_two_files_with_one_id_are_refused_and_both_named(bench, wrong):
     (bench / "other").mkdir()
     (bench / "other" / "a.csv").write_text(CSV)
-    refused(ingest("a.csv", "other"), bench, "'a'", "a.csv", "other/a.csv", "{folder}_{stem}")
+    wrong("a.csv", "other", says=["'a'", "a.csv", "other/a.csv", "{folder}_{stem}"])
 
 
-def test_half_of_the_files_are_not_half_a_dataset(bench, ingest):
+def test_half_of_the_files_are_not_half_a_dataset(bench, wrong):
     (bench / "b.csv").write_text("t,x\n0,1\n1,2\n")
-    refused(ingest("a.csv", "b.csv"), bench, "b.csv", "column f is missing; ", "there are: t, x")
+    wrong("a.csv", "b.csv", says=["b.csv", "column f is missing; ", "there are: t, x"])
 
 
-def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, ingest):
+def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, wrong):
     text = (bench / "map.toml").read_text()
     (bench / "map.toml").write_text(text.replace('unit = "N"', 'unit = "mm"'))
-    refused(
-        ingest("a.csv"),
-        bench,
-        "map.toml, columns.f_in_N",
-        "'mm' is not convertible to N",
-        "a force",
-    )
+    wrong("a.csv", says=["map.toml, columns.f_in_N", "'mm' is not convertible to N", "a force"])
 
 
 @pytest.mark.parametrize(
@@ -117,21 +113,27 @@ def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, ingest):
         ("empty", "folder", "holds no file"),
     ],
 )
-def test_what_is_no_recording_is_one_line(bench, ingest, name, content, message):
+def test_what_is_no_recording_is_one_line(bench, wrong, name, content, message):
     if content == "folder":
         (bench / name).mkdir()
     elif content is not None:
         (bench / name).write_bytes(content)
-    done = ingest(name)
-    refused(done, bench, message)
-    assert done.stderr.rstrip("\n").isprintable()
+    wrong(name, says=[message])
 
 
-def public(name):
-    folder = Path(os.environ.get("TSAS_DATA", REPOSITORY / ".." / "shared" / "data")) / name
-    if not folder.is_dir():
-        pytest.skip(f"no public recordings in {folder}: set TSAS_DATA, see docs/ingest.md")
-    return folder
+@pytest.fixture
+def public(done, tmp_path):
+    """Return a function that ingests public recordings and gives them by run."""
+
+    def ingested(name, *folders):
+        home = Path(os.environ.get("TSAS_DATA", REPOSITORY / ".." / "shared" / "data")) / name
+        if not home.is_dir():
+            pytest.skip(f"no public recordings in {home}: set TSAS_DATA, see docs/ingest.md")
+        sources = [home / folder for folder in folders] or [home]
+        done("ingest", *sources, "--map", MAPS / f"{name}.toml", "--out", tmp_path / "d")
+        return {recording.run.id: recording for recording in read_dataset(tmp_path / "d")}
+
+    return ingested
 
 
 def strokes(recording, half_window=50):
@@ -143,19 +145,8 @@ def strokes(recording, half_window=50):
     return inner, speed > fast, speed < -fast
 
 
-def test_the_surgical_instrument_pulls_when_it_moves_in(tsas, tmp_path):
-    folder = public("mis-tool")
-    sources = folder / "L_4", folder / "pitch"
-    done = tsas(
-        "ingest",
-        *sources,
-        "--map",
-        MAPS / "mis-tool.toml",
-        "--out",
-        tmp_path / "d",
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    recordings = {recording.run.id: recording for recording in read_dataset(tmp_path / "d")}
+def test_the_surgical_instrument_pulls_when_it_moves_in(public):
+    recordings = public("mis-tool", "L_4", "pitch")
     assert len(recordings) == 9
     for recording in recordings.values():
         inner, pull, release = strokes(recording)
@@ -171,18 +162,8 @@ def test_the_surgical_instrument_pulls_when_it_moves_in(tsas, tmp_path):
     assert recordings["pitch_pitch_5"].run.model_extra["wrist_pitch_deg"] == -60
 
 
-def test_the_friction_damper_is_tight_at_the_drive_when_it_moves_in(tsas, tmp_path):
-    folder = public("friction-damper")
-    done = tsas(
-        "ingest",
-        folder,
-        "--map",
-        MAPS / "friction-damper.toml",
-        "--out",
-        tmp_path / "d",
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    recordings = {recording.run.id: recording for recording in read_dataset(tmp_path / "d")}
+def test_the_friction_damper_is_tight_at_the_drive_when_it_moves_in(public):
+    recordings = public("friction-damper")
     assert len(recordings) == 4
     for recording in recordings.values():
         inner, pull, release = strokes(recording)

@@ -1,19 +1,18 @@
 """No command replaces what it reads: all that write, each of their inputs, all places around."""
 
-import hashlib
 import shutil
 from pathlib import Path
 
 import pytest
-import typer
 
 import tsas_cli as tsas
 from tests.drives import drive_dataset
+from tests.test_app import CALLS as COMMANDS
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.model_file import write_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import write_json, write_sums
+from tsas_cli.support.files import sha256_of, write_json, write_sums
 from tsas_studies.commands import app
 
 SHIPPED = Path(__file__).parents[2] / "datasets"
@@ -46,42 +45,21 @@ CALLS = {
     "challenge score": ["home/set", "home/entry"],
 }
 # Parameters that name no file, of any command that writes.
-NO_FILES = {
-    "out",
-    "force",
-    "quiet",
-    "as_json",
-    "rrd",
-    "live",
-    "despite",
-    "runs",
-    "guess",
-    "dynamics",
-    "speed",
-}
+NO_FILES = {"out", "force", "quiet", "as_json", "rrd", "live", "despite", "runs", "guess"}
+NO_FILES |= {"dynamics", "speed", "to", "sheath_length_mm", "total_bend_rad", "preload_n"}
 NO_FILES |= {"fit_own", "nodes", "controller", "compare", "disturb", "as_printed", "seeds", "seed"}
 NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
 NO_FILES |= {"tool", "what", "conditions", "salt"}
-NO_FILES |= {"to", "sheath_length_mm", "total_bend_rad", "preload_n"}
 FILES = {"sources", "map_path", "dataset", "model", "a", "b", "on", "path", "plant", "drive"}
 FILES |= {"given", "settings", "reference", "datasets", "options", "folders", "sealed", "entries"}
 WRITE_NO_FILE = {"verify", "view", "runs", "doctor", "effects", "explain"}
 WITHOUT_FORCE = {"init", "upload"}  # nothing is overwritten; to an address alone
 
 
-def commands(group=None, above=()):
-    for name, command in (group or typer.main.get_command(app)).commands.items():
-        if hasattr(command, "commands"):
-            yield from commands(command, (*above, name))
-        else:
-            yield " ".join((*above, name)), {parameter.name for parameter in command.params}
-
-
 def test_every_command_and_every_parameter_is_looked_at():
-    names = {name for name, _ in commands()}
-    assert names == {*CALLS} - {"ingest --guess"} | WRITE_NO_FILE | WITHOUT_FORCE
-    parameters = {p for name, found in commands() if name in CALLS for p in found}
-    assert parameters == NO_FILES | FILES
+    assert set(COMMANDS) == {*CALLS} - {"ingest --guess"} | WRITE_NO_FILE | WITHOUT_FORCE
+    writing = [command for name, command in COMMANDS.items() if name in CALLS]
+    assert {p.name for command in writing for p in command.params} == NO_FILES | FILES
 
 
 FILES_OF_OTHERS = {
@@ -141,28 +119,22 @@ def called(call: str, out: Path, home: Path) -> list[str]:
     return [*call.split(), *given, "--out", str(out), *(["--force"] if call != "sweep" else [])]
 
 
-def state(folder: Path) -> dict[str, str]:
-    return {
-        str(path): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in folder.rglob("*")
-        if path.is_file()
-    }
+def state(folder: Path) -> dict[Path, str]:
+    return {path: sha256_of(path) for path in folder.rglob("*") if path.is_file()}
 
 
 def places(call: str, home: Path) -> set[Path]:
     """Return each input of a call, what holds one, and what lies inside one."""
     found = set()
     for text in CALLS[call]:
-        if (read := text.rpartition("home/")[2]) != text:
-            path = home / read
+        if HERE in text:
+            path = home / text.rpartition(HERE)[2]
             found |= {path, path.parent, home, *(path.iterdir() if path.is_dir() else ())}
     return found
 
 
-REFUSED = (
-    "is an input, and would be replaced|lies inside .*, which is an input|^[^:]*: is a f(ile|older)"
-)
-REFUSED += "|is no folder of an earlier sweep"
+REFUSED = "is an input, and would be replaced|lies inside .*, which is an input"
+REFUSED += "|^[^:]*: is a f(ile|older)|is no folder of an earlier sweep"
 CASES = [call for call, given in CALLS.items() if any(HERE in text for text in given)]
 
 

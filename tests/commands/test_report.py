@@ -1,11 +1,12 @@
 import json
 import re
 import shutil
-from html import unescape
 
 import pytest
 
-from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
+import tsas_cli.stages.report as report_stage
+from tests.reporting import made_folders as by_hand
+from tests.reporting.test_page import commands_of
 from tsas_cli.reporting.pdf import PDF_MARK
 from tsas_cli.verifying.claims import sealed
 
@@ -13,10 +14,10 @@ from tsas_cli.verifying.claims import sealed
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     root = tmp_path_factory.mktemp("report")
-    dataset = make_dataset(root / "dataset", ("a",), samples=400)
-    make_check(dataset, root / "check")
-    make_calibration(dataset, root / "calibrated")
-    make_simulation(dataset, root / "simulated")
+    dataset = by_hand.make_dataset(root / "dataset", ("a",), samples=400)
+    by_hand.make_check(dataset, root / "check")
+    by_hand.make_calibration(dataset, root / "calibrated")
+    by_hand.make_simulation(dataset, root / "simulated")
     return root
 
 
@@ -25,13 +26,15 @@ def folder(made, tmp_path):
     return shutil.copytree(made, tmp_path / "made")
 
 
-def refused(result, *words):
-    code, out, err = result
-    assert code == 2
-    assert out == ""
-    assert err.count("\n") == 1
-    for word in words:
-        assert word in err
+@pytest.fixture
+def refused(refused_here):
+    """Call the command, which refuses in one line that holds some words."""
+
+    def call(*arguments, says):
+        line = refused_here("report", *arguments)
+        assert [word for word in says if word not in line] == []
+
+    return call
 
 
 def test_one_folder_of_a_stage_is_enough_and_leads_to_the_dataset(folder, here):
@@ -48,76 +51,65 @@ def test_json_names_what_was_read_and_quiet_says_nothing(folder, here):
     assert here("report", folder / "check", "--out", folder / "q.html", "-q") == (0, "", "")
 
 
-def test_an_existing_page_stays_without_force(folder, here):
-    page, call = folder / "r.html", ["report", folder / "check", "--out", folder / "r.html"]
-    assert here(*call)[0] == 0
+def test_an_existing_page_stays_without_force(folder, here, refused):
+    page, call = folder / "r.html", [folder / "check", "--out", folder / "r.html"]
+    assert here("report", *call)[0] == 0
     page.write_text(page.read_text() + "earlier")
-    refused(here(*call), "r.html", "--force")
+    refused(*call, says=["r.html", "--force"])
     assert page.read_text().endswith("earlier")
-    assert here(*call, "--force")[0] == 0
+    assert here("report", *call, "--force")[0] == 0
     assert not page.read_text().endswith("earlier")
     page.write_text("mine")
-    refused(here(*call, "--force"), "r.html", "not an earlier output")
+    refused(*call, "--force", says=["r.html", "not an earlier output"])
     assert page.read_text() == "mine"
 
 
-def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, here):
+def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, refused):
     (folder / "other").mkdir()
-    result = here("report", folder / "other", "--out", folder / "r.html")
-    refused(result, "other", "dataset.toml", "calibration.json", "simulation.json", "check.json")
-    assert sorted(p.name for p in folder.iterdir() if "r.html" in p.name) == []
-
-
-def changed(path):
-    with path.open("ab") as stream:
-        stream.write(b"\n# changed\n")
+    kinds = ["dataset.toml", "calibration.json", "simulation.json", "check.json"]
+    refused(folder / "other", "--out", folder / "r.html", says=["other", *kinds])
+    assert [p.name for p in folder.iterdir() if "r.html" in p.name] == []
 
 
 @pytest.mark.parametrize(
-    ("shown", "spoil", "words"),
+    ("shown", "file", "content", "says"),
     [
-        (
-            "calibrated",
-            lambda made: changed(made / "dataset" / "dataset.toml"),
-            ("calibration.json", "dataset.toml", "has changed"),
-        ),
-        ("simulated", lambda made: changed(made / "dataset/runs/0.parquet"), ("0.parquet",)),
-        (
-            "calibrated",
-            lambda made: (made / "dataset").rename(made / "elsewhere"),
-            ("calibration.json", "dataset"),
-        ),
-        (
-            "simulated",
-            lambda made: (made / "simulated/runs/a.parquet").write_bytes(b"PAR1"),
-            ("a.parquet",),
-        ),
-        (
-            "check",
-            lambda made: (made / "check/check.json").write_text('{"format": 1,'),
-            ("check.json", "JSON"),
-        ),
+        ("calibrated", "dataset/dataset.toml", None, ["calibration.json", "toml", "has changed"]),
+        ("simulated", "dataset/runs/0.parquet", None, ["0.parquet"]),
+        ("simulated", "simulated/runs/a.parquet", b"PAR1", ["a.parquet"]),
+        ("check", "check/check.json", b'{"format": 1,', ["check.json", "JSON"]),
     ],
 )
-def test_what_has_changed_or_is_gone_is_refused(folder, here, shown, spoil, words):
-    spoil(folder)
-    refused(here("report", folder / shown, "--out", folder / "r.html"), *words)
+def test_what_has_changed_is_refused(folder, refused, shown, file, content, says):
+    path = folder / file
+    path.write_bytes(path.read_bytes() + b"\n# changed\n" if content is None else content)
+    refused(folder / shown, "--out", folder / "r.html", says=says)
 
 
-def test_a_dataset_may_lie_elsewhere(folder, here):
-    moved = [folder / "calibrated", (folder / "dataset").rename(folder / "elsewhere")]
+def test_a_simulation_of_another_length_is_refused(folder, refused):
+    other = by_hand.make_dataset(folder / "longer", ("a",), samples=500)
+    simulated = by_hand.make_simulation(other, folder / "other")
+    shutil.copy(simulated / "runs" / "a.parquet", folder / "simulated" / "runs")
+    out = ("--out", folder / "r.html")
+    refused(folder / "simulated", *out, says=["a.parquet", "500 rows", "400"])
+
+
+def test_a_dataset_may_lie_elsewhere_where_it_is_named(folder, here, refused):
+    moved = folder / "calibrated", (folder / "dataset").rename(folder / "elsewhere")
+    refused(moved[0], "--out", folder / "r.html", says=["calibration.json", "dataset"])
     assert here("report", *moved, "--out", folder / "r.html")[0] == 0
 
 
-def test_two_folders_of_one_kind_are_refused(folder, here):
+def test_two_folders_of_one_kind_are_refused(folder, refused):
     shutil.copytree(folder / "calibrated", folder / "second")
-    pair = [folder / "calibrated", folder / "second"]
-    refused(here("report", *pair, "--out", folder / "r.html"), "second", "calibration.json")
+    out = ("--out", folder / "r.html")
+    pair = folder / "calibrated", folder / "second"
+    refused(*pair, *out, says=["second", "calibration.json"])
     again = [folder / "simulated"] * 2
-    refused(here("report", *again, "--out", folder / "r.html"), "a second folder", "simulated")
+    refused(*again, *out, says=["a second folder", "simulated"])
 
 
-def test_several_simulations_stand_beside_each_other_by_their_names(folder, here):
+def test_several_simulations_stand_beside_each_other_by_their_names(folder, here, refused):
     shutil.copytree(folder / "simulated", folder / "rough")
     pair = [folder / "simulated", folder / "rough"]
     code, out, _ = here("report", *pair, "--out", folder / "r.html", "--json")
@@ -127,12 +119,12 @@ def test_several_simulations_stand_beside_each_other_by_their_names(folder, here
     assert read["simulation.json, rough"] == str(folder / "rough")
     page = (folder / "r.html").read_text()
     assert re.search(r"RMS of the residual: simulated ([\d.]+), rough \1, noise level", page)
-    commands = unescape(re.search("<pre[^>]*><code>(.*?)</code>", page, re.DOTALL)[1])
+    commands = commands_of(page)
     assert commands.count("tsas simulate") == 2
     assert f"{folder / 'simulated'} {folder / 'rough'} --out report.html" in commands
     assert sealed(folder / "r.html").read[-1]["folder"] == "rough"
     (folder / "rough" / "simulation.json").write_text("{}")
-    refused(here("report", *pair, "--out", folder / "s.html"), "rough")
+    refused(*pair, "--out", folder / "s.html", says=["rough"])
 
 
 @pytest.mark.parametrize(
@@ -143,20 +135,11 @@ def test_several_simulations_stand_beside_each_other_by_their_names(folder, here
         (lambda content: content["stiffness"][0].update(run=None), "stiffness.0.run"),
     ],
 )
-def test_a_stage_file_that_is_not_whole_is_refused(folder, here, spoil, message):
+def test_a_stage_file_that_is_not_whole_is_refused(folder, refused, spoil, message):
     path = folder / "calibrated" / "calibration.json"
-    content = json.loads(path.read_text())
-    spoil(content)
-    path.write_text(json.dumps(content))
-    refused(here("report", folder / "calibrated", "--out", folder / "r.html"), str(path), message)
-
-
-def test_a_simulated_run_of_another_length_is_refused(folder, here, tmp_path):
-    longer = make_dataset(tmp_path / "longer", ("a",), samples=500)
-    make_simulation(longer, tmp_path / "other")
-    shutil.copy(tmp_path / "other" / "runs" / "a.parquet", folder / "simulated" / "runs")
-    result = here("report", folder / "simulated", "--out", folder / "r.html")
-    refused(result, "a.parquet", "500 rows", "400")
+    with by_hand.edited(path) as content:
+        spoil(content)
+    refused(folder / "calibrated", "--out", folder / "r.html", says=[str(path), message])
 
 
 @pytest.fixture
@@ -166,13 +149,12 @@ def printer(monkeypatch):
     def printed(html, path):
         path.write_bytes(b"%PDF" + PDF_MARK + html[:9].encode())
 
-    import tsas_cli.stages.report as module
-
-    monkeypatch.setattr(module, "browser", lambda: "chromium")
-    monkeypatch.setattr(module, "print_page", printed)
+    monkeypatch.setattr(report_stage, "browser", lambda: "chromium")
+    monkeypatch.setattr(report_stage, "print_page", printed)
 
 
-def test_the_pdf_stands_beside_the_page(folder, here, printer):
+@pytest.mark.usefixtures("printer")
+def test_the_pdf_stands_beside_the_page(folder, here):
     code, out, _ = here("report", folder / "check", "--out", folder / "r.html", "--pdf", "--json")
     assert code == 0
     assert json.loads(out)["pdf"] == str(folder / "r.pdf")
@@ -182,27 +164,27 @@ def test_the_pdf_stands_beside_the_page(folder, here, printer):
     assert "t.pdf, 0.00 MB" in out
 
 
-def test_an_existing_pdf_stays_without_force_and_no_page_is_written(folder, here, printer):
+@pytest.mark.usefixtures("printer")
+def test_an_existing_pdf_stays_without_force_and_no_page_is_written(folder, here, refused):
     (folder / "r.pdf").write_text("mine")
-    words = ["report", folder / "check", "--out", folder / "r.html", "--pdf"]
-    refused(here(*words), "r.pdf", "--force")
+    words = [folder / "check", "--out", folder / "r.html", "--pdf"]
+    refused(*words, says=["r.pdf", "--force"])
+    refused(*words, "--force", says=["r.pdf", "not an earlier output"])
     assert (folder / "r.pdf").read_text() == "mine"
-    assert not (folder / "r.html").exists()
-    refused(here(*words, "--force"), "r.pdf", "not an earlier output")
     assert not (folder / "r.html").exists()
     (folder / "r.pdf").unlink()
     for more in ((), ("--force",)):
-        assert here(*words, *more)[0] == 0
+        assert here("report", *words, *more)[0] == 0
         assert (folder / "r.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_the_page_may_not_have_the_name_of_the_pdf(folder, here, printer):
-    words = ["report", folder / "check", "--out", folder / "r.pdf", "--pdf"]
-    refused(here(*words), "r.pdf", ".html")
+@pytest.mark.usefixtures("printer")
+def test_the_page_may_not_have_the_name_of_the_pdf(folder, refused):
+    refused(folder / "check", "--out", folder / "r.pdf", "--pdf", says=["r.pdf", ".html"])
 
 
-def test_without_a_browser_neither_page_nor_pdf_is_written(folder, here, monkeypatch):
+def test_without_a_browser_neither_page_nor_pdf_is_written(folder, refused, monkeypatch):
     monkeypatch.setattr("shutil.which", lambda name: None)
-    words = ["report", folder / "check", "--out", folder / "r.html", "--pdf"]
-    refused(here(*words), "no Chromium", "apt install chromium")
+    says = ["no Chromium", "apt install chromium"]
+    refused(folder / "check", "--out", folder / "r.html", "--pdf", says=says)
     assert [p.name for p in folder.iterdir() if "r." in p.name] == []

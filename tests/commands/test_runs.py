@@ -6,17 +6,16 @@ from tests.collection.collected import write
 
 
 @pytest.fixture
-def call(tsas, tmp_path, monkeypatch):
+def home(tmp_path, monkeypatch):
     monkeypatch.setenv("TSAS_CACHE_DIR", str(tmp_path / "cache"))
     write(tmp_path / "rigs" / "a", {"total_bend_rad": 3.5}, {"total_bend_rad": 1.0})
     write(tmp_path / "rigs" / "b c", {"total_bend_rad": 4.0})
-    return lambda *arguments: tsas("runs", *arguments, cwd=tmp_path)
+    return tmp_path
 
 
-def test_a_table_of_the_runs(call):
-    done = call("total_bend_rad > 3", "--in", "rigs", "--columns", "folder,run,total_bend_rad")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines() == [
+def test_a_table_of_the_runs(done, home):
+    call = ("runs", "total_bend_rad > 3", "--in", "rigs", "--columns", "folder,run,total_bend_rad")
+    assert done(*call, cwd=home).splitlines() == [
         "2 of 3 runs",
         "  folder    run  total_bend_rad",
         "  --------  ---  --------------",
@@ -26,17 +25,15 @@ def test_a_table_of_the_runs(call):
     ]
 
 
-def test_json_and_paths(call):
-    done = call("--in", "rigs", "--sort", "-total_bend_rad", "--json")
-    content = json.loads(done.stdout)
+def test_json_and_paths(done, home):
+    call = ("runs", "--in", "rigs")
+    content = json.loads(done(*call, "--sort", "-total_bend_rad", "--json", cwd=home))
     assert [row["total_bend_rad"] for row in content["runs"]] == [4.0, 3.5, 1.0]
-    assert call("--in", "rigs", "--paths").stdout == "rigs/a\nrigs/b c\n"
-    assert call("--in", "rigs", "--quiet").stdout == ""
+    assert done(*call, "--paths", cwd=home) == "rigs/a\nrigs/b c\n"
+    assert done(*call, "--quiet", cwd=home) == ""
 
 
-def test_errors_are_one_line(call):
-    done = call("bend > 3")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("tsas: the query, character 1, at 'bend > 3': there is no column")
-    assert done.stderr.count("\n") == 1
-    assert call("--paths", "--json").returncode == 2
+def test_errors_are_one_line(refused, home):
+    said = refused("runs", "bend > 3", cwd=home)
+    assert said.startswith("tsas: the query, character 1, at 'bend > 3': there is no column")
+    refused("runs", "--paths", "--json", cwd=home)

@@ -2,9 +2,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tsas_studies.challenge.rig.motions import sine
-from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
+from tests.rigs import dataset_of, recorded
 from tsas_studies.challenge.rig.tendon import Rig
 
 COUNT_COMPILATIONS = """
@@ -23,12 +21,9 @@ print(len(compilations.buffer))
 def test_the_second_call_compiles_nothing(tmp_path: Path) -> None:
     """The first need not either: other tests may have made its machine code."""
     rig = Rig(proximal_length_mm=150.0, distal_length_mm=60.0, cells=30)
-    columns = record(rig, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=50.0))
-    dataset = write_dataset(tmp_path / "dataset", [Run("a", columns, conditions(rig))])
+    dataset = dataset_of(rig, tmp_path / "dataset", a=recorded(rig, 50.0))
     call = [sys.executable, "-c", COUNT_COMPILATIONS, "calibrate", dataset, "--quiet", "--out"]
     for number in ("first", "second"):
-        result = subprocess.run(
-            [*call, tmp_path / number], capture_output=True, text=True, check=False
-        )
-        assert result.returncode == 0, result.stderr
+        out = tmp_path / number
+        result = subprocess.run([*call, out], stdout=subprocess.PIPE, text=True, check=True)
     assert int(result.stdout) == 0

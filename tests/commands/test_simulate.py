@@ -8,40 +8,39 @@ import pytest
 
 import tsas_cli as tsas
 from tests.commands.documented import documented
-from tsas_studies.challenge.rig.motions import sine
-from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
+from tests.rigs import dataset_of, recorded
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.16, cells=60)
-
-
-@pytest.fixture(scope="module")
-def recorded():
-    return record(TRUE, sine(rate_Hz=400.0), sensors=Sensors(rate_Hz=200.0))
+MODEL = """
+format = 1
+[parameters]
+friction_coefficient = { value = 0.16, unit = "1" }
+tendon_stiffness_N = { value = 67858.4, unit = "N" }
+load_stiffness_N_per_mm = { value = 1.579, unit = "N/mm" }
+"""
 
 
 @pytest.fixture
-def folder(tmp_path, recorded):
-    return write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(TRUE))])
+def folder(tmp_path):
+    return dataset_of(TRUE, tmp_path / "dataset", a=recorded(TRUE, 200.0))
 
 
 @pytest.fixture
 def model(tmp_path):
-    path = tmp_path / "m.toml"
-    path.write_text(
-        "format = 1\n[parameters.friction_coefficient]\nvalue = 0.16\nunit = '1'\n"
-        "[parameters.tendon_stiffness_N]\nvalue = 67858.4\nunit = 'N'\n"
-        "[parameters.load_stiffness_N_per_mm]\nvalue = 1.579\nunit = 'N/mm'\n",
-        encoding="utf-8",
-    )
-    return path
+    """Return a function that writes the true model, with more text behind it."""
+
+    def write(more=""):
+        (tmp_path / "m.toml").write_text(MODEL + more, encoding="utf-8")
+        return tmp_path / "m.toml"
+
+    return write
 
 
 def test_the_true_model_is_at_the_noise_and_the_data_sheet_is_not(folder, model, tmp_path):
     """RMSE as it is written, and as it follows from the written samples."""
     rmse = {}
-    for name, given in {"true": model, "sheet": None}.items():
+    for name, given in {"true": model(), "sheet": None}.items():
         out = tmp_path / name
         channels = tsas.simulate(folder, model=given, out=out).summary["runs"]["a"]["channels"]
         measured = pq.read_table(folder / "runs" / "a.parquet").to_pandas()
@@ -55,12 +54,10 @@ def test_the_true_model_is_at_the_noise_and_the_data_sheet_is_not(folder, model,
     assert rmse["sheet"]["f_in_N"]["rmse"] > 10.0 * rmse["true"]["f_in_N"]["rmse"]
 
 
-def test_it_writes_what_is_documented_and_agrees_with_the_fit(strict, folder, tmp_path):
+def test_it_writes_what_is_documented_and_agrees_with_the_fit(done, folder, tmp_path):
     calibrated = tsas.calibrate(folder, out=tmp_path / "c").summary["channels"]["a"]
     call = ("--model", tmp_path / "c" / "model.toml", "--out", tmp_path / "out", "--json")
-    done = strict("simulate", folder, *call)
-    assert (done.returncode, done.stderr) == (0, "")
-    summary = json.loads(done.stdout)
+    summary = json.loads(done("simulate", folder, *call))
     written = (tmp_path / "out" / "simulation.json").read_text(encoding="utf-8")
     assert summary == json.loads(written)
     assert set(summary) == documented("simulation.json")
@@ -77,21 +74,20 @@ def test_it_writes_what_is_documented_and_agrees_with_the_fit(strict, folder, tm
     assert table.schema.field("f_in_N").metadata[b"unit"] == b"N"
 
 
-def test_gaps_of_the_drive_are_null(recorded, tmp_path):
-    columns = {name: v.copy() for name, v in recorded.items()}
+def test_gaps_of_the_drive_are_null(tmp_path):
+    columns = {name: v.copy() for name, v in recorded(TRUE, 200.0).items()}
     columns["x_in_mm"][500:600] = np.nan
-    folder = write_dataset(tmp_path / "d", [Run("a", columns, conditions(TRUE))])
+    folder = dataset_of(TRUE, tmp_path / "d", a=columns)
     result = tsas.simulate(folder, out=tmp_path / "out")
     table = pq.read_table(tmp_path / "out" / "runs" / "a.parquet")
     assert table.column("f_in_N").null_count == 100
     channel = result.summary["runs"]["a"]["channels"]["f_in_N"]
-    assert channel["samples"] == recorded["time_s"].size - 100
+    assert channel["samples"] == columns["time_s"].size - 100
 
 
 @pytest.mark.parametrize("load", ["force", "displacement"])
-def test_the_static_model_knows_springs_only(recorded, tmp_path, load):
-    given = conditions(TRUE) | {"load": load}
-    folder = write_dataset(tmp_path / "d", [Run("a", recorded, given)])
+def test_the_static_model_knows_springs_only(tmp_path, load):
+    folder = dataset_of(TRUE, tmp_path / "d", told={"load": load}, a=recorded(TRUE, 200.0))
     with pytest.raises(tsas.InputError) as refused:
         tsas.simulate(folder, dynamics="static", out=tmp_path / "out")
     assert refused.value.line() == (
@@ -102,17 +98,10 @@ def test_the_static_model_knows_springs_only(recorded, tmp_path, load):
 
 
 @pytest.mark.parametrize("dynamics", ["static", "lugre"])
-def test_only_the_distributed_model_has_a_second_tendon(
-    strict, recorded, model, tmp_path, dynamics
-):
-    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(TRUE))])
-    pair = tmp_path / "pair.toml"
-    line = '\n[effects.antagonist.preload_N]\nvalue = 20.0\nunit = "N"\n'
-    pair.write_text(model.read_text() + line)
-    out = tmp_path / "out"
-    done = strict("simulate", folder, "--model", pair, "--dynamics", dynamics, "--out", out)
-    assert done.returncode == 2
-    assert done.stderr == (
+def test_only_the_distributed_model_has_a_second_tendon(refused, folder, model, tmp_path, dynamics):
+    pair = model('[effects.antagonist.preload_N]\nvalue = 20.0\nunit = "N"\n')
+    call = ("--model", pair, "--dynamics", dynamics, "--out", tmp_path / "out")
+    assert refused("simulate", folder, *call) == (
         "tsas: run a: antagonist is in the model, which the static and the dynamic model do not "
         "have; use --dynamics slip\n"
     )
@@ -140,22 +129,18 @@ def test_what_cannot_be_simulated_is_said_and_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
-    recorded, model, tmp_path
-):
+def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(model, tmp_path):
     """A shifted sensor ruins the prediction; friction stays what the model says."""
-    shifted = recorded | {"x_in_mm": recorded["x_in_mm"] + 0.4}
-    folder = write_dataset(
-        tmp_path / "d",
-        [Run("a", recorded, conditions(TRUE)), Run("b", shifted, conditions(TRUE))],
-    )
-    wrong = model.read_text(encoding="utf-8").replace("value = 0.16", "value = 0.15")
-    (tmp_path / "wrong.toml").write_text(wrong, encoding="utf-8")
+    whole = recorded(TRUE, 200.0)
+    shifted = whole | {"x_in_mm": whole["x_in_mm"] + 0.4}
+    folder = dataset_of(TRUE, tmp_path / "d", a=whole, b=shifted)
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(MODEL.replace("value = 0.16", "value = 0.15"), encoding="utf-8")
     residuals = {}
     for name, file, fit_own in (
-        ("as it is", model, False),
-        ("own", model, True),
-        ("wrong", tmp_path / "wrong.toml", True),
+        ("as it is", model(), False),
+        ("own", model(), True),
+        ("wrong", wrong, True),
         ("again", tmp_path / "own", False),  # with the model as it was used
     ):
         out = tmp_path / name
@@ -168,19 +153,6 @@ def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
     assert residuals["again"] == residuals["own"]
 
 
-BRISTLES = """
-[bristles]
-stiffness_N_per_mm = {{ value = {stiffness}, unit = "N/mm" }}
-damping_N_s_per_mm = {{ value = {damping}, unit = "N s/mm" }}
-"""
-
-
-def with_bristles(path, **values):
-    text = 'format = 1\nkind = "model"\n' + BRISTLES.format(**values)
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 def test_the_dynamic_model_says_whose_bristles_it_takes(folder):
     result = tsas.simulate(folder, dynamics="lugre")
     assert "LuGre chain, 50 lumps" in repr(result)
@@ -189,8 +161,13 @@ def test_the_dynamic_model_says_whose_bristles_it_takes(folder):
 
 
 def test_the_dynamic_model_says_where_sliding_is_unstable(folder, tmp_path):
+    model = tmp_path / "model.toml"
     for damping, unstable in ((15.8, True), (0.2, False)):
-        model = with_bristles(tmp_path / "model.toml", stiffness=5000.0, damping=damping)
+        model.write_text(
+            'format = 1\n[bristles]\nstiffness_N_per_mm = { value = 5000.0, unit = "N/mm" }\n'
+            f'damping_N_s_per_mm = {{ value = {damping}, unit = "N s/mm" }}\n',
+            encoding="utf-8",
+        )
         said = repr(tsas.simulate(folder, model=model, dynamics="lugre"))
         assert ("sliding is unstable in a dead band" in said) == unstable
         assert ("79.7 times critical" in said) == unstable
@@ -200,7 +177,7 @@ def test_the_dynamic_model_says_where_sliding_is_unstable(folder, tmp_path):
 def test_more_nodes_are_nearer_to_many(folder, model, dynamics):
     f_in = {}
     for nodes in (5, 20, 200):
-        result = tsas.simulate(folder, model=model, dynamics=dynamics, nodes=nodes)
+        result = tsas.simulate(folder, model=model(), dynamics=dynamics, nodes=nodes)
         assert result.summary["nodes"] == nodes
         assert f" {nodes} " in result.summary["runs"]["a"]["solver"]
         f_in[nodes] = result["a"].columns["f_in_N"]
@@ -209,12 +186,10 @@ def test_more_nodes_are_nearer_to_many(folder, model, dynamics):
 
 
 def test_a_tendon_that_sticks_and_slips_is_reported_to(folder, model):
-    text = model.read_text(encoding="utf-8")
-    text += (
+    falling = model(
         "[effects.stribeck_friction.excess]\nvalue = 0.15\nunit = '1'\n"
         "[effects.stribeck_friction.velocity_mm_per_s]\nvalue = 3.0\nunit = 'mm/s'\n"
     )
-    model.write_text(text, encoding="utf-8")
-    said = repr(tsas.simulate(folder, model=model, dynamics="lugre"))
+    said = repr(tsas.simulate(folder, model=falling, dynamics="lugre"))
     assert "sticks and slips" in said
     assert "friction falls with speed by more than the damping" in said

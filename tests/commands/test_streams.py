@@ -6,19 +6,16 @@ import pty
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 import tsas_cli
 import tsas_cli.app
-import tsas_studies
+from tests.rigs import dataset_of, recorded
+from tests.terminal import read_from
 from tests.test_app import CALLS
 from tsas_cli.records.result import Result
 from tsas_cli.support.stopping import EXIT_CODE
-from tsas_studies.challenge.rig.motions import sine
-from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 SUMMARY = {"format": 1, "stage": "any", "value": 1.5}
@@ -34,6 +31,7 @@ NEEDED_BESIDES = {
 }
 OTHERS = ("doctor", "init", "view")  # commands about the program itself and its window
 STAGES = [name for name in CALLS if name not in OTHERS]
+COLOUR = re.compile(r"\x1b\[[0-9;]*3[0-9]m")
 BAR = """
 import time
 from tsas_cli.commands.common import progress
@@ -100,14 +98,10 @@ def needed(command):
 
 
 @pytest.mark.parametrize("name", STAGES)
-def test_json_is_one_document_and_nothing_else(called, name):
+def test_json_is_one_document_and_quiet_is_silent(called, name):
     output = called(name, "--json")
     assert json.loads(output.out) == SUMMARY
     assert output.err == ""
-
-
-@pytest.mark.parametrize("name", STAGES)
-def test_quiet_is_silent(called, name):
     assert called(name, "--quiet") == ("", "")
 
 
@@ -123,26 +117,16 @@ def test_tables_and_sentences_are_the_result(called, name):
 
 def on_terminal(call, code=0, **environment):
     """Run a program whose standard error is a terminal; return what is said there and printed."""
-    master, slave = pty.openpty()
+    terminal, inside = pty.openpty()
     environment = os.environ | {"TERM": "xterm-256color", "COLUMNS": "120"} | environment
     environment.pop("TSAS_THREADS", None)
-    process = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=slave, env=environment)
-    os.close(slave)
-    output = b""
-    while chunk := _read(master):
-        output += chunk
-    printed = process.stdout.read()
-    assert process.wait() == code
-    process.stdout.close()
-    os.close(master)
-    return output.decode(), printed.decode()
-
-
-def _read(master):
-    try:
-        return os.read(master, 65536)
-    except OSError:  # the terminal is gone with the last that has it open
-        return b""
+    call = {"args": call, "stdout": subprocess.PIPE, "stderr": inside, "env": environment}
+    with subprocess.Popen(**call) as process:
+        os.close(inside)
+        said = read_from(terminal)
+        printed = process.stdout.read()
+    assert process.returncode == code
+    return said, printed.decode()
 
 
 def bar(quiet, **environment):
@@ -151,6 +135,8 @@ def bar(quiet, **environment):
 
 def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
     output, printed = bar(quiet=False)
+    assert COLOUR.search(output)
+    assert not COLOUR.search(bar(quiet=False, NO_COLOR="1")[0])
     assert printed == "the result\n"
     counts = re.findall(r"(\d) of (\d)", output)
     assert ("1", "2") in counts  # two pieces were known to come …
@@ -158,9 +144,6 @@ def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
     assert "fit" in output
     assert "f_in is not recorded" in output
     assert re.search(r"about 0:00:0\d left", output)
-
-
-def test_quiet_draws_no_bar():
     assert bar(quiet=True) == ("", "the result\n")
 
 
@@ -183,15 +166,8 @@ run()
 def searched(tmp_path_factory):
     """Two short recordings of a rig with tendon outside the sheath, which a search finds."""
     rig = Rig(proximal_length_mm=150.0, cells=30)
-    folder = tmp_path_factory.mktemp("searched") / "dataset"
-    sensors = Sensors(rate_Hz=50.0)
-    return write_dataset(
-        folder,
-        [
-            Run(name, record(rig, sine(rate_Hz=100.0), sensors=sensors, seed=k), conditions(rig))
-            for k, name in enumerate("ab")
-        ],
-    )
+    runs = {name: recorded(rig, 50.0, seed=k) for k, name in enumerate("ab")}
+    return dataset_of(rig, tmp_path_factory.mktemp("searched") / "dataset", **runs)
 
 
 @pytest.mark.parametrize("times", [1, 2])
@@ -209,9 +185,8 @@ def test_the_first_stop_ends_a_search_and_the_second_stops_it(
         return
     found = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert found["verdict"] == "undecided"
-    assert (
-        "ended after 2 fits" in found["reason"]
-    )  # a signal comes after a step, and counts at the next
+    # A signal comes after a step, and counts at the next.
+    assert "ended after 2 fits" in found["reason"]
     assert len(found["candidates"]) == 2
     assert found["reason"] in printed
 
@@ -235,12 +210,6 @@ with progress("fit", quiet=False):
     assert "compiles" not in on_terminal([sys.executable, "-c", program], **cold)[0]
 
 
-def test_no_colour_is_asked_for():
-    colour = re.compile(r"\x1b\[[0-9;]*3[0-9]m")
-    assert colour.search(bar(quiet=False)[0])
-    assert not colour.search(bar(quiet=False, NO_COLOR="1")[0])
-
-
 def test_a_stage_shows_its_bar_on_a_terminal_and_prints_the_result(dataset):
     call = [sys.executable, "-m", "tsas_cli", "check", dataset]
     output, printed = on_terminal(call)
@@ -250,33 +219,19 @@ def test_a_stage_shows_its_bar_on_a_terminal_and_prints_the_result(dataset):
     assert "\x1b" not in printed
 
 
-@pytest.mark.parametrize("environment", [{}, {"NO_COLOR": "1"}], ids=["piped", "asked"])
-def test_help_has_no_colour(environment, monkeypatch):
+def test_help_has_no_colour_in_a_pipe_or_where_none_is_asked_for(monkeypatch):
     for name in ("FORCE_COLOR", "PY_COLORS", "GITHUB_ACTIONS"):
         monkeypatch.delenv(name, raising=False)
     call = [sys.executable, "-m", "tsas_cli", "check", "--help"]
-    if environment:
-        output, _ = on_terminal(["sh", "-c", '"$@" >&2', "sh", *call], **environment)
-        assert not re.search(r"\x1b\[[0-9;]*3[0-9]m", output)
-    else:
-        done = subprocess.run(call, capture_output=True, text=True, check=True)
-        output = done.stdout
-        assert "\x1b" not in output
-    assert "DATASET" in output
+    piped = subprocess.run(call, capture_output=True, text=True, check=True).stdout
+    assert "\x1b" not in piped
+    asked, _ = on_terminal(["sh", "-c", '"$@" >&2', "sh", *call], NO_COLOR="1")
+    assert not COLOUR.search(asked)
+    assert "DATASET" in piped
+    assert "DATASET" in asked
 
 
 def test_the_catalogue_says_at_a_terminal_what_tells_more():
     assert on_terminal([sys.executable, "-m", "tsas_cli", "effects"])[0].strip() == (
         "`tsas explain NAME` describes an effect"
     )
-
-
-def test_every_command_is_a_call_of_the_api():
-    homes = [Path(package.__file__).parent / "commands" for package in (tsas_cli, tsas_studies)]
-    for name in STAGES:
-        file = f"{name.split()[0].replace('-', '_')}.py"
-        (path,) = (home / file for home in homes if (home / file).is_file())
-        text = path.read_text(encoding="utf-8")
-        verb = VERBS.get(name, f"tsas_cli.{name.replace('-', '_')}").rpartition(".")[2]
-        assert re.search(rf"\b{verb}\(", text)
-        assert "present(" in text

@@ -11,16 +11,8 @@ from urllib.request import urlopen
 
 import pytest
 
-from tests.commands.viewing import (
-    ADDRESS,
-    SOON_S,
-    alive,
-    ended,
-    family,
-    line_with_address,
-    listening,
-    started,
-)
+from tests.commands.viewing import ADDRESS, address_in, ended, started
+from tests.processes import SOON_S, alive, family, listening
 from tests.reporting.made_folders import make_dataset, make_simulation
 from tests.reporting.viewer.streams import make_stream
 from tsas_cli.reporting.viewer.child import free_ports
@@ -44,19 +36,11 @@ def folders(tmp_path_factory):
 
 
 @pytest.fixture
-def run(here, monkeypatch, tmp_path):
-    """Call the command line here; only for calls that end by themselves."""
+def refused(refused_here, monkeypatch, tmp_path):
+    """Call the command here, which ends by itself."""
     monkeypatch.setenv("CI", "true")
     monkeypatch.setenv("TSAS_STATE_DIR", str(tmp_path))
-    return here
-
-
-def refused(result):
-    """Return the one line that a refused call prints."""
-    code, out, err = result
-    assert (code, out) == (2, "")
-    assert err.count("\n") == 1
-    return err
+    return lambda *words: refused_here("view", *words)
 
 
 def read(address):
@@ -76,7 +60,7 @@ def shown_by(address):
 )
 def test_the_page_is_served_here_alone_and_ends_without_a_trace(stream, tmp_path, number):
     with started("view", stream, state=tmp_path) as process:
-        address = line_with_address(process.stdout)
+        address = address_in(process.stdout)
         assert b"re_viewer.js" in read(address[0])
         assert len(read(f"http://127.0.0.1:{address[1]}/re_viewer_bg.wasm")) > 1e7
         assert shown_by(address[0]) == stream.read_bytes()
@@ -91,17 +75,17 @@ def test_the_page_is_served_here_alone_and_ends_without_a_trace(stream, tmp_path
         assert alive(processes) == set()
 
 
-def test_a_taken_port_is_refused(stream, run):
+def test_a_taken_port_is_refused(stream, refused):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        line = refused(run("view", stream, "--web", "--port", port))
+        line = refused(stream, "--web", "--port", port)
     assert re.match(rf"tsas: --port: port {port} cannot be had \(.*\); choose", line)
 
 
 def test_it_is_reported_once_of_analytics_and_the_port_and_form_can_be_chosen(stream, tmp_path):
     (port,) = free_ports(1)
     with started("view", stream, "--web", "--port", port, state=tmp_path) as process:
-        assert int(line_with_address(process.stdout)[1]) == port
+        assert int(address_in(process.stdout)[1]) == port
         assert ended(process)[2].count("rerun analytics disable") == 1
     with started("view", stream, "--json", state=tmp_path) as process:
         content = ""
@@ -118,7 +102,7 @@ def test_folders_make_a_stream_that_is_gone_afterwards(folders, tmp_path):
     temporary.mkdir()
     paths = [folders / "dataset", folders / "simulated"]
     with started("view", *paths, state=tmp_path, TMPDIR=str(temporary)) as process:
-        content = shown_by(line_with_address(process.stdout)[0])
+        content = shown_by(address_in(process.stdout)[0])
         assert content.startswith(b"RRF2")
         assert b"simulation" in content
         assert list(temporary.glob("tsas-view-*/stream.rrd"))
@@ -130,47 +114,38 @@ def test_a_stream_in_the_folder_is_what_is_shown(folders, stream, tmp_path):
     folder = shutil.copytree(folders / "dataset", tmp_path / "dataset")
     shutil.copy(stream, folder / "stream.rrd")
     with started("view", folder, state=tmp_path) as process:
-        assert shown_by(line_with_address(process.stdout)[0]) == stream.read_bytes()
+        assert shown_by(address_in(process.stdout)[0]) == stream.read_bytes()
         assert ended(process)[0] == 0
-
-
-def spoilt(name, stream, folder):
-    """Return a path that cannot be shown."""
-    path = folder / name
-    contents = {"junk": b"junk" * 99, "empty": b"", "cut": stream.read_bytes()[:-20_000]}
-    if name == "folder":
-        path.mkdir()
-    elif name in contents:
-        path.write_bytes(contents[name])
-    return path
 
 
 @pytest.mark.parametrize(
     ("name", "message"),
     [
         ("missing", "is not there"),
-        ("junk", "Not an RRD file"),
-        ("empty", "too small"),
         ("cut", "exceeds file size"),
         ("folder", "neither a dataset nor what a stage wrote"),
     ],
 )
-def test_what_cannot_be_shown_is_one_line(stream, tmp_path, run, name, message):
-    path = spoilt(name, stream, tmp_path)
-    line = refused(run("view", path))
+def test_what_cannot_be_shown_is_one_line(stream, tmp_path, refused, name, message):
+    path = tmp_path / name
+    if name == "folder":
+        path.mkdir()
+    elif name == "cut":
+        path.write_bytes(stream.read_bytes()[:-20_000])
+    line = refused(path)
     assert line.startswith(f"tsas: {path}: ")
     assert message in line
 
 
-def test_a_file_among_folders_is_refused(folders, stream, run):
-    assert f"{stream}: is a file among others" in refused(run("view", folders / "dataset", stream))
+def test_a_file_among_folders_is_refused(folders, stream, refused):
+    assert f"{stream}: is a file among others" in refused(folders / "dataset", stream)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
-def test_a_screen_that_cannot_be_reached_is_one_line(stream, run, monkeypatch):
+def test_a_screen_that_cannot_be_reached_is_one_line(stream, refused, monkeypatch):
     for name in SCREENS:
         monkeypatch.setenv(name, ":4711" if name == "DISPLAY" else "")
-    line = refused(run("view", stream))
+    line = refused(stream)
     assert line.startswith("tsas: the viewer has failed (")
     assert "tsas view --web" in line
 
@@ -198,8 +173,8 @@ def test_a_window_opens_where_there_is_a_screen(stream, tmp_path):
             screen.terminate()
 
 
-def test_without_the_viewer_it_is_reported_what_to_install(stream, run, monkeypatch):
+def test_without_the_viewer_it_is_reported_what_to_install(stream, refused, monkeypatch):
     monkeypatch.setattr("tsas_cli.reporting.viewer.child.find_spec", lambda name: None)
-    line = refused(run("view", stream, "--web"))
+    line = refused(stream, "--web")
     assert line.startswith("tsas: package rerun-sdk: the viewer's program is not installed")
     assert "pip install" in line

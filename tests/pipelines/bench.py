@@ -6,6 +6,8 @@ import subprocess
 import time
 from pathlib import Path
 
+from tsas_cli.project.start import makefile
+
 REPOSITORY = Path(__file__).parents[2]
 MAKE = shutil.which("make")
 
@@ -86,3 +88,12 @@ class Bench:
         for folder in folders:
             for path in [self.folder / folder, *(self.folder / folder).rglob("*")]:
                 os.utime(path, (then, then))
+
+
+def project_in(folder: Path) -> Path:
+    """Write a project without recordings, as `tsas init` does."""
+    project = folder / "project"
+    (project / "raw").mkdir(parents=True)
+    (project / "bench.toml").touch()
+    (project / "Makefile").write_text(makefile())
+    return project

@@ -8,14 +8,8 @@ from tests.odd_names import RAN, nothing_ran, odd_names
 from tests.pipelines.bench import CHAIN, MAKE, REPOSITORY, Bench
 
 pytestmark = pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
-OUTPUTS = [
-    ("paper", "PAPER_OUT"),
-    ("track", "TRACK_OUT"),
-    ("close-loop", "CLOSE_LOOP_OUT"),
-    ("drive", "DRIVE_OUT"),
-    ("challenge", "CHALLENGE_OUT"),
-    ("real", "REAL_OUT"),
-]
+TARGETS = ("paper", "track", "close-loop", "drive", "challenge", "real")
+OUTPUTS = [(target, f"{target.upper().replace('-', '_')}_OUT") for target in TARGETS]
 
 
 @pytest.fixture(scope="module")
@@ -34,40 +28,39 @@ def clone(tmp_path_factory):
     return made
 
 
-def told(setting, name, *, environment):
-    """Return the words and the environment that set a name, and the name that make reads."""
-    if environment:
-        return [], {setting: name}, name
-    return [f"{setting}={name}"], {}, name.lstrip(" \t\n\v\f\r")  # which make takes away
+def calls_of(made, target, names, setting, name, *, environment):
+    """Run a target under names, one of them drawn; return its calls and the names as make reads.
 
-
-def refused(done, bench):
-    """Say whether make stopped; then it said so in one line, and asked the program for nothing."""
+    Where make refuses, it does so in one line and asks the program for nothing: None.
+    """
+    bench, home = made()
+    words, variables = ([], {setting: name}) if environment else ([f"{setting}={name}"], {})
+    words += [f"{key}={value}" for key, value in names.items() if key != setting]
+    if not environment:
+        name = name.lstrip(" \t\n\v\f\r")  # which make takes away
+    names = names | {setting: name}
+    data = home / (names.get("DATASET") or "data")
+    data.mkdir()
+    (data / "dataset.toml").touch()
+    done = bench.run(target, *words, cwd=home, **variables)
+    assert nothing_ran(bench.folder)
     event("refused" if done.returncode else "taken")
     if done.returncode:
         assert (done.returncode, done.stderr.count("\n"), bench.calls()) == (2, 1, [])
         assert " is no plain name" in done.stderr or " is empty" in done.stderr
-    return bool(done.returncode)
+    return None if done.returncode else bench.calls(), names
 
 
 @settings(max_examples=20)
 @given(setting=st.sampled_from(["DATASET", "OUT"]), name=odd_names(), environment=st.booleans())
 def test_a_pipeline_takes_a_name_or_refuses_it(clone, setting, name, environment):
-    bench, home = clone()
-    words, variables, name = told(setting, name, environment=environment)
-    names = {"DATASET": "data", "OUT": "out"} | {setting: name}
-    (home / (names["DATASET"] or "data")).mkdir()
-    (home / names["DATASET"] / "dataset.toml").touch()
-    other = [f"{key}={value}" for key, value in names.items() if key != setting]
-    done = bench.run("pipeline", *words, *other, cwd=home, **variables)
-    if not refused(done, bench):
+    names = {"DATASET": "data", "OUT": "out"}
+    calls, names = calls_of(clone, "pipeline", names, setting, name, environment=environment)
+    if calls is not None:
         data, out = names["DATASET"], names["OUT"]
-        ends = ["--rrd", "--force"]
-        assert ["check", data, "--out", f"{out}/check", *ends] in bench.calls()
+        assert ["check", data, "--out", f"{out}/check", "--rrd", "--force"] in calls
         folders = [f"{out}/{stage}" for stage in CHAIN[:-1]]
-        page = ["--out", f"{out}/report.html", "--force"]
-        assert bench.calls()[-1] == ["report", data, *folders, *page]
-    assert nothing_ran(bench.folder)
+        assert calls[-1] == ["report", data, *folders, "--out", f"{out}/report.html", "--force"]
 
 
 @settings(max_examples=20)
@@ -77,16 +70,12 @@ def test_a_pipeline_takes_a_name_or_refuses_it(clone, setting, name, environment
     environment=st.booleans(),
 )
 def test_public_recordings_lie_where_a_name_says(clone, setting, name, environment):
-    bench, home = clone()
-    words, variables, name = told(setting, name, environment=environment)
-    names = {"TSAS_DATA": "data", "REAL": "a/b", "REAL_OUT": "out"} | {setting: name}
-    other = [f"{key}={value}" for key, value in names.items() if key != setting]
-    done = bench.run("real", *words, *other, cwd=home, **variables)
-    if not refused(done, bench):
+    names = {"TSAS_DATA": "data", "REAL": "a/b", "REAL_OUT": "out"}
+    calls, names = calls_of(clone, "real", names, setting, name, environment=environment)
+    if calls is not None:
         asked = [names["REAL"]] if names["REAL"].strip() else []
         places = ["--data", names["TSAS_DATA"], "--out", names["REAL_OUT"]]
-        assert bench.calls() == [["-m", "benchmarks.real", *asked, *places]]
-    assert nothing_ran(bench.folder)
+        assert calls == [["-m", "benchmarks.real", *asked, *places]]
 
 
 @pytest.mark.parametrize(("target", "setting"), OUTPUTS)
@@ -94,13 +83,10 @@ def test_public_recordings_lie_where_a_name_says(clone, setting, name, environme
 @given(name=odd_names(), environment=st.booleans())
 @example(name=f"a$(shell >{RAN})", environment=False)
 def test_an_output_has_a_name_or_is_refused(clone, target, setting, name, environment):
-    bench, home = clone()
-    words, variables, name = told(setting, name, environment=environment)
-    done = bench.run(target, *words, "TSAS_DATA=data", cwd=home, **variables)
-    if not refused(done, bench):
-        for call in bench.calls():
-            assert (call[call.index("--out") + 1] + "/").startswith(f"{name}/")
-    assert nothing_ran(bench.folder)
+    names = {"TSAS_DATA": "data"}
+    calls, names = calls_of(clone, target, names, setting, name, environment=environment)
+    for call in calls or ():
+        assert (call[call.index("--out") + 1] + "/").startswith(f"{names[setting]}/")
 
 
 def test_a_stage_is_told_a_quoted_name_as_it_is(clone):

@@ -5,8 +5,7 @@ import subprocess
 
 import pytest
 
-from tests.pipelines.bench import CHAIN, MAKE, REPOSITORY, Bench
-from tsas_cli.project.start import makefile
+from tests.pipelines.bench import CHAIN, MAKE, REPOSITORY, Bench, project_in
 
 STEPS = REPOSITORY / "tsas_cli" / "project" / "make"
 pytestmark = pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
@@ -64,7 +63,7 @@ def test_a_stage_that_fails_is_not_taken_for_done(chain, bench):
 
 def test_another_dataset_or_option_is_seen(chain, bench):
     (bench.folder / "other").mkdir()
-    (bench.folder / "other" / "dataset.toml").touch()
+    bench.touch("other/dataset.toml")
     bench.age("my data", "my result", "other")
     assert chain("DIAGNOSE=--runs a") == ["diagnose", "report"]
     assert chain("DIAGNOSE=--runs a") == []
@@ -80,13 +79,11 @@ def test_a_folder_that_is_gone_is_made_again(chain, bench):
 
 @pytest.mark.parametrize("name", ["b.csv", "b [1].csv", "100 %: #2 $x.csv", "sub/b.csv"])
 def test_a_project_looks_at_every_raw_file_and_at_those_that_go(bench, name):
-    project = bench.folder / "project"
+    project = project_in(bench.folder)
     raw = project / "raw"
-    (raw / name).parent.mkdir(parents=True)
+    (raw / name).parent.mkdir(exist_ok=True)
     (raw / "a.csv").touch()
     (raw / name).touch()
-    (project / "bench.toml").touch()
-    (project / "Makefile").write_text(makefile())
 
     def made():
         again = bench.make(cwd=project)
@@ -111,15 +108,13 @@ def test_a_project_looks_at_every_raw_file_and_at_those_that_go(bench, name):
 
 
 def test_a_project_follows_links_and_overlooks_what_is_no_recording(bench):
-    raw = bench.folder / "project" / "raw"
-    (raw / "deep").mkdir(parents=True)
+    raw = project_in(bench.folder) / "raw"
+    (raw / "deep").mkdir()
     for name in ("README.md", ".DS_Store"):
         (raw / "deep" / name).touch()
     (bench.folder / "elsewhere").mkdir()
     (bench.folder / "elsewhere" / "a.csv").touch()
     (raw / "a.csv").symlink_to(bench.folder / "elsewhere" / "a.csv")
-    (bench.folder / "project" / "bench.toml").touch()
-    (bench.folder / "project" / "Makefile").write_text(makefile())
     bench.age("elsewhere")
     assert bench.make(cwd=raw.parent) == ["ingest", *CHAIN]
     bench.age("project")
@@ -131,12 +126,8 @@ def test_a_project_follows_links_and_overlooks_what_is_no_recording(bench):
 
 
 def test_the_settings_of_a_project_reach_its_stages(bench):
-    project = bench.folder / "project"
-    (project / "raw").mkdir(parents=True)
-    (project / "bench.toml").touch()
-    (project / "Makefile").write_text(makefile())
-    call = [MAKE, "-n", "CALIBRATE=--dynamics lugre", "STAGE=--force --quiet", *bench.settings]
-    done = subprocess.run(call, cwd=project, capture_output=True, text=True, check=True)
+    words = ("-n", "CALIBRATE=--dynamics lugre", "STAGE=--force --quiet")
+    done = bench.run(*words, cwd=project_in(bench.folder))
     stages = dict(line.split(maxsplit=2)[1:] for line in done.stdout.splitlines())
     assert stages["calibrate"].endswith("--dynamics lugre --force --quiet")
     assert stages["diagnose"].endswith("--force --quiet")
@@ -166,7 +157,7 @@ def test_a_pipeline_of_the_project_runs_once_until_the_program_changes(
 
 def test_own_data_of_the_project_run_once(bench):
     (bench.folder / "d").mkdir()
-    (bench.folder / "d" / "dataset.toml").touch()
+    bench.touch("d/dataset.toml")
     words = ["pipeline", f"DATASET={bench.folder / 'd'}", f"OUT={bench.folder / 'out'}"]
     assert bench.make(*words) == CHAIN
     assert bench.make(*words) == []
@@ -176,7 +167,6 @@ def test_own_data_of_the_project_run_once(bench):
 
 
 def test_no_rule_is_there_twice():
-    done = subprocess.run(
-        [MAKE, "-n", "setup"], cwd=REPOSITORY, capture_output=True, text=True, check=False
-    )
+    call = [MAKE, "-n", "setup"]
+    done = subprocess.run(call, cwd=REPOSITORY, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")

@@ -1,7 +1,6 @@
 import json
 import os
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -9,26 +8,16 @@ from pathlib import Path
 import pytest
 import typer
 
-from tests.recordings.guess.rig_files import CHANNELS, run, write_csv
+from tests.pipelines.bench import MAKE
+from tests.project.recorded import NAMES, recorded
 from tsas_cli.app import app
 from tsas_cli.project.start import start
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.support.errors import InputError
 
-NAMES = ("Time [s]", "Input position [mm]", "Output position [mm]", "Force in [N]", "Force out [N]")
-MAKE = shutil.which("make")
 
-
-def recording(path, step=20):
-    path.parent.mkdir(exist_ok=True)
-    columns = [(name, run(step)[c]) for c, name in zip(CHANNELS, NAMES, strict=True)]
-    return write_csv(path, columns)
-
-
-def test_a_project_without_recordings_asks_for_everything(tmp_path, tsas):
-    done = tsas("init", tmp_path / "new", "--json")
-    assert (done.returncode, done.stderr) == (0, "")
-    written = sorted(json.loads(done.stdout)["files"])
+def test_a_project_without_recordings_asks_for_everything(tmp_path, done):
+    written = sorted(json.loads(done("init", tmp_path / "new", "--json"))["files"])
     assert written == [".gitignore", "Makefile", "README.md", "bench.toml", "raw/README.md"]
     readme = (tmp_path / "new" / "README.md").read_text()
     assert readme.startswith("# new\n")
@@ -37,7 +26,7 @@ def test_a_project_without_recordings_asks_for_everything(tmp_path, tsas):
 
 
 def test_the_files_of_a_list_are_copied_with_it(tmp_path):
-    recording(tmp_path / "bench" / "a.csv")
+    recorded(tmp_path / "bench" / "a.csv")
     path = tmp_path / "bench" / "run.join"
     path.write_text(f'[all]\nfile = "a.csv"\ntime = "{NAMES[0]}"\n')
     for number, source in enumerate((path, path.parent)):
@@ -47,7 +36,7 @@ def test_the_files_of_a_list_are_copied_with_it(tmp_path):
 
 
 def test_recordings_are_copied_and_guessed(tmp_path):
-    source = recording(tmp_path / "bench 1" / "a.csv")
+    source = recorded(tmp_path / "bench 1" / "a.csv")
     files, proposal = start(tmp_path / "new", [source.parent])
     assert "raw/bench 1/a.csv" in files
     assert proposal.questions == {}
@@ -56,7 +45,7 @@ def test_recordings_are_copied_and_guessed(tmp_path):
 
 
 def test_a_folder_that_is_there_gets_the_files_beside_its_own(tmp_path, monkeypatch):
-    recording(tmp_path / "raw" / "a.csv")
+    recorded(tmp_path / "raw" / "a.csv")
     monkeypatch.chdir(tmp_path)
     files, _ = start(Path(), [Path("raw")])
     assert "raw/a.csv" not in files
@@ -66,7 +55,7 @@ def test_a_folder_that_is_there_gets_the_files_beside_its_own(tmp_path, monkeypa
 
 @pytest.mark.parametrize("there", ["Makefile", "bench.toml", "raw/README.md", "raw/a.csv"])
 def test_nothing_is_overwritten(tmp_path, there):
-    source = recording(tmp_path / "a.csv")
+    source = recorded(tmp_path / "a.csv")
     (tmp_path / "new" / "raw").mkdir(parents=True)
     (tmp_path / "new" / there).write_text("mine")
     with pytest.raises(InputError, match=there):
@@ -76,14 +65,13 @@ def test_nothing_is_overwritten(tmp_path, there):
     assert left == [tmp_path / "new" / there]
 
 
-def test_what_cannot_be_read_leaves_no_project(tmp_path, tsas):
+def test_what_cannot_be_read_leaves_no_project(tmp_path, refused):
     (tmp_path / "a.csv").write_text("bent by hand\n")
-    done = tsas("init", tmp_path / "new", "--from", tmp_path / "a.csv")
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    refused("init", tmp_path / "new", "--from", tmp_path / "a.csv")
     assert not (tmp_path / "new").exists()
     (tmp_path / "b").mkdir()
-    recording(tmp_path / "a.csv")
-    recording(tmp_path / "b" / "a.csv")
+    recorded(tmp_path / "a.csv")
+    recorded(tmp_path / "b" / "a.csv")
     with pytest.raises(InputError, match="two sources have the name"):
         start(tmp_path / "new", [tmp_path / "a.csv", tmp_path / "b" / "a.csv"])
 
@@ -95,22 +83,16 @@ PAGE, CHECK = "result/report.html", "result/check/check.json"
 @pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
 @pytest.mark.parametrize("output", [CHECK, pytest.param(PAGE, marks=pytest.mark.large)])
 def test_from_a_recording_to_an_output_and_back_to_one_that_is_broken(tmp_path, output):
-    source = recording(tmp_path / "a [1].csv", step=50)
+    source = recorded(tmp_path / "a [1].csv", step=50)
     start(tmp_path / "new", [source])
     bench = tmp_path / "new" / "bench.toml"
     conditions = "sheath_length_mm = 785.4\ntotal_bend_rad = 3.1416\npreload_N = 25.0\n"
     bench.write_text(bench.read_text().split("# sheath_length_mm")[0] + conditions)
 
     def make(*words):
-        environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
-        return subprocess.run(
-            [MAKE, *words],
-            cwd=tmp_path / "new",
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        path = {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+        where = {"cwd": tmp_path / "new", "env": os.environ | path}
+        return subprocess.run([MAKE, *words], capture_output=True, text=True, check=False, **where)
 
     made = tmp_path / "new" / output
     done = make(output)
@@ -137,7 +119,7 @@ def test_from_a_recording_to_an_output_and_back_to_one_that_is_broken(tmp_path, 
 
 
 def test_a_project_that_was_killed_half_way_is_finished_by_the_same_call(tmp_path):
-    source = recording(tmp_path / "a.csv")
+    source = recorded(tmp_path / "a.csv")
     start(tmp_path / "new", [source])
     (tmp_path / "new" / "Makefile").unlink()
     for home in (tmp_path, tmp_path / "new", tmp_path / "new" / "raw"):

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
+
+from tests.reporting.made_folders import make_dataset
 
 
 @contextmanager
@@ -24,3 +27,9 @@ def undrawn() -> Iterator[None]:
     """Draw no curves in a test."""
     with no_curves():
         yield
+
+
+@pytest.fixture(scope="session")
+def dataset(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two short runs of a play operator, which no test changes."""
+    return make_dataset(tmp_path_factory.mktemp("made") / "dataset", samples=2000)

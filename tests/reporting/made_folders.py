@@ -3,6 +3,7 @@
 import json
 import math
 import os
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,24 +16,32 @@ from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.writing import write_dataset, write_parquet
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.tracking.settings import Settings
 
 A = 0.125 * math.pi
 NOISE = 0.1
 
 
+@contextmanager
+def edited(path: Path):
+    """Yield what a JSON file holds, and write what becomes of it."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    yield content
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
 def make_dataset(folder: Path, ids=("a", "b"), *, name="bench", samples=4000) -> Path:
     """Write a dataset of sines through a play operator; return its folder."""
     folder.mkdir(parents=True)
+    told = {"sheath_length_mm": 785.0, "total_bend_rad": math.pi, "preload_N": 25.0}
     runs = [
-        Run(
-            id=run_id,
-            file=f"runs/{number}.parquet",
-            sha256="0" * 64,
-            sheath_length_mm=785.0,
-            total_bend_rad=math.pi,
-            preload_N=25.0,
-        )
+        Run(id=run_id, file=f"runs/{number}.parquet", sha256="0" * 64, **told)
         for number, run_id in enumerate(ids)
     ]
     manifest = Manifest(format=1, name=name, kind="simulated", run=tuple(runs))
@@ -88,43 +97,26 @@ def source(dataset: Path, stage: Path) -> dict:
 
 
 def parameter(name, value, half_width=None, unit="", **more):
-    interval = (
-        {}
-        if half_width is None
-        else {
-            "stderr": half_width / 1.96,
-            "interval_low": value - half_width,
-            "interval_high": value + half_width,
-        }
-    )
-    origin = "data sheet" if half_width is None else "fitted"
-    return {"name": name, "run": None, "value": value, "unit": unit, "origin": origin} | (
-        interval | more
-    )
+    one = {"name": name, "run": None, "value": value, "unit": unit, "origin": "data sheet"}
+    if half_width is not None:
+        one |= {"interval_low": value - half_width, "interval_high": value + half_width}
+        one |= {"stderr": half_width / 1.96, "origin": "fitted"}
+    return one | more
 
 
 def make_check(dataset: Path, folder: Path, findings=()) -> Path:
     usual = {"column": None, "remedy": "", "first_s": None}
-    content = {"format": 1, "stage": "check", "findings": [usual | one for one in findings]}
-    return _write(folder, "check.json", content | {"dataset": source(dataset, folder)})
+    return _write(folder, CheckFile, dataset, findings=[usual | one for one in findings])
 
 
 def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
     """Write what `tsas calibrate` would say about the made dataset."""
     theory = {"contraction": 2.338, "loosening": 1.066}
     stiffness = [
-        {
-            "run": run.id,
-            "phase": phase,
-            "km": parameter("km", km, 0.02 * km, "N/mm", run=run.id),
-            "kr": None,
-            "theory_N_per_mm": theory.get(phase, 175.1),
-            "theory_elastic_N_per_mm": None,
-            "expected_N_per_mm": km * 1.01,
-            "occurrences": 2,
-            "samples": 500,
-            "note": "",
-        }
+        {"occurrences": 2, "samples": 500, "note": "", "kr": None}
+        | {"run": run.id, "phase": phase, "expected_N_per_mm": km * 1.01}
+        | {"theory_N_per_mm": theory.get(phase, 175.1), "theory_elastic_N_per_mm": None}
+        | {"km": parameter("km", km, 0.02 * km, "N/mm", run=run.id)}
         for run in read_dataset(dataset).manifest.run
         for phase, km in (
             ("contraction", 2.33812),
@@ -134,10 +126,6 @@ def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
         )
     ]
     content = {
-        "format": 1,
-        "stage": "calibrate",
-        "version": "0.1.0",
-        "dataset": source(dataset, folder),
         "segments": {r.run.id: segments(r.time_s) for r in read_dataset(dataset)},
         "stiffness": stiffness,
         "parameters": [
@@ -148,7 +136,7 @@ def make_calibration(dataset: Path, folder: Path, cannot_tell=()) -> Path:
         "fit": {"converged": True, "message": "", "evaluations": 9, "solver": "trf"},
         "channels": {},
     }
-    return _write(folder, "calibration.json", content)
+    return _write(folder, CalibrationFile, dataset, **content)
 
 
 def make_simulation(dataset: Path, folder: Path) -> Path:
@@ -164,16 +152,8 @@ def make_simulation(dataset: Path, folder: Path) -> Path:
             "unconverged_samples": 0,
             "channels": {"f_in_N": channel, "f_out_N": channel},
         }
-    content = {
-        "format": 1,
-        "stage": "simulate",
-        "version": "0.1.0",
-        "dataset": source(dataset, folder),
-        "model": {"file": "data sheet"},
-        "dynamics": "static",
-        "runs": runs,
-    }
-    return _write(folder, "simulation.json", content)
+    model = {"file": "data sheet"}
+    return _write(folder, SimulationFile, dataset, model=model, dynamics="static", runs=runs)
 
 
 SIGNATURES = {  # how visible, and which look alike
@@ -206,6 +186,8 @@ REASONS = {
     "unexplained": "Something is left that no effect explains.",
     "undecided": "two strokes are too few to hold any out.",
 }
+EVIDENCE = "each of 4 runs is predicted by a fit to the others; 55 blocks count."
+LEFT = ["time_s (f_in_N swings at 3.1 Hz)", "speed_mm_per_s"]
 
 
 def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
@@ -213,10 +195,6 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
     named = verdict in {"named", "ambiguous", "partly"}
     left = verdict in {"unexplained", "partly"}
     content = {
-        "format": 1,
-        "stage": "diagnose",
-        "version": "0.1.0",
-        "dataset": source(dataset, folder),
         "verdict": verdict,
         "reason": REASONS[verdict],
         "named": [_cause(rivals=verdict == "ambiguous")] if named else [],
@@ -232,27 +210,16 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
                 "f_out_N": _held_out("N", 0.08, 1.3, 1.2, 1.02),
                 "x_out_mm": _held_out("mm", 0.008, before / 3, 1.15 if named else before / 3, 1.1),
             },
-            "remainder": {
-                "unexplained": left,
-                "depends_on": ["time_s (f_in_N swings at 3.1 Hz)", "speed_mm_per_s"]
-                if left
-                else [],
-                "share_percent": 12.0 if named else 100.0,
-                "mean_square": 38.4 if left else 1.02,
-            },
+            "remainder": {"unexplained": left, "depends_on": LEFT if left else []}
+            | {"share_percent": 12.0 if named else 100.0, "mean_square": 38.4 if left else 1.02},
             "candidates": _candidates(gain=87.2 if named else 0.1),
             "signatures": _signatures(),
             "residual_map": {"before": _maps(before), "after": _maps(0.2 if named else before)},
-            "evidence": {
-                "held_out": "runs",
-                "blocks": 55,
-                "runs": 4,
-                "sentence": "each of 4 runs is predicted by a fit to the others; 55 blocks count.",
-            },
+            "evidence": {"held_out": "runs", "blocks": 55, "runs": 4, "sentence": EVIDENCE},
             "cannot_tell": ["The preload stays open: no run is at <rest>."],
             "solver": "closed form",
         }
-    return _write(folder, "diagnosis.json", content | more)
+    return _write(folder, DiagnosisFile, dataset, **content | more)
 
 
 def write_predictions(dataset: Path, folder: Path, wrong) -> Path:
@@ -281,16 +248,16 @@ def make_prediction(dataset: Path, folder: Path) -> Path:
 
 
 def _cause(*, rivals):
-    length = {"value": 152.04, "stderr": 3.1, "unit": "mm", "at_bound": False}
-    distal = {"value": 0.0, "stderr": None, "unit": "mm", "at_bound": True}
+    length = {"value": 152.04, "stderr": 3.1, "interval_low": 145.9, "interval_high": 158.1}
+    distal = dict.fromkeys(length) | {"value": 0.0}
     return {
         "effect": "free_tendon",
         "title": "Tendon outside the sheath",
         "equation": "x_in − x_sheath = (T0 − F0)·l/EA",
         "rivals": ["drive_compliance"] if rivals else [],
         "parameters": {
-            "proximal_length_mm": length | {"interval_low": 145.9, "interval_high": 158.1},
-            "distal_length_mm": distal | {"interval_low": None, "interval_high": None},
+            "proximal_length_mm": length | {"unit": "mm", "at_bound": False},
+            "distal_length_mm": distal | {"unit": "mm", "at_bound": True},
         },
         "gain_percent": 48.2,
         "gain_interval_percent": [44.9, 51.0],
@@ -310,15 +277,9 @@ def _held_out(unit, noise, before, after, best):
 
 def _candidates(*, gain):
     return [
-        {
-            "effects": effects,
-            "gain_percent": gain / 2**place,
-            "test_statistic": 6.0 - place,
-            "convincing": gain / 2**place > 0.5 and place < 4,
-            "mean_square": 1.02 + place,
-            "converged": place != 5,
-            "parameters": {},
-        }
+        {"effects": effects, "parameters": {}, "converged": place != 5}
+        | {"gain_percent": gain / 2**place, "test_statistic": 6.0 - place}
+        | {"mean_square": 1.02 + place, "convincing": gain / 2**place > 0.5 and place < 4}
         for place, effects in enumerate(
             [["free_tendon", "backlash"], *([name] for name in (*SIGNATURES, "bend_drift"))]
         )
@@ -371,14 +332,9 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
     time_s = np.arange(0.0, 4 * math.pi, 0.01)
     wanted = 43.0 - 18.0 * np.cos(time_s)
     x_inv = 12.0 - 12.0 * np.cos(time_s)
-    table = {
-        "time_s": time_s,
-        "x_in_mm": x_inv - 0.25 * (1.0 - np.cos(time_s)),
-        "f_out_N": wanted,
-        "motor_speed_rpm": 500.0 * np.sin(time_s),
-        "f_out_ref_N": wanted,
-        "x_inv_mm": x_inv,
-    }
+    table = {"time_s": time_s, "f_out_N": wanted, "f_out_ref_N": wanted, "x_inv_mm": x_inv}
+    table["x_in_mm"] = x_inv - 0.25 * (1.0 - np.cos(time_s))
+    table["motor_speed_rpm"] = 500.0 * np.sin(time_s)
     estimates = {
         "phi1_rpm_s3_per_mm": np.where(time_s < 2 * math.pi, 0.005, 0.1),
         "phi2_rpm_s_per_mm": 18.0 + time_s,
@@ -399,9 +355,6 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
     manifest = Manifest(format=1, name="tracking", kind="simulated", run=tuple(runs))
     write_dataset(folder, manifest, tables)
     content = {
-        "format": 1,
-        "stage": "track",
-        "version": "0.1.0",
         "model": {"file": "data sheet"},
         "plant": {"file": "rig.toml", "sha256": "ab" * 32},
         "drive": {"file": "drive.toml", "sha256": "cd" * 32},
@@ -419,30 +372,22 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
         "results": results,
         "notes": ["pid-disturbed: the motor is at its <limit>"],
     }
-    return _write(folder, "tracking.json", content | more)
+    return _write(folder, TrackingFile, **content | more)
 
 
 def _result(controller, condition, run_id, rmse):
     at_limit = {"mean": 12.5 if condition == "disturbed" else 0.0, "sd": 0.5}
-    return {
-        "controller": controller,
-        "condition": condition,
-        "run": run_id,
-        "scores": _scores(rmse, 0.0031) | {"at_limit_percent": at_limit},
-        "unsettled_steps": 0,
-    }
+    scores = _scores(rmse, 0.0031) | {"at_limit_percent": at_limit}
+    result = {"controller": controller, "condition": condition, "run": run_id}
+    return result | {"scores": scores, "unsettled_steps": 0}
 
 
 def _scores(rmse, spread):
-    return {
-        "rmse_N": {"mean": rmse, "sd": spread},
-        "lowest_error_N": {"mean": -2.5, "sd": 0.02},
-        "highest_error_N": {"mean": 1.5, "sd": 0.02},
-        "outside_percent": {"mean": 0.0, "sd": 0.0},
-        "effort_rpm": {"mean": 353.6, "sd": 0.1},
-        "chatter_rpm_per_s": {"mean": 1234.0, "sd": None},
-        "at_limit_percent": {"mean": 0.0, "sd": 0.5},
-    }
+    scores = {"lowest_error_N": (-2.5, 0.02), "highest_error_N": (1.5, 0.02)}
+    scores |= {"outside_percent": (0.0, 0.0), "at_limit_percent": (0.0, 0.5)}
+    scores |= {"effort_rpm": (353.6, 0.1), "chatter_rpm_per_s": (1234.0, None)}
+    scores["rmse_N"] = (rmse, spread)
+    return {name: {"mean": mean, "sd": sd} for name, (mean, sd) in scores.items()}
 
 
 CASES = {  # case: title, hidden, named, and by controller the RMSE from data sheet to true
@@ -472,26 +417,15 @@ CASES = {  # case: title, hidden, named, and by controller the RMSE from data sh
 
 def make_closing(folder: Path, cases=CASES, **more) -> Path:
     """Write what `tsas close-loop` would say, without the folders of the cases."""
-    content = {
-        "format": 1,
-        "stage": "close-loop",
-        "version": "0.1.0",
-        "settings": Settings().model_dump(mode="json", by_alias=True),
-        "seeds": [3, 7],
-        "cases": [
-            {
-                "case": name,
-                "title": title,
-                "hidden": hidden,
-                "verdict": "named" if named else "sufficient",
-                "reason": "",
-                "named": named,
-                "controllers": [_closed(*row) for row in rows.items()],
-            }
-            for name, (title, hidden, named, rows) in cases.items()
-        ],
-    }
-    return _write(folder, "closing.json", content | more)
+    made = [
+        {"case": name, "title": title, "hidden": hidden, "reason": "", "named": named}
+        | {"verdict": "named" if named else "sufficient"}
+        | {"controllers": [_closed(*row) for row in rows.items()]}
+        for name, (title, hidden, named, rows) in cases.items()
+    ]
+    settings = Settings().model_dump(mode="json", by_alias=True)
+    content = {"settings": settings, "seeds": [3, 7], "cases": made}
+    return _write(folder, ClosingFile, **content | more)
 
 
 def _closed(controller, rmse):
@@ -503,7 +437,11 @@ def _closed(controller, rmse):
     }
 
 
-def _write(folder: Path, name: str, content: dict) -> Path:
+def _write(folder: Path, kind, dataset: Path | None = None, **content) -> Path:
+    """Write what a stage says under its file's name, with what every stage says."""
+    about = {"format": 1, "stage": kind.model_fields["stage"].default, "version": "0.1.0"}
+    if dataset is not None:
+        about["dataset"] = source(dataset, folder)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / name).write_text(json.dumps(content), encoding="utf-8")
+    (folder / kind.FILE).write_text(json.dumps(about | content), encoding="utf-8")
     return folder

@@ -8,18 +8,7 @@ from typing import Any
 import pytest
 
 from tests.drives import SPRUNG, drive_dataset
-from tests.reporting.made_folders import (
-    make_calibration,
-    make_check,
-    make_closing,
-    make_dataset,
-    make_diagnosis,
-    make_prediction,
-    make_simulation,
-    make_tracking,
-    off_at_the_end,
-    write_predictions,
-)
+from tests.reporting import made_folders as by_hand
 from tests.studies.reproduction import test_page as test_reproduction
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
@@ -29,59 +18,48 @@ from tsas_cli.support.errors import InputError
 from tsas_studies.reproduction.page import reproduction_page
 
 
-def pipeline(root: Path, ids=("a", "b"), wrong=off_at_the_end, **more) -> list[Path]:
+def pipeline(root: Path, ids=("a", "b"), wrong=by_hand.off_at_the_end, **more) -> list[Path]:
     """Write what the whole pipeline would; return the folders."""
-    dataset = make_dataset(root / "dataset", ids, **more)
+    dataset = by_hand.make_dataset(root / "dataset", ids, **more)
     return [
         dataset,
-        make_check(dataset, root / "check"),
-        make_calibration(dataset, root / "calibrate", ["The sheath is silent."]),
-        make_simulation(dataset, root / "simulate"),
-        write_predictions(dataset, make_diagnosis(dataset, root / "diagnose", "named"), wrong),
+        by_hand.make_check(dataset, root / "check"),
+        by_hand.make_calibration(dataset, root / "calibrate", ["The sheath is silent."]),
+        by_hand.make_simulation(dataset, root / "simulate"),
+        by_hand.write_predictions(
+            dataset, by_hand.make_diagnosis(dataset, root / "diagnose", "named"), wrong
+        ),
     ]
 
 
-def _pipeline(root: Path) -> str:
-    return page(read_inputs(pipeline(root, samples=400)))
-
-
-def _diagnosis(root: Path) -> str:
-    dataset = make_dataset(root / "dataset", ("a",), samples=400)
-    return page(read_inputs([make_diagnosis(dataset, root / "diagnose", "ambiguous")]))
-
-
-def _prediction(root: Path) -> str:
-    dataset = make_dataset(root / "dataset", samples=400)
-    return page(read_inputs([make_prediction(dataset, root / "predict")]))
-
-
-def _tracking(root: Path) -> str:
-    return page(read_inputs([make_tracking(root / "tracked")]))
-
-
-def _drive(root: Path) -> str:
+def _drive(root: Path) -> Path:
     data = drive_dataset(root / "dataset", SPRUNG, duration_s=4.0, to_Hz=120.0)
     identify_harmonic_drive(data, out=root / "out")
-    return page(read_inputs([root / "out"]))
+    return root / "out"
 
 
-def _closing(root: Path) -> str:
-    return page(read_inputs([make_closing(root / "loop")]))
+def _dataset(root: Path, *ids: str) -> Path:
+    return by_hand.make_dataset(root / "dataset", ids, samples=400)
 
 
-def _reproduction(root: Path) -> str:
-    return reproduction_page(test_reproduction.PAPER, test_reproduction.GROUPS)
-
-
-PAGES: dict[str, Callable[[Path], str]] = {
-    "pipeline": _pipeline,
-    "diagnosis": _diagnosis,
-    "prediction": _prediction,
-    "tracking": _tracking,
-    "drive": _drive,
-    "closing": _closing,
-    "reproduction": _reproduction,
+FOLDERS: dict[str, Callable[[Path], list[Path]]] = {
+    "pipeline": lambda root: pipeline(root, samples=400),
+    "diagnosis": lambda root: [
+        by_hand.make_diagnosis(_dataset(root, "a"), root / "diagnose", "ambiguous")
+    ],
+    "prediction": lambda root: [by_hand.make_prediction(_dataset(root, "a", "b"), root / "out")],
+    "tracking": lambda root: [by_hand.make_tracking(root / "tracked")],
+    "drive": lambda root: [_drive(root)],
+    "closing": lambda root: [by_hand.make_closing(root / "loop")],
 }
+KINDS = (*FOLDERS, "reproduction")
+
+
+def page_of(kind: str, root: Path) -> str:
+    """Return a page of a kind, made in a folder."""
+    if kind == "reproduction":
+        return reproduction_page(test_reproduction.PAPER, test_reproduction.GROUPS)
+    return page(read_inputs(FOLDERS[kind](root)))
 
 
 @contextmanager

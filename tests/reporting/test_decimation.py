@@ -33,10 +33,6 @@ def test_a_gap_stays_a_gap():
     assert not np.isnan(values[kept[kept < 19_000]]).any()
 
 
-def test_a_short_series_is_kept_whole():
-    assert kept_samples(np.full(10, np.nan)).tolist() == list(range(10))
-
-
 def test_a_curve_that_hurries_and_waits_keeps_its_shape():
     """Once round in 50 of 10,000 samples, then a rest with a little noise."""
     angle = np.minimum(np.arange(10_000) / 50, 1.0) * 2 * np.pi
@@ -51,5 +47,6 @@ def test_a_curve_that_hurries_and_waits_keeps_its_shape():
     assert np.hypot(np.diff(x[kept]), np.diff(y[kept])).max() < 2 / 100 * np.sqrt(2)
 
 
-def test_a_curve_that_does_not_move_is_its_first_and_last_sample():
+def test_a_short_series_is_kept_whole_and_a_curve_that_does_not_move_is_its_ends():
+    assert kept_samples(np.full(10, np.nan)).tolist() == list(range(10))
     assert kept_cells(np.zeros(500), np.ones(500)).tolist() == [0, 499]

@@ -1,6 +1,4 @@
-import json
 import re
-import shutil
 from html import unescape
 
 import numpy as np
@@ -9,8 +7,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.reporting.conftest import no_curves
-from tests.reporting.made_folders import REASONS, make_dataset, make_diagnosis
-from tests.reporting.test_page import Outline, headings
+from tests.reporting.made_folders import REASONS, edited, make_dataset, make_diagnosis
+from tests.reporting.test_page import Outline, headings, rows
 from tsas_cli.effects import EFFECTS
 from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
@@ -40,19 +38,31 @@ def written(folder):
     return whole[whole.index('<section id="diagnosis"') : whole.index('<section id="recordings"')]
 
 
+@pytest.fixture
+def of(dataset, tmp_path, undrawn):
+    """Return a function that makes the section of a diagnosis whose file says more."""
+    return lambda verdict, **more: written(make_diagnosis(dataset, tmp_path / "d", verdict, **more))
+
+
+@pytest.fixture
+def named(dataset, tmp_path, undrawn):
+    """Return a function that makes the section after a change of what is named."""
+
+    def make(**changed):
+        folder = make_diagnosis(dataset, tmp_path / "d", "named")
+        with edited(folder / "diagnosis.json") as content:
+            content["named"][0] |= changed
+        return written(folder)
+
+    return make
+
+
 def words(text):
     return unescape(re.sub("<[^>]*>", "", text))
 
 
 def labels(text):
     return [unescape(label) for label in re.findall('aria-label="([^"]*)"', text)]
-
-
-def rows(text):
-    return [
-        [unescape(cell) for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)]
-        for row in re.findall(r"<tr>(.*?)</tr>", text, re.DOTALL)
-    ]
 
 
 @pytest.mark.parametrize("verdict", REASONS)
@@ -81,21 +91,11 @@ def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
     places = [text.index(gains_part) for gains_part in order]
     assert places == sorted(places)
     assert "indistinguishable from" not in text
+    assert "distal_length_mm 0.000 mm, at its bound\n" in words(text)
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_an_equation_of_several_lines_stands_on_several(dataset, tmp_path):
-    folder = make_diagnosis(dataset, tmp_path / "d", "named")
-    content = json.loads((folder / "diagnosis.json").read_text())
-    content["named"][0]["equation"] = "a < b,  c = d"
-    (folder / "diagnosis.json").write_text(json.dumps(content))
-    assert "<code>a &lt; b</code>\n<code>c = d</code>" in written(folder)
-
-
-def test_each_parameter_has_its_interval_unit_and_bound(sections):
-    text = words(sections["named"])
-    assert "proximal_length_mm 152.0 mm, 95 % interval 145.9 to 158.1\n" in text
-    assert "distal_length_mm 0.000 mm, at its bound\n" in text
+def test_an_equation_of_several_lines_stands_on_several(named):
+    assert "<code>a &lt; b</code>\n<code>c = d</code>" in named(equation="a < b,  c = d")
 
 
 def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
@@ -145,11 +145,9 @@ def maps_of(text):
     return [label for label in labels(text) if label.startswith("Mean residual over")]
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_errors_that_do_not_stand_out_of_the_noise_are_not_drawn(dataset, tmp_path):
+def test_errors_that_do_not_stand_out_of_the_noise_are_not_drawn(of):
     flat = {"from": 0.0, "to": 1.0, "label": "", "mean": 0.1, "sd": 1.0, "samples": 9}
-    maps = {"before": {"f_in_N": {"x_in_mm": [flat, flat]}}}
-    text = written(make_diagnosis(dataset, tmp_path / "d", "sufficient", residual_map=maps))
+    text = of("sufficient", residual_map={"before": {"f_in_N": {"x_in_mm": [flat, flat]}}})
     assert "Over no signal does the residual stand out of the noise." in text
     assert not maps_of(text)
 
@@ -165,15 +163,13 @@ def test_maps_show_the_strongest_first_and_only_the_channels_that_are_off(sectio
     assert not any("f_out_N:" in label for label in shown)
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_an_error_that_shows_only_in_the_scatter_is_drawn(dataset, tmp_path):
+def test_an_error_that_shows_only_in_the_scatter_is_drawn(of):
     bins = [
         {"from": k, "to": k + 1.0, "label": "", "mean": 0.0, "sd": sd, "samples": 9}
         for k, sd in enumerate((8.0, 1.0, 1.0))
     ]
     maps = {"before": {"f_in_N": {"travel_since_reversal_mm": bins}}}
-    text = written(make_diagnosis(dataset, tmp_path / "d", "unexplained", residual_map=maps))
-    (label,) = maps_of(text)
+    (label,) = maps_of(of("unexplained", residual_map=maps))
     assert "f_in_N: 0.0 to 0.0 with scatter up to 8.0" in label
 
 
@@ -186,24 +182,21 @@ def test_candidates_stand_in_order_with_gain_and_test_statistic(sections):
     assert "bend_drift" not in sections["named"]
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(dataset, tmp_path):
+def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(of):
     alone = {"gain_percent": 9.0, "test_statistic": 3.0, "convincing": True, "mean_square": 1.0}
     tried = [{"effects": ["backlash", f"e{n}"], **alone} for n in range(12)]
     tried += [{"effects": [e], **alone} for e in ("free_tendon", "presliding", "drive_compliance")]
-    named = written(make_diagnosis(dataset, tmp_path / "a", "ambiguous", candidates=tried))
-    marks = {row[0]: row[-1] for row in rows(named) if len(row) == 5 and row[-1]}
+    text = of("ambiguous", candidates=tried)
+    marks = {row[0]: row[-1] for row in rows(text) if len(row) == 5 and row[-1]}
     assert marks["free_tendon"] == "named"
     assert marks["drive_compliance"] == "rival"
     assert "presliding" not in marks
-    assert ">backlash + e9<" in named
-    assert ">backlash + e10<" not in named
+    assert ">backlash + e9<" in text
+    assert ">backlash + e10<" not in text
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_where_screening_left_nothing_the_page_says_so(dataset, tmp_path):
-    text = written(make_diagnosis(dataset, tmp_path / "d", "unexplained", candidates=[]))
-    assert "Screening left no effect" in text
+def test_where_screening_left_nothing_the_page_says_so(of):
+    assert "Screening left no effect" in of("unexplained", candidates=[])
 
 
 def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
@@ -216,13 +209,9 @@ def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_the_commands_repeat_the_diagnosis(dataset, tmp_path):
+def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided")
     assert f"tsas diagnose {dataset} --out {folder}" in page(read_inputs([folder]))
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
     model = {"file": "my model.toml", "sha256": "ab" * 32}
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided", model=model)
     text = unescape(page(read_inputs([folder])))
@@ -233,14 +222,12 @@ def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
 @pytest.mark.usefixtures("undrawn")
 def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "named")
-    content = json.loads((folder / "diagnosis.json").read_text())
-    kept = ("format", "stage", "version", "dataset", "verdict", "reason", "named", "channels")
-    cause = content["named"][0]
-    for name in ("title", "equation", "gain_percent", "gain_interval_percent"):
-        del cause[name]
-    shutil.rmtree(folder)
-    folder.mkdir()
-    (folder / "diagnosis.json").write_text(json.dumps({k: content[k] for k in kept}))
+    kept = {"format", "stage", "version", "dataset", "verdict", "reason", "named", "channels"}
+    with edited(folder / "diagnosis.json") as content:
+        for name in content.keys() - kept:
+            del content[name]
+        for name in ("title", "equation", "gain_percent", "gain_interval_percent"):
+            del content["named"][0][name]
     text = written(folder)
     law = next(e.equation for e in EFFECTS if e.name == "free_tendon")
     assert all(f"<code>{line}</code>" in text for line in law.split(",  "))
@@ -290,28 +277,20 @@ def test_the_square_of_two_effects_is_as_large_as_their_similarity():
         assert corners.width == pytest.approx(0.94 * side)
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_a_loss_is_no_reduction(dataset, tmp_path):
+def test_a_loss_is_no_reduction(of):
     tried = [
         {"effects": [name], "gain_percent": gain, "test_statistic": 3.0}
         for name, gain in (("free_tendon", 48.2), ("backlash", 7.0), ("presliding", -935.0))
     ]
-    text = written(make_diagnosis(dataset, tmp_path / "d", "named", candidates=tried))
-    reductions = {row[0]: row[1] for row in rows(text)}
-    assert reductions["free_tendon"] == "48.2"
-    assert reductions["backlash"] == "7.0"
-    assert reductions["presliding"] == "none"
+    text = of("named", candidates=tried)
+    shown = {("free_tendon", "48.2"), ("backlash", "7.0"), ("presliding", "none")}
+    assert shown <= {tuple(row[:2]) for row in rows(text)}
     assert "935" not in text
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_a_parameter_of_a_channel_that_was_not_recorded_is_not_shown(dataset, tmp_path):
-    folder = make_diagnosis(dataset, tmp_path / "d", "named")
-    content = json.loads((folder / "diagnosis.json").read_text())
+def test_a_parameter_of_a_channel_that_was_not_recorded_is_not_shown(named):
     delay = {"value": 0.1, "unit": "s", "interval_low": 0.0, "interval_high": 0.2}
-    content["named"][0]["parameters"] = {"f_in_delay_s": delay, "x_out_delay_s": delay}
-    content["named"][0]["effect"] = "channel_delay"
-    (folder / "diagnosis.json").write_text(json.dumps(content))
-    text = written(folder)
+    parameters = {"f_in_delay_s": delay, "x_out_delay_s": delay}
+    text = named(effect="channel_delay", parameters=parameters)
     assert "f_in_delay_s" in text
     assert "x_out_delay_s" not in text

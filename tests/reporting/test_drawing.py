@@ -15,15 +15,18 @@ def draw(figure):
     figure.legend(loc="outside upper left")
 
 
-def test_the_picture_is_well_formed_and_says_what_it_shows():
-    shown = picture(draw, key="one", alt="A line that <rises>\x1b", caption="")
-    root = ET.fromstring(str(shown.svg))  # noqa: S314  our own output
+@pytest.fixture(scope="module")
+def svg():
+    return str(picture(draw, key="one", alt="A line that <rises>\x1b", caption="").svg)
+
+
+def test_the_picture_is_well_formed_and_says_what_it_shows(svg):
+    root = ET.fromstring(svg)  # noqa: S314  our own output
     assert root.attrib["aria-label"] == "A line that <rises>\\x1b"
     assert "$a$ <b> 😀" in "".join(root.itertext())
 
 
-def test_ids_are_those_of_the_picture_and_every_reference_has_its_target():
-    svg = str(picture(draw, key="one", alt="", caption="").svg)
+def test_ids_are_those_of_the_picture_and_every_reference_has_its_target(svg):
     ids = re.findall(r'\bid="([^"]+)"', svg)
     assert len(ids) == len(set(ids))
     assert all(one.startswith("one-") for one in ids)
@@ -32,18 +35,13 @@ def test_ids_are_those_of_the_picture_and_every_reference_has_its_target():
     assert {a or b for a, b in references} <= set(ids)
 
 
-def test_every_colour_is_a_variable_of_the_page():
-    svg = str(picture(draw, key="one", alt="", caption="").svg)
+def test_every_colour_is_a_variable_of_the_page_and_nothing_holds_for_all_of_it(svg):
     assert "var(--contraction)" in svg
     assert "var(--measured)" in svg
     assert not re.search(r"#[0-9a-fA-F]{6}\b", svg)
     assert set(re.findall(r"var\(--([\w-]+)\)", svg)) <= set(ROLES)
-
-
-def test_nothing_in_it_holds_for_the_whole_page_or_asks_the_network():
-    svg = str(picture(draw, key="one", alt="", caption="").svg)
     assert "<style" not in svg
-    assert "http" not in svg
+    assert "http" not in svg  # nor is a network asked
 
 
 def test_long_names_leave_room_for_the_plot_and_keep_their_ends():
@@ -54,8 +52,8 @@ def test_long_names_leave_room_for_the_plot_and_keep_their_ends():
         axes.set_yticks([0.0, 1.0], ["short", "n" + 99 * "o" + "ne"])
         figure.legend(loc="outside upper left")
 
-    svg = str(picture(long, key="one", alt="", caption="").svg)
-    shown = ["".join(text.itertext()) for text in ET.fromstring(svg).iter("text")]  # noqa: S314
+    root = ET.fromstring(str(picture(long, key="one", alt="", caption="").svg))  # noqa: S314
+    shown = ["".join(text.itertext()) for text in root.iter("text")]
     assert "short" in shown
     cut = [text for text in shown if "…" in text]
     assert sorted(text[0] for text in cut) == ["l", "n", "t", "y"]

@@ -18,14 +18,10 @@ def made(tmp_path_factory):
     return summary, page(read_inputs([root / "out"]))
 
 
-def test_a_drive_alone_has_no_sections_of_the_tendon(made):
-    _, text = made
+def test_the_verdict_its_numbers_and_plots_stand_on_the_page_and_nothing_of_a_tendon(made):
+    summary, text = made
     assert re.findall(r'<section id="([a-z]+)"', text) == ["drive", "recordings", "repeat"]
     assert "was given" not in text
-
-
-def test_the_verdict_its_numbers_and_plots_stand_on_the_page(made):
-    summary, text = made
     (cause,) = summary["diagnosis"]["named"]
     assert cause["effect"] == "drive_compliance"
     assert "compliance of the drive, whose stiffness reacts" in text

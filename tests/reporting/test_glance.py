@@ -1,20 +1,11 @@
 """The first screen says what came out, with the numbers that it rests on."""
 
-import json
 import re
 from html import unescape
 
 import pytest
 
-from tests.reporting.made_folders import (
-    CASES,
-    NOISE,
-    make_closing,
-    make_dataset,
-    make_diagnosis,
-    make_simulation,
-    make_tracking,
-)
+from tests.reporting import made_folders as by_hand
 from tests.studies.reproduction.test_page import GROUPS, PAPER
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import read_inputs
@@ -24,7 +15,7 @@ from tsas_studies.reproduction.page import reproduction_page
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
-    return make_dataset(tmp_path_factory.mktemp("glance") / "dataset", ("a",), samples=400)
+    return by_hand.make_dataset(tmp_path_factory.mktemp("glance") / "dataset", ("a",), samples=400)
 
 
 def of(*folders):
@@ -36,9 +27,9 @@ def facts(it):
 
 
 def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp_path):
-    folder = make_diagnosis(dataset, tmp_path / "d", "named")
+    folder = by_hand.make_diagnosis(dataset, tmp_path / "d", "named")
     it, noise = of(folder), read_inputs([folder]).noise
-    assert noise("f_in_N") == pytest.approx(NOISE, rel=0.2)
+    assert noise("f_in_N") == pytest.approx(by_hand.NOISE, rel=0.2)
     f_in, f_out = (
         f"{before / noise(name):.2g} → {after / noise(name):.2g} × noise level"
         for name, before, after in (("f_in_N", 0.91, 0.11), ("f_out_N", 0.104, 0.096))
@@ -61,20 +52,20 @@ def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp
 def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
     cause = {"effect": "backlash", "gain_percent": 7.25, "parameters": {}}
     named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
-    it = of(make_diagnosis(dataset, tmp_path / "d", "named", named=named))
+    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "named", named=named))
     assert it.verdict == "Backlash and own thing"
     assert facts(it)["normalised residual by mine"] == ("", "7.25 % lower", "")
 
 
 def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
     named = [{"effect": "backlash", "title": "Backlash", "parameters": {}}]
-    it = of(make_diagnosis(dataset, tmp_path / "d", "partly", named=named))
+    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "partly", named=named))
     assert it.kind == "Cause found, and something unknown beside it"
     assert it.verdict == "Backlash"
 
 
 def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
-    it = of(make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
+    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
     assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")
     assert it.verdict == "Tendon outside the sheath, or compliance of the drive"
 
@@ -88,7 +79,7 @@ def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     ],
 )
 def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdict, said):
-    it = of(make_diagnosis(dataset, tmp_path / "d", verdict))
+    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", verdict))
     assert it.verdict == said
     assert "after" not in it.numbers
     assert not any(fact.before or fact.label == "normalised residual" for fact in it.facts)
@@ -96,25 +87,25 @@ def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdi
 
 
 def test_tracking_says_who_follows_best_and_under_which_condition(tmp_path):
-    it = of(make_tracking(tmp_path / "t"))
+    it = of(by_hand.make_tracking(tmp_path / "t"))
     assert it.verdict == "Pid follows best"
     assert it.numbers == "Root mean square error of the force, undisturbed"
     assert facts(it)["adaptive-sliding-mode"] == ("", "0.800 N", "disturbed: 0.800 N")
-    assert of(make_tracking(tmp_path / "one", ("pid",))).verdict == "Followed by pid"
+    assert of(by_hand.make_tracking(tmp_path / "one", ("pid",))).verdict == "Followed by pid"
 
 
 def test_a_closed_loop_shows_the_median_with_the_poor_the_better_and_the_true_model(tmp_path):
-    it = of(make_closing(tmp_path / "c"))
+    it = of(by_hand.make_closing(tmp_path / "c"))
     assert it.verdict == "A cause is named in 2 of 3 cases"
     assert "median of 3 cases" in it.numbers
     assert facts(it)["disturbance-observer"] == ("0.90", "0.10 N", "with the true model: 0.10 N")
-    one = of(make_closing(tmp_path / "one", {"bend": CASES["bend"]}))
+    one = of(by_hand.make_closing(tmp_path / "one", {"bend": by_hand.CASES["bend"]}))
     assert one.verdict == "A cause is not named"
     assert "median" not in one.numbers
 
 
 def test_a_simulation_alone_says_how_near_it_is(dataset, tmp_path):
-    it = of(make_simulation(dataset, tmp_path / "s"))
+    it = of(by_hand.make_simulation(dataset, tmp_path / "s"))
     assert it.verdict == "Within 2.0 times the noise"
     assert facts(it)["tension at the load"] == ("", "2.0", "")
 
@@ -127,7 +118,7 @@ def test_recordings_alone_have_no_verdict(dataset):
 
 @pytest.mark.usefixtures("undrawn")
 def test_it_stands_above_everything_else(dataset, tmp_path):
-    text = page(read_inputs([make_diagnosis(dataset, tmp_path / "d", "named")]))
+    text = page(read_inputs([by_hand.make_diagnosis(dataset, tmp_path / "d", "named")]))
     assert text.index('class="verdict">Tendon outside') < text.index("<nav")
     shown = unescape(re.sub("<[^>]*>", "", text[text.index("<dl>") : text.index("</dl>")]))
     assert "0.910 → 0.110 N" in shown
@@ -140,25 +131,15 @@ def test_the_reproduction_counts_its_verdicts():
 
 def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
     length = {"value": 1.0, "unit": "N", "interval_low": 0.9, "interval_high": 1.1}
-    law = {
-        "law": "drive_law",
-        "title": "Law at the drive",
-        "equation": "f = g(x)",
-        "sentence": "Elements at the drive.",
-        "parameters": {"size_N": length, "x_out_size_mm": length},
-        "channel": "f_in_N",
-        "unit": "N",
-        "rmse_before": 0.62,
-        "rmse_after": 0.11,
-        "what": "f_in [N]",
-        "travel_mm": [0.0, 1.0],
-        "after_reversal": [0.0, 2.0],
-        "place_mm": [0.0, 10.0],
-        "along_stroke": [1.0, 1.1],
-    }
-    folder = make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
-    path = folder / "diagnosis.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"verdict": "described"}))
+    law = {"law": "drive_law", "title": "Law at the drive", "equation": "f = g(x)"}
+    law |= {"sentence": "Elements at the drive.", "channel": "f_in_N", "unit": "N"}
+    law |= {"rmse_before": 0.62, "rmse_after": 0.11, "what": "f_in [N]"}
+    law |= {"travel_mm": [0.0, 1.0], "after_reversal": [0.0, 2.0]}
+    law |= {"place_mm": [0.0, 10.0], "along_stroke": [1.0, 1.1]}
+    law["parameters"] = {"size_N": length, "x_out_size_mm": length}
+    folder = by_hand.make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
+    with by_hand.edited(folder / "diagnosis.json") as content:
+        content["verdict"] = "described"
     it = of(folder)
     assert it.verdict == "A law of unnamed origin describes what the model misses"
     assert it.numbers.endswith("nominal → extended model")

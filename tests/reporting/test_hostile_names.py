@@ -3,24 +3,15 @@
 import json
 import re
 import shlex
+from contextlib import contextmanager
 from html import unescape
-from html.parser import HTMLParser
 
 import pyarrow as pa
 import pytest
 
-from tests.reporting.made_folders import (
-    CASES,
-    make_calibration,
-    make_check,
-    make_closing,
-    make_dataset,
-    make_diagnosis,
-    make_simulation,
-    make_tracking,
-)
+from tests.reporting import made_folders as by_hand
 from tests.reporting.pages import chromium
-from tests.reporting.test_page import without_script
+from tests.reporting.test_page import Outline, commands_of, without_script
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, anchor, rendered
@@ -40,115 +31,65 @@ table tbody td text th thead title tr tspan ul use
 """
 
 
-class Strict(HTMLParser):
-    """Collects tags, attributes and text; knows nothing of our own markup."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.tags, self.attributes, self.text = set(), [], []
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.add(tag)
-        self.attributes += attrs
-
-    def handle_data(self, data):
-        self.text.append(data)
-
-
 def harmless(text):
     """Assert that a page holds nothing but what our templates write; return its text."""
     text = without_script(text)
-    seen = Strict(text)
+    seen = Outline(text)
     assert seen.tags <= set(TAGS.split())
     assert not [name for name, _ in seen.attributes if name.startswith("on")]
     addresses = [value for name, value in seen.attributes if name in {"href", "src", "xlink:href"}]
-    ids = [value for name, value in seen.attributes if name == "id"]
     assert {a for a in addresses if not a.startswith("#")} <= {"data:,"}
-    assert {a[1:] for a in addresses if a.startswith("#")} <= set(ids)
-    assert len(ids) == len(set(ids))
-    assert all(re.fullmatch(r"[\w.-]+", name) for name in ids)
+    assert {a[1:] for a in addresses if a.startswith("#")} <= set(seen.ids)
+    assert all(re.fullmatch(r"[\w.-]+", name) for name in seen.ids)
     styles = [value for name, value in seen.attributes if name == "style"]
     assert not [style for style in styles if re.search(r"url\((?!#)|hit", style)]
     text.encode("utf-8")
     return "".join(seen.text)
 
 
-def spoiled(value, keys):
-    """Return JSON content with every text under one of the keys replaced."""
-    if isinstance(value, dict):
-        return {
-            k: EVIL if k in keys and isinstance(v, str) else spoiled(v, keys)
-            for k, v in value.items()
-        }
-    if isinstance(value, list):
-        return [spoiled(one, keys) for one in value]
-    return value
+@contextmanager
+def spoil(path, *keys):
+    """Yield what a file holds, with every text under the keys replaced, to be changed further."""
 
+    def spoiled(table):
+        return {k: EVIL if k in keys and isinstance(v, str) else v for k, v in table.items()}
 
-def spoil(path, keys, more=None):
-    content = spoiled(json.loads(path.read_text()), keys)
-    if more:
-        more(content)
-    path.write_text(json.dumps(content))
-    return path.parent
+    with by_hand.edited(path) as content:
+        content |= json.loads(json.dumps(content), object_hook=spoiled)
+        yield content
 
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory):
     """A page whose dataset, runs, columns, units, files and sentences are all hostile."""
     root = tmp_path_factory.mktemp("hostile") / "$(touch x) '<i>"
-    dataset = make_dataset(root / "data <b> & 'x'", (RUN, "plain"), samples=400)
+    dataset = by_hand.make_dataset(root / "data <b> & 'x'", (RUN, "plain"), samples=400)
     read = read_dataset(dataset)
-    (root / "again").mkdir()
     text = EVIL.replace("\ud800", "")  # which TOML cannot hold
-    manifest = read.manifest.model_copy(
-        update={"name": text, "description": text, "license": text, "source": text}
-    )
-    tables = {
-        r.run.id: pa.table({**{k: r.columns[k] for k in r.columns}, text: r.time_s}) for r in read
-    }
-    write_dataset(root / "again", manifest, tables)
+    texts = dict.fromkeys(("name", "description", "license", "source"), text)
+    manifest = read.manifest.model_copy(update=texts)
+    tables = {r.run.id: pa.table({**r.columns, text: r.time_s}) for r in read}
     dataset = root / "again"
-    check = make_check(
-        dataset,
-        root / "check",
-        [
-            {
-                "code": EVIL,
-                "severity": "error",
-                "run": EVIL,
-                "column": EVIL,
-                "sentence": EVIL,
-                "remedy": EVIL,
-            }
-        ],
+    dataset.mkdir()
+    write_dataset(dataset, manifest, tables)
+    keys = ("code", "run", "column", "sentence", "remedy")
+    check = by_hand.make_check(
+        dataset, root / "check", [{"severity": "error"} | dict.fromkeys(keys, EVIL)]
     )
-    calibrate = make_calibration(dataset, root / "calibrate", [EVIL])
-    spoil(calibrate / "calibration.json", {"unit", "note", "origin", "version", "name", "message"})
-    content = json.loads((calibrate / "calibration.json").read_text())
-    original = json.loads((check / "check.json").read_text())["dataset"]
-    content["dataset"] = original
-    (calibrate / "calibration.json").write_text(json.dumps(content))
-    simulate = make_simulation(dataset, root / "simulate")
-
-    def own(content):
+    calibrate = by_hand.make_calibration(dataset, root / "calibrate", [EVIL])
+    keys = ("unit", "note", "origin", "version", "name", "message")
+    with spoil(calibrate / "calibration.json", *keys) as content:
+        content["dataset"] = by_hand.source(dataset, calibrate)
+    simulate = by_hand.make_simulation(dataset, root / "simulate")
+    with spoil(simulate / "simulation.json", "unit", "version") as content:
         content["model"] = {"file": EVIL, "sha256": "ab" * 32}
-        content["dataset"] = original
         content["notes"] = [EVIL]
+        cleaned = {"method": EVIL, "window_s": 1, "noise": 1, "unit": EVIL, "reversals": 1}
         for run in content["runs"].values():
-            run["solver"] = run["start"] = EVIL
-            run["conditioning"] = {
-                EVIL: {"method": EVIL, "window_s": 1, "noise": 1, "unit": EVIL, "reversals": 1}
-            }
-
-    spoil(simulate / "simulation.json", {"unit", "version"}, own)
-    diagnose = make_diagnosis(dataset, root / "diagnose", "named")
-
-    def caused(content):
-        content["dataset"] = original
-        content["verdict"] = "named"
+            run |= {"solver": EVIL, "start": EVIL, "conditioning": {EVIL: cleaned}}
+    diagnose = by_hand.make_diagnosis(dataset, root / "diagnose", "named")
+    keys = ("unit", "reason", "next_experiment", "sentence", "label", "version")
+    with spoil(diagnose / "diagnosis.json", *keys) as content:
         (cause,) = content["named"]
         cause |= {"effect": EVIL, "title": EVIL, "equation": EVIL, "rivals": [EVIL, EVIL + "2"]}
         cause["parameters"] = {EVIL: next(iter(cause["parameters"].values()))}
@@ -158,12 +99,6 @@ def hostile(tmp_path_factory):
             signals = {EVIL: maps[when]["f_in_N"]["phase"], **maps[when]["f_in_N"]}
             maps[when] = {EVIL: signals}
         content["signatures"]["effects"][0] = EVIL
-
-    spoil(
-        diagnose / "diagnosis.json",
-        {"unit", "reason", "next_experiment", "sentence", "label", "version"},
-        caused,
-    )
     return page(read_inputs([dataset, check, calibrate, simulate, diagnose]))
 
 
@@ -177,7 +112,7 @@ def test_no_element_attribute_or_address_comes_of_a_name(hostile):
 
 
 def test_pictures_say_and_show_the_names_as_text(hostile):
-    labels = [unescape(one) for one in re.findall('role="img" aria-label="([^"]*)"', hostile)]
+    labels = Outline(hostile).labels
     assert any(RUN in label.replace("`", "") or RUN.replace("`", "") in label for label in labels)
     svg = "".join(re.findall("<svg.*?</svg>", hostile, re.DOTALL))
     assert "&lt;script&gt;hit()" in svg
@@ -191,32 +126,27 @@ def test_the_title_is_one_line_of_text(hostile):
 
 
 def test_commands_are_quoted_for_the_shell(hostile):
-    commands = unescape(re.search("<pre[^>]*><code>(.*?)</code>", hostile, re.DOTALL)[1])
-    for line in commands.strip().splitlines():
+    for line in commands_of(hostile).strip().splitlines():
         words = shlex.split(line)
         assert words[0] == "tsas"
         assert not {"touch", "x)", "&"} & set(words)
 
 
 def test_a_page_of_tracking_and_of_closing_is_harmless_too(tmp_path):
-    changed = {"file", "origin", "quantity", "shape", "version"}
-    tracked = make_tracking(tmp_path / "tracked")
-
-    def own(content):
+    tracked = by_hand.make_tracking(tmp_path / "tracked")
+    keys = ("file", "origin", "quantity", "shape", "version")
+    with spoil(tracked / "tracking.json", *keys) as content:
         content["notes"] = [EVIL]
         for result in content["results"]:
             result["controller"] += EVIL
             result["condition"] += EVIL
         content["conditions"] = {k + EVIL: v for k, v in content["conditions"].items()}
-
-    spoil(tracked / "tracking.json", changed, own)
-    text = page(read_inputs([tracked]))
-    assert SHOWN in harmless(text)
-    title, hidden, _, rows = CASES["bend"]
+    assert SHOWN in harmless(page(read_inputs([tracked])))
+    title, hidden, _, rows = by_hand.CASES["bend"]
     cases = {EVIL: (EVIL + title, {EVIL: 1.0} | hidden, [{"effect": EVIL, "rivals": [EVIL]}], {
         name + EVIL: rmse for name, rmse in rows.items()
     })}  # fmt: skip
-    loop = make_closing(tmp_path / "loop", cases, version=EVIL)
+    loop = by_hand.make_closing(tmp_path / "loop", cases, version=EVIL)
     assert SHOWN in harmless(page(read_inputs([loop])))
 
 

@@ -6,15 +6,15 @@ from itertools import product
 
 import pytest
 
-from tests.reporting.pages import PAGES, chromium
+from tests.reporting.pages import KINDS, chromium, page_of
 
 expect = pytest.importorskip("playwright.sync_api").expect
 expect.set_options(timeout=40_000)  # ms, on a machine that is busy
 PHONE, DESK = 390, 1280
-EACH_TIME = {*((kind, PHONE, "dark") for kind in PAGES), ("pipeline", DESK, "light")}
+EACH_TIME = {*((kind, PHONE, "dark") for kind in KINDS), ("pipeline", DESK, "light")}
 LOOKS = [
     pytest.param(*look, marks=() if look in EACH_TIME else pytest.mark.large)
-    for look in product(PAGES, (PHONE, DESK), ("dark", "light"))
+    for look in product(KINDS, (PHONE, DESK), ("dark", "light"))
 ]
 # What is inside of a picture counts as one image with its text.
 JUDGE = "axe.run({exclude: [['svg > *']]}, {resultTypes: ['violations']})"
@@ -53,7 +53,7 @@ def made(tmp_path_factory, browser):
         if kind not in files:
             root = tmp_path_factory.mktemp(kind)
             files[kind] = root / "page.html"
-            files[kind].write_text(PAGES[kind](root), encoding="utf-8")
+            files[kind].write_text(page_of(kind, root), encoding="utf-8")
         return files[kind].as_uri()
 
     return make
@@ -139,12 +139,9 @@ def test_the_keyboard_reaches_the_content_at_once_and_shows_where_it_is(made, ta
     assert one.evaluate(outline) != "none"
 
 
-HEIGHT = "document.documentElement.scrollHeight"
-
-
 def test_the_page_of_a_pipeline_is_short_and_begins_with_the_picture(made, tab):
     one = tab(made("pipeline"), 1400)
-    assert one.evaluate(HEIGHT) <= 4000
+    assert one.evaluate("document.documentElement.scrollHeight") <= 4000
     assert one.locator("main details").first.bounding_box()["y"] <= 4000
     first = one.locator(".glance svg").first.bounding_box()
     assert first["y"] + first["height"] < 844
@@ -186,14 +183,15 @@ def test_a_click_or_a_key_on_the_legend_hides_a_curve_and_shows_it_again(made, t
     one = tab(made("pipeline"), DESK)
     plot, _ = plot_of(one)
     curves = plot.locator("[id*=axes_] > g > [clip-path][style*='--before']")
-    assert [curves.nth(k).is_visible() for k in range(2)] == [True, True]
+    shown = lambda: [curves.nth(k).is_visible() for k in range(2)]  # noqa: E731
+    assert shown() == [True, True]
     key = plot.get_by_role("button", name="nominal model")
     key.click()
     assert key.get_attribute("aria-pressed") == "false"
-    assert [curves.nth(k).is_visible() for k in range(2)] == [False, False]
+    assert shown() == [False, False]
     key.press("Enter")
     assert key.get_attribute("aria-pressed") == "true"
-    assert [curves.nth(k).is_visible() for k in range(2)] == [True, True]
+    assert shown() == [True, True]
 
 
 def test_a_part_of_a_loop_is_enlarged_with_ticks_of_its_own_and_back(made, tab):
@@ -214,32 +212,23 @@ def test_a_part_of_a_loop_is_enlarged_with_ticks_of_its_own_and_back(made, tab):
     plot.get_by_role("button", name="Reset zoom").click()
     assert loop.get_attribute("d") == whole
     expect(plot.locator(".reset")).not_to_be_visible()
-    move(0.5, 0.3)
-    one.mouse.dblclick(*centre(plot))
+    box = plot.bounding_box()
+    one.mouse.dblclick(box["x"] + box["width"] / 2, box["y"] + box["height"] / 3)
     assert loop.get_attribute("d") != whole
 
 
-def centre(plot):
-    box = plot.bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 3
-
-
-def test_a_link_to_a_folded_section_opens_it(made, tab):
+def test_a_folded_section_opens_by_its_link_its_address_and_the_keyboard(made, tab):
     one = tab(made("pipeline"), DESK)
-    section = one.locator("#parameters")
-    expect(section.locator("table").first).not_to_be_visible()
+    table = one.locator("#parameters table").first
+    expect(table).not_to_be_visible()
     one.locator("nav a[href='#parameters']").click()
-    expect(section.locator("table").first).to_be_visible()
+    expect(table).to_be_visible()
+    shown = one.locator("#simulation svg").first
+    expect(shown).not_to_be_visible()
+    one.locator("#simulation summary").first.press("Enter")
+    expect(shown).to_be_visible()
     again = tab(made("pipeline") + "#simulation", DESK)
     expect(again.locator("#simulation svg").first).to_be_visible()
-
-
-def test_a_fold_opens_with_the_keyboard(made, tab):
-    one = tab(made("pipeline"), PHONE)
-    fold = one.locator("main details").nth(1)
-    expect(fold.locator("svg").first).not_to_be_visible()
-    fold.locator("summary").press("Enter")
-    expect(fold.locator("svg").first).to_be_visible()
 
 
 def test_contents_are_folded_on_a_phone_and_stay_beside_the_text_on_a_desk(made, tab):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tests.reporting.made_folders import NOISE, make_dataset, make_simulation
+from tests.reporting.made_folders import NOISE, make_simulation
 from tsas_cli.identification.prepared import noise_of
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.inputs import read_inputs, read_stage
@@ -12,11 +12,6 @@ def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
     (tmp_path / CheckFile.FILE).write_text('{"a": ' + "[" * 800 + "]" * 800 + "}")
     with pytest.raises(InputError, match=r"check\.json: is nested too deep"):
         read_stage(CheckFile, tmp_path)
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    return make_dataset(tmp_path_factory.mktemp("inputs") / "dataset")
 
 
 def test_simulations_are_named_by_their_folders_by_their_paths_where_two_share_one(

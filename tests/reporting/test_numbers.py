@@ -16,6 +16,9 @@ from tsas_cli.reporting.numbers import ABSENT, plain, spanned, with_interval, wi
         (3.1e-9, 3.0e-9, 3.2e-9, ("3.10·10⁻⁹", "3.00·10⁻⁹ to 3.20·10⁻⁹")),
         (0.0538707, 0.0538637, 0.0538777, ("0.0538707", "0.0538637 to 0.0538777")),
         (0.0, -1.5, 1.5, ("0.0", "−1.5 to 1.5")),
+        (-0.0001, -1.0, 1.0, ("0.0", "−1.0 to 1.0")),
+        # A fit that gets stuck may leave no width to speak of.
+        (2.5, 2.5 - 1e-15, 2.5 + 1e-15, ("2.500000000", "2.500000000 to 2.500000000")),
     ],
 )
 def test_value_and_interval_end_at_the_same_digit(value, low, high, shown):
@@ -29,24 +32,8 @@ def test_an_interval_that_is_not_known_is_a_dash(bad):
 
 
 def test_plain_numbers_have_significant_digits():
-    assert [plain(v) for v in (0.125, 1591.4, 67858.4, 0.0, -2.0)] == [
-        "0.1250",
-        "1591",
-        "67860",
-        "0.000",
-        "−2.000",
-    ]
-
-
-def test_what_rounds_to_zero_has_no_sign():
-    assert with_interval(-0.0001, -1.0, 1.0) == ("0.0", "−1.0 to 1.0")
-
-
-def test_an_interval_of_no_width_to_speak_of_is_printed():
-    """A fit that gets stuck may leave one; the page must not fall over it."""
-    value, interval = with_interval(-10.806, -10.806 - 1e-15, -10.806 + 1e-15)
-    assert value == "−10.806000000"
-    assert interval == f"{value} to {value}"
+    shown = {0.125: "0.1250", 1591.4: "1591", 67858.4: "67860", 0.0: "0.000", -2.0: "−2.000"}
+    assert {value: plain(value) for value in shown} == shown
 
 
 @pytest.mark.parametrize(

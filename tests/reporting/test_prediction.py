@@ -1,11 +1,10 @@
-import json
 import re
 
 import pytest
 
 import tsas_cli as tsas
 from tests.comparing.made import NOMINAL, ROUGH, SENSORS, calibrated, clean
-from tests.reporting.made_folders import make_dataset, make_prediction
+from tests.reporting.made_folders import edited, make_dataset, make_prediction
 from tests.reporting.test_page import Outline, without_script
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
@@ -18,7 +17,7 @@ HOSTILE = "<script>$x$"
 
 @pytest.fixture(scope="module")
 def predicted(tmp_path_factory):
-    """Two models that predict the rougher rig, in three runs that differ in their noise."""
+    """Two models, each of one of two rigs, that predict a run of both."""
     root = tmp_path_factory.mktemp("prediction")
     models = [calibrated(root, rig, seed=seed) for seed, rig in ((1, NOMINAL), (2, ROUGH))]
     runs = [
@@ -40,18 +39,12 @@ def text(folder):
 
 
 def test_the_loops_are_drawn_under_the_tables(folder, text):
-    outline = Outline(text)
-    assert outline.headings.count(1) == 1
-    assert len(outline.ids) == len(set(outline.ids))
-    said = [svg["aria-label"] for svg in outline.pictures if "measured and predicted" in str(svg)]
+    said = [label for label in Outline(text).labels if "measured and predicted" in label]
     assert len(said) == 4  # f_in and f_out of two runs
     assert any(re.search(r"RMSE: A [\d.]+ N, B [\d.]+ N", label) for label in said)
     made = section(read_inputs([folder]))
-    assert [table.caption for table in made.tables] == [
-        "Models",
-        "Predictions",
-        "Ranges that the models were fitted to",
-    ]
+    captions = [table.caption for table in made.tables]
+    assert captions == ["Models", "Predictions", "Ranges that the models were fitted to"]
 
 
 def test_the_run_whose_predictions_differ_most_comes_first(predicted, folder):
@@ -75,14 +68,14 @@ def test_names_from_files_show_as_text_and_the_call_is_repeated(text):
 def test_a_file_that_says_less_makes_a_page_all_the_same(tmp_path):
     dataset = make_dataset(tmp_path / "data", ("a",), samples=400)
     folder = make_prediction(dataset, tmp_path / "predict")
-    path = folder / "predict.json"
-    whole = json.loads(path.read_text())
-    elsewhere = [row | {"run": "b"} for row in whole["channels"]]
-    empty = {"channels": [], "ranges": [], "findings": [], "notes": [], "models": []}
-    for change in (empty, {"channels": elsewhere}):
-        path.write_text(json.dumps(whole | change))
-        assert section(read_inputs([folder])).groups == ()
-        assert "Predicted, not fitted" in page(read_inputs([folder]))
+    with edited(folder / "predict.json") as content:
+        for row in content["channels"]:
+            row["run"] = "b"
+    assert section(read_inputs([folder])).groups == ()
+    with edited(folder / "predict.json") as content:
+        content |= {key: [] for key in ("channels", "ranges", "findings", "notes", "models")}
+    assert section(read_inputs([folder])).groups == ()
+    assert "Predicted, not fitted" in page(read_inputs([folder]))
 
 
 def test_without_predictions_there_is_no_section(folder):

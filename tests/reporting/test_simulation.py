@@ -1,19 +1,9 @@
 """The section of the simulations: each model over the measurement, and which models there are."""
 
-import hashlib
-import json
-
 import numpy as np
 import pytest
 
-from tests.reporting.made_folders import (
-    make_calibration,
-    make_dataset,
-    make_diagnosis,
-    make_simulation,
-    off_at_the_end,
-    write_predictions,
-)
+from tests.reporting import made_folders as by_hand
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
@@ -22,26 +12,22 @@ from tsas_cli.reporting import simulation
 from tsas_cli.reporting.calibration import parameters_section
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.simulation import rms, simulated_models
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    return make_dataset(tmp_path_factory.mktemp("simulation") / "dataset", samples=2000)
+from tsas_cli.support.files import sha256_of
 
 
 @pytest.fixture
 def diagnosed(dataset, tmp_path):
-    folder = make_diagnosis(dataset, tmp_path / "diagnose", "named")
+    folder = by_hand.make_diagnosis(dataset, tmp_path / "diagnose", "named")
     length = Estimate(
         "free_tendon.proximal_length_mm", 152.0, "mm", "fitted", None, 3.1, 145.9, 158.1
     )
     fixed = Estimate("x_out_zero_mm", 0.0, "mm", "given", "a")
     write_model(folder / EXTENDED_MODEL, Model((length, fixed)), version="0.1.0", dataset={})
-    return write_predictions(dataset, folder, off_at_the_end)
+    return by_hand.write_predictions(dataset, folder, by_hand.off_at_the_end)
 
 
 def test_nominal_and_extended_model_stand_beside_the_simulation(dataset, diagnosed, tmp_path):
-    inputs = read_inputs([diagnosed, make_simulation(dataset, tmp_path / "smooth")])
+    inputs = read_inputs([diagnosed, by_hand.make_simulation(dataset, tmp_path / "smooth")])
     labels = [model.label for model in simulated_models(inputs)]
     assert labels == ["nominal model", "extended model", "smooth"]
     made = simulation.section(inputs)
@@ -59,11 +45,9 @@ def test_nominal_and_extended_model_stand_beside_the_simulation(dataset, diagnos
 
 
 def test_a_simulation_of_the_extended_model_is_not_shown_twice(dataset, diagnosed, tmp_path):
-    folder = make_simulation(dataset, tmp_path / "simulate")
-    content = json.loads((folder / "simulation.json").read_text())
-    digest = hashlib.sha256((diagnosed / EXTENDED_MODEL).read_bytes()).hexdigest()
-    content["model"] = {"file": "m.toml", "sha256": digest}
-    (folder / "simulation.json").write_text(json.dumps(content))
+    folder = by_hand.make_simulation(dataset, tmp_path / "simulate")
+    with by_hand.edited(folder / "simulation.json") as content:
+        content["model"] = {"file": "m.toml", "sha256": sha256_of(diagnosed / EXTENDED_MODEL)}
     labels = [model.label for model in simulated_models(read_inputs([diagnosed, folder]))]
     assert labels == ["nominal model", "extended model"]
 
@@ -71,7 +55,9 @@ def test_a_simulation_of_the_extended_model_is_not_shown_twice(dataset, diagnose
 def test_the_parameters_of_the_extended_model_stand_with_interval_unit_and_bound(
     dataset, diagnosed, tmp_path
 ):
-    inputs = read_inputs([diagnosed, make_calibration(dataset, tmp_path / "cal", ["Mind."])])
+    inputs = read_inputs(
+        [diagnosed, by_hand.make_calibration(dataset, tmp_path / "cal", ["Mind."])]
+    )
     made = parameters_section(inputs)
     assert [table.caption for table in made.tables] == [
         "The extended model",

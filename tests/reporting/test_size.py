@@ -1,7 +1,5 @@
 """The page of many long runs stays small."""
 
-import json
-
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -27,13 +25,12 @@ def test_long_runs_of_four_channels_make_less_than_two_megabytes(tmp_path, monke
     monkeypatch.setattr(made_folders, "columns", four)
     folders = pipeline(tmp_path, runs, samples=6000)  # more than a plot keeps
     simulate = folders[3]
-    content = json.loads((simulate / "simulation.json").read_text())
-    for run, said in content["runs"].items():
-        said["channels"]["x_out_mm"] = said["channels"]["f_in_N"] | {"unit": "mm"}
-        path = simulate / "runs" / f"{run}.parquet"
-        table = pq.read_table(path)
-        pq.write_table(table.append_column("x_out_mm", table["f_out_N"]), path)
-    (simulate / "simulation.json").write_text(json.dumps(content))
+    with made_folders.edited(simulate / "simulation.json") as content:
+        for run, said in content["runs"].items():
+            said["channels"]["x_out_mm"] = said["channels"]["f_in_N"] | {"unit": "mm"}
+            path = simulate / "runs" / f"{run}.parquet"
+            table = pq.read_table(path)
+            pq.write_table(table.append_column("x_out_mm", table["f_out_N"]), path)
     text = page(read_inputs(folders))
     assert text.count('id="simulation-') > 3 * count
     assert 0.02 * MOST * count < len(text.encode()) < MOST

@@ -1,14 +1,11 @@
 """Errors in the recordings stop `calibrate` and `diagnose`, unless they are accepted."""
 
-import numpy as np
 import pytest
 
 import tsas_cli as tsas
+from tests.rigs import dataset_of, recorded
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_studies.challenge.rig.motions import sine
-from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 RIG = Rig(cells=60)
@@ -17,10 +14,9 @@ RIG = Rig(cells=60)
 @pytest.fixture(scope="module")
 def pounds(tmp_path_factory):
     """Return a dataset whose f_in is in pounds and says newton."""
-    recorded = dict(record(RIG, sine(rate_Hz=100.0), sensors=Sensors(rate_Hz=50.0)))
-    recorded["f_in_N"] = np.asarray(recorded["f_in_N"]) / 4.4482216
-    folder = tmp_path_factory.mktemp("pounds") / "dataset"
-    return write_dataset(folder, [Run("a", recorded, conditions(RIG))])
+    newtons = recorded(RIG, 50.0)
+    pounds = newtons | {"f_in_N": newtons["f_in_N"] / 4.4482216}
+    return dataset_of(RIG, tmp_path_factory.mktemp("pounds") / "dataset", a=pounds)
 
 
 @pytest.mark.parametrize("stage", ["calibrate", "diagnose"])

@@ -6,6 +6,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from tests.rigs import dataset_of, recorded
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.estimate import Estimate
@@ -13,34 +14,30 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import read_fitted_to, read_model
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.stages import diagnose as diagnose_stage
-from tsas_studies.challenge.rig.motions import sine
-from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(proximal_length_mm=150.0, cells=60)
-RECORDED = record(TRUE, sine(rate_Hz=200.0), sensors=Sensors(rate_Hz=100.0))
 LENGTH = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
+
+
+def diagnosing(patch, folder, found, **options):
+    """Diagnose a run whose search finds what a function makes of the stated values."""
+    dataset = read_dataset(dataset_of(TRUE, folder / "dataset", a=recorded(TRUE)))
+    patch.setattr(diagnose_stage, "diagnose_runs", lambda _, stated, *__, **___: found(stated))
+    return dataset, diagnose_stage.diagnose(dataset, **options)
 
 
 @pytest.fixture(scope="module")
 def diagnosed(tmp_path_factory):
     """A run whose recordings are known to need a free length, which the nominal model lacks."""
+
+    def known(stated):
+        return Diagnosis("named", "known", model=Model((LENGTH,)).over(stated), nominal=stated)
+
     folder = tmp_path_factory.mktemp("diagnosed")
-    dataset = read_dataset(
-        write_dataset(folder / "dataset", [Run("a", RECORDED, conditions(TRUE))])
-    )
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            diagnose_stage,
-            "diagnose_runs",
-            lambda _, stated, *__, **___: Diagnosis(
-                "named", "known", model=Model((LENGTH,)).over(stated), nominal=stated
-            ),
-        )
-        summary = diagnose_stage.diagnose(dataset, out=folder / "out")
-    (recording,) = dataset
-    return recording, summary, folder / "out"
+        (recording,), result = diagnosing(patch, folder, known, out=folder / "out")
+    return recording, result, folder / "out"
 
 
 def test_each_model_answers_under_its_own_name(diagnosed):
@@ -90,30 +87,26 @@ def test_the_phases_follow_each_other_over_the_whole_run(diagnosed):
 
 def test_what_contradicts_the_data_sheet_is_said_beside_the_causes(tmp_path, monkeypatch):
     """Both forces at half: a compliant sheath is named, and had no rival."""
-    folder = write_dataset(tmp_path / "dataset", [Run("a", RECORDED, conditions(TRUE))])
     half = [
         Estimate("load_stiffness_N_per_mm", 0.79, "N/mm", "fitted", None, 0.01, 0.77, 0.81),
         Estimate("preload_N", 12.5, "N", "fitted", "a", 0.1, 12.3, 12.7),
     ]
     cause = FoundCause("sheath_compression", (), (), 40.0, (30.0, 50.0))
-    monkeypatch.setattr(
-        diagnose_stage,
-        "diagnose_runs",
-        lambda _, stated, *__, **___: Diagnosis(
-            "named", "known", model=Model(tuple(half)).over(stated), nominal=stated, causes=(cause,)
-        ),
-    )
-    (said,) = diagnose_stage.diagnose(folder).summary["cannot_tell"]
+
+    def found(stated):
+        model = Model(tuple(half)).over(stated)
+        return Diagnosis("named", "known", model=model, nominal=stated, causes=(cause,))
+
+    (said,) = diagnosing(monkeypatch, tmp_path, found)[1].summary["cannot_tell"]
     assert said.startswith("A common factor of f_in and f_out of 0.5")
     assert said.endswith("Either would be a rival of sheath_compression.")
 
 
 @pytest.mark.parametrize("proven", [True, False])
 def test_what_gains_and_is_not_proven_has_a_model_of_its_own(tmp_path, monkeypatch, proven):
-    folder = write_dataset(tmp_path / "dataset", [Run("a", RECORDED, conditions(TRUE))])
     gains = FoundCause("free_tendon", (), (LENGTH,), 40.0, (30.0, 50.0), ("may be zero",))
 
-    def found(_, stated, *__, **___):
+    def found(stated):
         whole = Model((LENGTH,)).over(stated)
         if proven:
             return Diagnosis("named", "known", model=whole, nominal=stated)
@@ -121,8 +114,7 @@ def test_what_gains_and_is_not_proven_has_a_model_of_its_own(tmp_path, monkeypat
             "stand_in", "", model=stated, nominal=stated, stand_ins=(gains,), stand_in_model=whole
         )
 
-    monkeypatch.setattr(diagnose_stage, "diagnose_runs", found)
-    result = diagnose_stage.diagnose(folder, out=tmp_path / "out")
+    _, result = diagnosing(monkeypatch, tmp_path, found, out=tmp_path / "out")
     model = tmp_path / "out" / "model-stand-in.toml"
     assert model.exists() != proven
     assert bool(result.summary["stand_ins"]) != proven

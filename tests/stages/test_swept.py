@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 
+from tests.reporting.made_folders import edited
 from tsas_cli.stages.sweep import WORK, options_of
 from tsas_cli.support.files import sha256_of
 from tsas_cli.sweeping.folder import sweep_folder, what_is_done
@@ -60,7 +61,13 @@ def _foreign(place):
     (place / "x").touch()
 
 
+def _edited(place):
+    with edited(place / "task.json") as content:
+        content["results"]["errors"] = 77
+
+
 DAMAGES = {
+    "edited numbers": _edited,
     "truncated": lambda place: (place / "task.json").write_bytes(b'{"format": 1, '),
     "empty": lambda place: (place / "task.json").write_bytes(b""),
     "bytes": lambda place: (place / "task.json").write_bytes(b"\xff\x00\x1f"),
@@ -89,16 +96,6 @@ def test_a_damaged_task_is_done_again(begun, damage):
     assert answer(task, folder)["results"] == first["results"]
     assert written(folder / task.key) == before
     assert what_is_done(folder, task.key)["results"] == first["results"]
-
-
-def test_numbers_of_a_task_that_somebody_has_edited_do_not_count(begun):
-    task, _, folder = begun
-    answer(task, folder)
-    path = folder / task.key / "task.json"
-    edited = json.loads(path.read_text())
-    edited["results"]["errors"] = 77
-    path.write_text(json.dumps(edited))
-    assert what_is_done(folder, task.key) is None
 
 
 def test_what_somebody_adds_to_a_task_stays(begun):

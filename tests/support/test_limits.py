@@ -75,17 +75,11 @@ def test_columns_are_counted_and_their_names_measured(tmp_path):
 
 
 def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
+    assert 10_000_000 < limits.available() < 1 << 50
     monkeypatch.setattr(limits, "available", lambda: 1_000_000_000)
     limits.fits(tmp_path / "a.mat", 1_000_000_000)
     line = refusal(limits.fits, tmp_path / "a.mat", 2_000_000_000)
-    assert line.endswith(
-        "needs 2 GB of memory, and 1 GB are free; use a larger machine, or export it as CSV or "
-        "Parquet"
-    )
-
-
-def test_the_memory_that_is_there_is_some(tmp_path):
-    assert 10_000_000 < limits.available() < 1 << 50
+    assert "needs 2 GB of memory, and 1 GB are free; use a larger machine, or export it" in line
 
 
 @pytest.mark.parametrize("packed", ["snappy", "zstd"])
@@ -94,13 +88,8 @@ def test_a_recording_of_an_even_clock_and_channels_at_rest_is_taken(tmp_path, pa
     rows = 1_000_000
     table = {"time_s": np.arange(rows), "x_in_mm": np.zeros(rows), "f_in_N": np.full(rows, 25.0)}
     path = tmp_path / "a.parquet"
-    pq.write_table(
-        pa.table(table),
-        path,
-        compression=packed,
-        use_dictionary=["x_in_mm", "f_in_N"],
-        column_encoding={"time_s": "DELTA_BINARY_PACKED"},
-    )
+    how = {"compression": packed, "column_encoding": {"time_s": "DELTA_BINARY_PACKED"}}
+    pq.write_table(pa.table(table), path, use_dictionary=["x_in_mm", "f_in_N"], **how)
     with open_parquet(path) as file:
         check_size(file, path, tuple(table), whole=True)
         monkeypatch.setattr(limits, "PARQUET_EXPANSION", 10)

@@ -7,21 +7,20 @@ from pathlib import Path
 
 import pytest
 
-from tests.outputs import file_of, fill, folder_of, make_output
+from tests.outputs import file_of, fill, folder_of, make_output, refused
+from tsas_cli.support import temporaries
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import stage_folder, write_sums
+from tsas_cli.support.files import new_folder, stage_folder, write_sums
 
 
 def files(folder: Path) -> list[str]:
     return sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir())
 
 
-def refused(block, why: str) -> None:
-    with pytest.raises(InputError, match=why), block:
-        pytest.fail("the block must not run")
-
-
-def test_an_earlier_output_is_replaced_and_nothing_of_it_is_kept(tmp_path):
+@pytest.mark.parametrize("exchanges", [True, False], ids=["exchanging names", "renaming"])
+def test_an_earlier_output_is_replaced_and_nothing_of_it_is_kept(tmp_path, monkeypatch, exchanges):
+    if not exchanges:
+        monkeypatch.setattr(temporaries, "_exchanged", lambda *_: False)
     out = tmp_path / "out"
     make_output(out, result="old", left="old")
     (out / ".DS_Store").write_text("of a desktop")
@@ -107,8 +106,6 @@ sources = {{ a = {{}} }}
 
 
 def ingest_into(path: Path):
-    from tsas_cli.support.files import new_folder
-
     return new_folder(path, stage="ingest", inputs=(), force=True)
 
 
@@ -192,18 +189,14 @@ def test_what_lies_inside_an_input_is_not_replaced(tmp_path, read, given, out):
 @pytest.mark.parametrize("out", ["home/read/page", "link/page", "file"])
 @pytest.mark.parametrize("given", ["home/read/page", "link/page", "file", "home/read"])
 def test_a_file_that_is_read_is_not_replaced(tmp_path, read, given, out):
-    refused(
-        file_of(tmp_path / out, inputs=[tmp_path / given], force=True),
-        "is an input, and would be replaced|which is an input",
-    )
+    block = file_of(tmp_path / out, inputs=[tmp_path / given], force=True)
+    refused(block, "is an input, and would be replaced|which is an input")
 
 
 def test_another_name_of_the_same_file_is_not_replaced(tmp_path, read):
     (tmp_path / "twin").hardlink_to(read / "page")
-    refused(
-        file_of(tmp_path / "twin", inputs=[read / "page"], force=True),
-        "is an input, and would be replaced",
-    )
+    block = file_of(tmp_path / "twin", inputs=[read / "page"], force=True)
+    refused(block, "is an input, and would be replaced")
 
 
 def test_a_new_name_inside_or_beside_an_input_is_free(tmp_path, read):

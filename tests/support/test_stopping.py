@@ -12,7 +12,7 @@ from tsas_cli.support.stopping import CLEANUP_S, Stopped, cleaned_up_when_stoppe
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_request_to_end_is_the_end_of_the_block(number):
-    events = []
+    events, before = [], [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)]
     with until_stopped():
         try:
             os.kill(os.getpid(), number)
@@ -22,6 +22,7 @@ def test_a_request_to_end_is_the_end_of_the_block(number):
             os.kill(os.getpid(), number)  # an impatient person
             events.append("cleaned up")
     assert events == ["cleaned up"]
+    assert [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)] == before
 
 
 def test_other_errors_are_no_end():
@@ -82,14 +83,6 @@ except KeyboardInterrupt:
     sys.exit({code})
 """
     assert ended(tmp_path, program) == code
-
-
-def test_handlers_are_as_before():
-    before = [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)]
-    with until_stopped():
-        os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(5)
-    assert [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)] == before
 
 
 def test_what_is_ignored_stays_ignored():

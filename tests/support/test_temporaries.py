@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.outputs import file_of, folder_of, make_output
+from tests.outputs import file_of, folder_of, make_output, names, write
 from tsas_cli.support import temporaries
 from tsas_cli.support.errors import InputError
 
@@ -51,33 +51,22 @@ except InputError as error:
 """
 
 
-def names(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.iterdir())
-
-
-def make_old(path: Path) -> None:
-    make_output(path, result="old")
-
-
-def kill(path: Path, when: str) -> None:
+def kill(path, when):
     call = [sys.executable, "-c", KILLED, str(path), when]
     assert subprocess.run(call, check=False).returncode == -9
 
 
-def write(path: Path) -> None:
-    with folder_of(path) as folder:
-        (folder / "result").write_text("next")
-
-
-def test_the_next_output_in_the_folder_sweeps_what_a_killed_one_has_left(tmp_path: Path) -> None:
+def test_the_next_output_in_the_folder_sweeps_what_a_killed_one_has_left(tmp_path):
+    make_output(tmp_path / "out", result="old")
     kill(tmp_path / "out", "inside")
-    assert [Path(name).suffix for name in names(tmp_path)] == [".tsas-lock", ".tsas-new"]
+    assert (tmp_path / "out" / "result").read_text() == "old"
+    assert [Path(name).suffix for name in names(tmp_path)] == [".tsas-lock", ".tsas-new", ""]
     write(tmp_path / "another")
-    assert names(tmp_path) == ["another"]
+    assert names(tmp_path) == ["another", "out"]
 
 
-def test_a_kill_between_two_renames_is_mended_by_the_next_output(tmp_path: Path) -> None:
-    make_old(tmp_path / "out")
+def test_a_kill_between_two_renames_is_mended_by_the_next_output(tmp_path):
+    make_output(tmp_path / "out", result="old")
     kill(tmp_path / "out", "between")
     assert not (tmp_path / "out").exists()
     write(tmp_path / "another")
@@ -85,31 +74,16 @@ def test_a_kill_between_two_renames_is_mended_by_the_next_output(tmp_path: Path)
     assert names(tmp_path) == ["another", "out"]
 
 
-@pytest.mark.parametrize("exchanges", [True, False])
-def test_an_output_is_replaced_with_and_without_an_exchange_of_names(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, exchanges: bool
-) -> None:
-    if not exchanges:
-        monkeypatch.setattr(temporaries, "_exchanged", lambda *_: False)
-    make_old(tmp_path / "out")
-    (tmp_path / "out" / ".DS_Store").touch()
-    with folder_of(tmp_path / "out", force=True) as folder:
-        (folder / "result").write_text("new")
-    assert names(tmp_path / "out") == ["result"]
-    assert (tmp_path / "out" / "result").read_text() == "new"
-    assert names(tmp_path) == ["out"]
-
-
-def test_names_are_exchanged_where_the_system_can(tmp_path: Path) -> None:
+def test_names_are_exchanged_where_the_system_can(tmp_path):
     (tmp_path / "a").write_text("a")
-    make_old(tmp_path / "b")
+    make_output(tmp_path / "b", result="old")
     if not temporaries._exchanged(tmp_path / "a", tmp_path / "b"):
         pytest.skip("this file system cannot exchange two names")
     assert (tmp_path / "b").read_text() == "a"
     assert (tmp_path / "a" / "result").read_text() == "old"
 
 
-def test_what_a_living_process_makes_stays(tmp_path: Path) -> None:
+def test_what_a_living_process_makes_stays(tmp_path):
     with folder_of(tmp_path / "out") as folder:
         (folder / "result").write_text("mine")
         write(tmp_path / "another")
@@ -129,14 +103,14 @@ def test_what_a_living_process_makes_stays(tmp_path: Path) -> None:
         ("", False),
     ],
 )
-def test_only_locks_of_this_machine_are_swept(tmp_path: Path, owner: str, stays: bool) -> None:
+def test_only_locks_of_this_machine_are_swept(tmp_path, owner, stays):
     (tmp_path / ".out.abcdefgh.tsas-lock").write_text(owner)
     (tmp_path / ".out.abcdefgh.tsas-new").mkdir()
     write(tmp_path / "another")
     assert (len(names(tmp_path)) == 3) == stays
 
 
-def test_files_of_a_person_stay(tmp_path: Path) -> None:
+def test_files_of_a_person_stay(tmp_path):
     mine = [".out.abcdefgh.tsas-new", ".out.abcdefgh", ".out.tsas-lock", "out.abcdefgh.tsas-lock"]
     for name in mine:
         (tmp_path / name).write_text("mine")
@@ -144,17 +118,16 @@ def test_files_of_a_person_stay(tmp_path: Path) -> None:
     assert names(tmp_path) == sorted([*mine, "out"])
 
 
-def test_a_link_is_replaced_and_what_it_leads_to_stays(tmp_path: Path) -> None:
-    make_old(tmp_path / "there")
+def test_a_link_is_replaced_and_what_it_leads_to_stays(tmp_path):
+    make_output(tmp_path / "there", result="old")
     (tmp_path / "out").symlink_to("there")
-    with folder_of(tmp_path / "out", force=True) as folder:
-        (folder / "result").write_text("new")
+    write(tmp_path / "out", force=True)
     assert (tmp_path / "there" / "result").read_text() == "old"
     assert not (tmp_path / "out").is_symlink()
     assert names(tmp_path) == ["out", "there"]
 
 
-def two_at_once(path: Path, force: str, kind: str) -> list[tuple[int, str]]:
+def two_at_once(path: Path, force: str, kind) -> list[tuple[int, str]]:
     """Let two processes write the same output, and end the second before the first."""
     processes = [
         subprocess.Popen(
@@ -177,7 +150,7 @@ def two_at_once(path: Path, force: str, kind: str) -> list[tuple[int, str]]:
 
 
 @pytest.mark.parametrize("kind", ["folder", "file"])
-def test_of_two_at_once_one_wins_and_the_other_says_so(tmp_path: Path, kind: str) -> None:
+def test_of_two_at_once_one_wins_and_the_other_says_so(tmp_path, kind):
     (won, _), (lost, stderr) = two_at_once(tmp_path / "out", "", kind)
     assert (won, lost) == (0, 2)
     assert "already exists" in stderr
@@ -188,7 +161,7 @@ def test_of_two_at_once_one_wins_and_the_other_says_so(tmp_path: Path, kind: str
 
 
 @pytest.mark.parametrize("kind", ["folder", "file"])
-def test_of_two_at_once_with_force_the_last_is_whole(tmp_path: Path, kind: str) -> None:
+def test_of_two_at_once_with_force_the_last_is_whole(tmp_path, kind):
     assert two_at_once(tmp_path / "out", "force", kind) == [(0, ""), (0, "")]
     home = tmp_path / "out"
     results = [home / name for name in ("a", "b", "result")] if kind == "folder" else [home]
@@ -197,9 +170,9 @@ def test_of_two_at_once_with_force_the_last_is_whole(tmp_path: Path, kind: str) 
 
 
 def test_a_file_never_replaces_one_that_came_meanwhile_where_links_are_unknown(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def no_link(*_: object) -> None:
+    tmp_path, monkeypatch
+):
+    def no_link(*_):
         raise PermissionError
 
     monkeypatch.setattr(os, "link", no_link)

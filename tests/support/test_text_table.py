@@ -11,6 +11,7 @@ from itertools import chain
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.terminal import read_from
 from tsas_cli.support.text_table import table_text
 
 PRINT = """
@@ -29,27 +30,17 @@ ROWS = [
 ]
 
 
-def printed_at(columns: int) -> list[str]:
+def printed_at(columns):
     """Return what a process prints on a terminal of so many columns."""
     outside, inside = pty.openpty()
     fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
     with subprocess.Popen([sys.executable, "-c", PRINT], stdout=inside, env=environment):
         os.close(inside)
-        out = b""
-        while True:
-            try:
-                part = os.read(outside, 65536)
-            except OSError:  # the other end is closed
-                part = b""
-            if not part:
-                break
-            out += part
-    os.close(outside)
-    return out.decode().replace("\r\n", "\n").splitlines()
+        return read_from(outside).replace("\r\n", "\n").splitlines()
 
 
-def test_a_table_is_folded_for_the_terminal_and_no_value_is_lost() -> None:
+def test_a_table_is_folded_for_the_terminal_and_no_value_is_lost():
     title, *lines = printed_at(80)
     assert title.endswith("model.toml")
     assert max(map(len, lines)) <= 80
@@ -69,9 +60,7 @@ def test_a_table_is_folded_for_the_terminal_and_no_value_is_lost() -> None:
     ),
     st.integers(1, 90),
 )
-def test_every_table_keeps_its_words_and_fits_where_they_do(
-    rows: list[list[str]], width: int
-) -> None:
+def test_every_table_keeps_its_words_and_fits_where_they_do(rows, width):
     _, *lines = table_text("t", rows[0], rows[1:], width)
     needed = [
         max((len(word) for cell in column for word in cell.split()), default=0)
@@ -82,23 +71,16 @@ def test_every_table_keeps_its_words_and_fits_where_they_do(
     assert words >= Counter(word for cell in chain(*rows) for word in cell.split())
 
 
-def test_a_table_that_fits_looks_as_in_a_file() -> None:
-    assert printed_at(200)[1:] == piped()[1:]
-
-
-def piped() -> list[str]:
-    done = subprocess.run([sys.executable, "-c", PRINT], capture_output=True, text=True, check=True)
-    return done.stdout.splitlines()
-
-
-def test_piped_output_stays_whole_and_plain() -> None:
-    lines = piped()
+def test_piped_output_stays_whole_and_plain_as_where_there_is_room():
+    call = [sys.executable, "-c", PRINT]
+    lines = subprocess.run(call, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert printed_at(200)[1:] == lines[1:]
     assert len(lines) == 1 + 2 + 12 + 1
     assert max(map(len, lines)) > 80
     assert "\x1b" not in "".join(lines)
 
 
-def test_a_cell_is_folded_between_words() -> None:
+def test_a_cell_is_folded_between_words():
     assert list(table_text("t", HEADER, ROWS, 50)) == [
         "t",
         "  effect            RMSE [N]  what it is",
@@ -110,21 +92,15 @@ def test_a_cell_is_folded_between_words() -> None:
     ]
 
 
-def test_words_stay_whole_where_there_is_too_little_room() -> None:
+def test_words_stay_whole_where_there_is_too_little_room():
     narrow = list(table_text("t", HEADER, ROWS, 20))
     assert narrow[1] == "  effect            RMSE   what it"
     assert narrow[2] == "                    [N]    is"
     assert narrow == list(table_text("t", HEADER, ROWS, 1))
 
 
-def test_a_cell_of_blanks_needs_no_room() -> None:
-    assert list(table_text("t", ["a", "b"], [["   ", "x"]], 6)) == [
-        "t",
-        "  a  b",
-        "  -  -",
-        "     x",
-    ]
+def test_a_cell_of_blanks_needs_no_room_and_without_rows_there_is_the_title_alone():
+    lines = list(table_text("t", ["a", "b"], [["   ", "x"]], 6))
+    assert lines == ["t", "  a  b", "  -  -", "     x"]
 
-
-def test_without_rows_there_is_the_title_alone() -> None:
     assert list(table_text("t", HEADER, [], 20)) == ["t"]

@@ -1,7 +1,6 @@
 """A real scheduler with workers, all of them processes of their own, over TCP."""
 
 import filecmp
-import json
 import logging
 import os
 import shutil
@@ -11,13 +10,13 @@ import time
 from contextlib import closing
 from importlib.util import find_spec
 from threading import Thread
-from types import SimpleNamespace
 
 import pytest
 
 import tsas_cli as tsas
 from tests.sweeping.clusters import HERE, ROOT, cluster, wait_for
-from tsas_cli.sweeping.cluster import _refuse, _refuse_workers, on_cluster
+from tests.sweeping.works import texts
+from tsas_cli.sweeping.cluster import _refuse, on_cluster
 from tsas_cli.sweeping.outcome import versions
 
 pytestmark = [
@@ -45,6 +44,13 @@ def two(running):
 
 
 @pytest.fixture
+def marks(tmp_path):
+    """Return a folder in which slow tasks say that they are begun."""
+    (tmp_path / "marks").mkdir()
+    return tmp_path / "marks"
+
+
+@pytest.fixture
 def shared(tmp_path):
     """Return a file that every worker sees."""
     path = tmp_path / "shared"
@@ -63,10 +69,6 @@ def recordings(tmp_path, dataset):
     return tmp_path / "rigs"
 
 
-def texts(numbers, **more):
-    return [json.dumps({"number": number, **more}) for number in numbers]
-
-
 def outcomes_of(made, work, content, shared):
     return dict(on_cluster(f"{WORKS}:{work}", content, made.address, shared))
 
@@ -75,9 +77,7 @@ def files(folder):
     return sorted(p.relative_to(folder) for p in folder.rglob("*") if p.is_file())
 
 
-def test_every_task_is_answered_and_both_workers_share(two, shared, tmp_path):
-    marks = tmp_path / "marks"
-    marks.mkdir()
+def test_every_task_is_answered_and_both_workers_share(two, shared, marks):
     outcomes = outcomes_of(two, "slow", texts(range(6), folder=str(marks), seconds=0.1), shared)
     assert [outcomes[n]["results"]["square"] for n in range(6)] == [0, 1, 4, 9, 16, 25]
     assert len({outcome["where"] for outcome in outcomes.values()}) == 2
@@ -96,19 +96,12 @@ def test_files_are_the_same_as_by_local_processes_and_a_task_may_fail(two, recor
     same, other, _ = filecmp.cmpfiles(tmp_path / "there", tmp_path / "here", found, shallow=False)
     assert [str(path) for path in other] == ["journal.jsonl"]
     assert len(same) == len(found) - 1
+    again = tsas.sweep(plan, out=tmp_path / "there", workers=1)  # by local processes, the failed
+    assert again.before == 4
+    assert len((tmp_path / "there" / "journal.jsonl").read_text().splitlines()) == 6 + 2
 
 
-def test_what_a_cluster_has_done_local_processes_do_not_do_again(two, recordings, tmp_path):
-    plan = {"stage": "simulate", "datasets": f"{recordings}/[ab]"}
-    tsas.sweep(plan, out=tmp_path / "out", cluster=two.address)
-    again = tsas.sweep(plan, out=tmp_path / "out", workers=1)
-    assert again.before == 2
-    assert len((tmp_path / "out" / "journal.jsonl").read_text().splitlines()) == 2
-
-
-def test_a_worker_killed_in_the_middle_loses_nothing(two, shared, tmp_path):
-    marks = tmp_path / "marks"
-    marks.mkdir()
+def test_a_worker_killed_in_the_middle_loses_nothing(two, shared, marks):
     killed = []
 
     def kill_one():
@@ -131,9 +124,7 @@ def test_a_task_that_raises_is_reported_and_the_rest_completes(two, shared):
     assert [outcomes[n]["state"] for n in sorted(outcomes)] == ["done"] * 3
 
 
-def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, tmp_path):
-    marks = tmp_path / "marks"
-    marks.mkdir()
+def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, marks):
     content = texts(range(40), folder=str(marks), seconds=0.5)
     with closing(on_cluster(f"{WORKS}:slow", content, two.address, shared)) as outcomes:
         next(outcomes)
@@ -145,58 +136,49 @@ def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, tmp_pat
 
 
 def test_a_worker_that_does_not_see_the_folder_is_named(two, tmp_path):
-    with pytest.raises(tsas.InputError, match=r"worker tcp://\S+ does not see .*/nowhere;"):
-        outcomes_of(two, "squared", texts([1]), tmp_path / "nowhere" / "journal.jsonl")
+    where = tmp_path / "nowhere" / "journal.jsonl"
+    refused(two.address, where, r"worker tcp://\S+ does not see .*/nowhere;")
+
+
+def refused(address, shared, why):
+    """Ask a scheduler that is refused before it is told of a task."""
+    with pytest.raises(tsas.InputError, match=why):
+        dict(on_cluster(f"{WORKS}:squared", texts([1]), address, shared))
 
 
 def test_no_scheduler_is_one_line(monkeypatch, shared):
     monkeypatch.setattr("tsas_cli.sweeping.cluster.CONNECT_TIMEOUT_S", 0.5)
-    with pytest.raises(tsas.InputError, match="no scheduler responds; expected a running"):
-        dict(on_cluster(f"{WORKS}:squared", texts([1]), f"tcp://{HERE}:9", shared))
+    refused(f"tcp://{HERE}:9", shared, "no scheduler responds; expected a running")
 
 
-@pytest.mark.parametrize(
-    "address",
-    [
-        "",
-        "tcp://",
-        "tcp://x",
-        "tcp://x:y",
-        "tcp://x:1/",
-        "tcp://x:65536",
-        "http://x:1",
-        "tcp://ä:1",
-    ],
-)
+NO_HOST = ("", "tcp://", "http://x:1", "tcp://ä:1", "tcp://a:1;touch ran")
+NO_PORT = ("tcp://x", "tcp://x:y", "tcp://x:1/", "tcp://x:65536")
+
+
+@pytest.mark.parametrize("address", [*NO_HOST, *NO_PORT])
 def test_what_is_no_address_is_refused_before_anybody_is_asked(address, shared):
-    with pytest.raises(tsas.InputError, match="is no scheduler address; expected tcp://HOST:PO"):
-        dict(on_cluster(f"{WORKS}:squared", texts([1]), address, shared))
+    refused(address, shared, "is no scheduler address; expected tcp://HOST:PO")
 
 
 def test_without_certificates_tls_is_refused_before_anybody_is_asked(shared):
-    with pytest.raises(tsas.InputError, match="Dask has no TLS certificates; name them"):
-        dict(on_cluster(f"{WORKS}:squared", texts([1]), "tls://x:1", shared))
+    refused("tls://x:1", shared, "Dask has no TLS certificates; name them")
 
 
 def test_without_dask_the_line_says_what_to_install(monkeypatch, shared):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(tsas.InputError, match=r"pip install 'tsas\[dask\]'"):
-        dict(on_cluster(f"{WORKS}:squared", texts([1]), "tcp://x:1", shared))
+    refused("tcp://x:1", shared, r"pip install 'tsas\[dask\]'")
 
 
 def test_a_cluster_that_would_do_it_otherwise_is_refused(tmp_path, shared):
     with cluster(tmp_path / "cluster") as made:
-        with pytest.raises(tsas.InputError, match="has no workers; start some with `OPENBLAS_NUM"):
-            outcomes_of(made, "squared", texts([1]), shared)
+        refused(made.address, shared, "has no workers; start some with `OPENBLAS_NUM")
         worker = made.add(threads=2)
-        with pytest.raises(tsas.InputError, match="runs 2 tasks at once in one process"):
-            outcomes_of(made, "squared", texts([1]), shared)
+        refused(made.address, shared, "runs 2 tasks at once in one process")
         worker.terminate()
         worker.wait()
         other = other_version(tmp_path / "other")
         made.add(PYTHONPATH=f"{other}{os.pathsep}{ROOT}")
-        with pytest.raises(tsas.InputError, match=r"worker tcp://\S+: tsas is 9.9.9; expected 0"):
-            outcomes_of(made, "squared", texts([1]), shared)
+        refused(made.address, shared, r"worker tcp://\S+: tsas is 9.9.9; expected 0")
 
 
 def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
@@ -206,15 +188,7 @@ def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
     _refuse(found | {"threads": "1"}, "worker w", shared, "dask worker")
 
 
-def test_the_command_that_starts_workers_can_be_pasted(shared):
-    empty = SimpleNamespace(scheduler_info=lambda n_workers: {"workers": {}})
-    with pytest.raises(tsas.InputError, match=r"dask worker 'tcp://a:1;touch ran' --nthreads 1"):
-        _refuse_workers(empty, "tcp://a:1;touch ran", shared)
-
-
-def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
-    marks = tmp_path / "marks"
-    marks.mkdir()
+def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, marks, shared):
     with cluster(tmp_path / "cluster", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as made:
         made.add()
         made.add()
@@ -232,9 +206,8 @@ def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
 
         killer = Thread(target=kill)
         killer.start()
-        with pytest.raises(
-            tsas.InputError, match="the scheduler has ended; completed tasks are kept"
-        ):
+        ended = "the scheduler has ended; completed tasks are kept"
+        with pytest.raises(tsas.InputError, match=ended):
             outcomes_of(made, "slow", content, shared)
         killer.join()
     for name in ("core", "client", "comm.tcp"):  # one line says it, and the library nothing

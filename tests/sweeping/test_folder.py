@@ -4,6 +4,7 @@ import os
 
 import pytest
 
+from tests.outputs import refused
 from tests.sweeping.test_tasks import rigs, tasks  # noqa: F401 # a fixture
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.folder import note, sweep_folder
@@ -29,16 +30,6 @@ def test_a_sweep_goes_on_in_what_is_left_of_one(tmp_path, left):
         assert folder.is_dir()
 
 
-def test_a_journal_of_another_program_makes_no_sweep(tmp_path):
-    (tmp_path / "journal.jsonl").write_text("{}")
-    (tmp_path / "parameters.csv").write_text("mine")
-    with (
-        pytest.raises(InputError, match="is no folder of an earlier sweep"),
-        sweep_folder(tmp_path, []),
-    ):
-        pass
-
-
 @pytest.mark.parametrize("place", [".", "tasks/a", "link"])
 def test_a_sweep_is_not_written_around_what_it_reads(tmp_path, place):
     with sweep_folder(tmp_path / "out", []) as folder:
@@ -46,24 +37,31 @@ def test_a_sweep_is_not_written_around_what_it_reads(tmp_path, place):
         (folder / "a" / "model.toml").write_text("mine")
         (tmp_path / "out" / "link").symlink_to(folder / "a")
     read = tmp_path / "out" / place / ("model.toml" if place != "." else "tasks/a/model.toml")
-    with (
-        pytest.raises(InputError, match="is an input, and would be replaced"),
-        sweep_folder(tmp_path / "out", [read]),
-    ):
-        pass
+    refused(sweep_folder(tmp_path / "out", [read]), "is an input, and would be replaced")
 
 
-@pytest.mark.parametrize("other", ["tasks/.mine", "tasks/a", "notes.txt", "sweep.json"])
-def test_a_folder_of_something_else_stays_as_it_is(tmp_path, other):
-    path = tmp_path / other
-    path.parent.mkdir(exist_ok=True)
-    path.touch()
-    with (
-        pytest.raises(InputError, match="is no folder of an earlier sweep"),
-        sweep_folder(tmp_path, []),
-    ):
-        pass
-    assert [p for p in tmp_path.rglob("*") if p.is_file()] == [path]
+@pytest.mark.parametrize(
+    "others",
+    [
+        ["tasks/.mine"],
+        ["tasks/a"],
+        ["notes.txt"],
+        ["sweep.json"],
+        ["journal.jsonl", "parameters.csv"],
+    ],
+)
+def test_a_folder_of_something_else_stays_as_it_is(tmp_path, others):
+    for other in others:
+        (tmp_path / other).parent.mkdir(exist_ok=True)
+        (tmp_path / other).write_text("{}")
+    refused(sweep_folder(tmp_path, []), "is no folder of an earlier sweep")
+    there = [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*") if p.is_file()]
+    assert sorted(there) == others
+
+
+def test_a_file_is_no_folder_of_a_sweep(tmp_path):
+    (tmp_path / "file").touch()
+    refused(sweep_folder(tmp_path / "file", []), "file: is a file")
 
 
 def test_a_kill_at_the_start_leaves_the_mark_first(tmp_path, monkeypatch):
@@ -84,7 +82,5 @@ def test_a_full_disk_is_one_line(rigs):  # noqa: F811
 
 
 def test_a_folder_whose_name_is_no_text_is_refused(tmp_path):
-    out = tmp_path / os.fsdecode(b"pp\xff")
-    with pytest.raises(InputError, match="its name is not UTF-8"), sweep_folder(out, []):
-        pytest.fail("the block must not run")
+    refused(sweep_folder(tmp_path / os.fsdecode(b"pp\xff"), []), "its name is not UTF-8")
     assert list(tmp_path.iterdir()) == []

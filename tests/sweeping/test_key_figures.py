@@ -17,23 +17,13 @@ OF_A_RUN = Estimate("preload_N", 25.0, "N", "fitted", "a", 0.1, 24.8, 25.2)
 MODEL = Model((FRICTION, GIVEN, OF_A_RUN))
 
 
-def diagnosis(named):
-    record = DiagnosisFile.model_construct(
-        verdict="ambiguous",
-        named=named,
-        channels={"f_in_N": HeldOut(rmse_before=0.9, rmse_after=0.1)},
-    )
-    return SimpleNamespace(record=record, model=MODEL)
-
-
 def test_a_diagnosis_gives_verdict_causes_gains_errors_and_what_was_fitted():
-    cause = NamedCause(
-        effect="backlash",
-        rivals=("drive_ripple",),
-        gain_percent=40.0,
-        gain_interval_percent=(30.0, 50.0),
-    )
-    assert figures("diagnose", diagnosis([cause])) == {
+    gain = {"gain_percent": 40.0, "gain_interval_percent": (30.0, 50.0)}
+    cause = NamedCause(effect="backlash", rivals=("drive_ripple",), **gain)
+    channels = {"f_in_N": HeldOut(rmse_before=0.9, rmse_after=0.1)}
+    record = DiagnosisFile.model_construct(verdict="ambiguous", named=[cause], channels=channels)
+    diagnosis = SimpleNamespace(record=record, model=MODEL)
+    assert figures("diagnose", diagnosis) == {
         "verdict": "ambiguous",
         "causes": "backlash",
         "rivals": "drive_ripple",
@@ -47,8 +37,8 @@ def test_a_diagnosis_gives_verdict_causes_gains_errors_and_what_was_fitted():
         "fitted_friction_coefficient_high": 0.13,
         "fitted_friction_coefficient_at_bound": False,
     }
-    assert [e["run"] for e in estimates("diagnose", diagnosis([]))] == [None, None, "a"]
-    assert estimates("simulate", diagnosis([])) == []
+    assert [e["run"] for e in estimates("diagnose", diagnosis)] == [None, None, "a"]
+    assert estimates("simulate", diagnosis) == []
 
 
 def test_errors_of_runs_are_pooled_by_their_squares():

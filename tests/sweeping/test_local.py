@@ -1,7 +1,6 @@
 """The local pool: every task is answered, whatever happens to the workers."""
 
 import errno
-import json
 import os
 import time
 from contextlib import closing
@@ -9,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.sweeping.works import texts
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.local import in_processes
 
@@ -19,10 +19,6 @@ WORKS = "tests.sweeping.works"
 @pytest.fixture(autouse=True)
 def _workers_find_the_works(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-
-
-def texts(numbers, **more):
-    return [json.dumps({"number": number, **more}) for number in numbers]
 
 
 def test_every_task_is_answered_by_its_number_on_as_many_processes_as_asked_for(tmp_path):

@@ -91,14 +91,10 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
     values = {"friction_coefficient": 0.1, "plant.friction_coefficient": 0.2}
     values |= {"settings.reference.mean_N": 40.0, "controllers": "pid"}
     inputs = tasks(rigs, stage="track", datasets=None, options=values)[0].inputs
-    assert (inputs["model"], inputs["plant"]) == (
-        {"friction_coefficient": 0.1},
-        {"friction_coefficient": 0.2},
-    )
-    assert (inputs["settings"], inputs["options"]) == (
-        {"reference.mean_N": 40.0},
-        {"controllers": "pid"},
-    )
+    assert inputs["model"] == {"friction_coefficient": 0.1}
+    assert inputs["plant"] == {"friction_coefficient": 0.2}
+    assert inputs["settings"] == {"reference.mean_N": 40.0}
+    assert inputs["options"] == {"controllers": "pid"}
 
 
 @pytest.mark.parametrize(
@@ -107,10 +103,7 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
         ({"options": {"node": 30}}, "unknown name node; did you mean nodes?"),
         ({"options": {"out": "x"}}, "unknown name out"),
         ({"options": {"nodes": 2.5}}, "nodes is 2.5; expected .* valid integer"),
-        (
-            {"options": {"dynamics": "fast"}},
-            "dynamics is 'fast'; expected .* 'static'",
-        ),
+        ({"options": {"dynamics": "fast"}}, "dynamics is 'fast'; expected .* 'static'"),
         ({"options": {"runs": "a"}}, "runs is 'a'; expected .* valid list"),
         ({"vary": {"friction_coefficient": [0.1, -1]}}, "friction_coefficient is -1; expected 0"),
         ({"vary": {"total_bend_rad": ["much"]}}, "total_bend_rad is 'much'; expected a number"),
@@ -119,14 +112,8 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
         ({"options": {"nodes": -(16**6000)}}, "nodes is an integer of 24002 bits; .* at most 64"),
         ({"vary": {"total_bend_rad": [2.0, float("nan")]}}, "total_bend_rad is nan; .* finite"),
         ({"vary": {"friction_coefficient": [float("inf")]}}, "friction_coefficient is inf; .* fin"),
-        (
-            {"vary": {"total_bend_rad": [-1]}},
-            "the plan: total_bend_rad: expected 0, or 1e-09 to 1e\\+06 rad, got -1",
-        ),
-        (
-            {"options": {"sheath_length_mm": 0}},
-            "the plan: sheath_length_mm: expected 1e-06 to 1e\\+09 mm, got 0",
-        ),
+        ({"vary": {"total_bend_rad": [-1]}}, "total_bend_rad: expected 0, or 1e-09 .* rad, got -1"),
+        ({"options": {"sheath_length_mm": 0}}, "the plan: sheath_length_mm: expected .* mm, got 0"),
         ({"options": {"model": "m.toml"}}, "m.toml: does not exist; expected the file of model"),
         ({"options": {"model": 3}}, "model is 3; expected a file's path"),
         ({"vary": {"nodes": [10, 20, 10]}}, "duplicate task .*; expected distinct points"),
@@ -142,26 +129,23 @@ def test_what_is_wrong_is_reported_before_anything_is_done(rigs, more, message):
 
 
 def test_names_of_the_closed_loop_are_not_those_of_recordings(rigs):
-    for name in ("total_bend_rad", "sheath_length_mm"):
-        assert name in CONDITIONS
-        with pytest.raises(InputError, match=f"unknown name {name}; did you mean settings.rig"):
-            tasks(rigs, stage="track", datasets=None, options={name: 2})
-    with pytest.raises(
-        InputError, match=r"known are model, .*, and the parameters of a model: see `tsas"
+    assert {"total_bend_rad", "sheath_length_mm"} <= set(CONDITIONS)
+    for name, message in (
+        ("total_bend_rad", "unknown name total_bend_rad; did you mean settings.rig"),
+        ("sheath_length_mm", "unknown name sheath_length_mm; did you mean settings.rig"),
+        ("zzz", "known are model, .*, and the parameters of a model: see `tsas"),
+        ("settings.reference.mean", "settings: unknown key reference.mean .*mean_N"),
     ):
-        tasks(rigs, stage="track", datasets=None, options={"zzz": 2})
-    with pytest.raises(InputError, match=r"settings: unknown key reference.mean .*mean_N"):
-        tasks(rigs, stage="track", datasets=None, options={"settings.reference.mean": 2})
+        with pytest.raises(InputError, match=message):
+            tasks(rigs, stage="track", datasets=None, options={name: 2})
 
 
 def test_settings_are_told_over_those_of_a_file(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text("[reference]\nmean_N = 40.0\namplitude_N = 5.0\n")
     values = with_settings(path, {"reference.mean_N": 30.0, "rig.total_bend_rad": 2.0})
-    assert values == {
-        "reference": {"mean_N": 30.0, "amplitude_N": 5.0},
-        "rig": {"total_bend_rad": 2.0},
-    }
+    assert values["reference"] == {"mean_N": 30.0, "amplitude_N": 5.0}
+    assert values["rig"] == {"total_bend_rad": 2.0}
     with pytest.raises(InputError, match=r"mean_N of settings\.reference\.mean_N\.x is no table"):
         with_settings(path, {"reference.mean_N.x": 1.0})
 

@@ -1,11 +1,17 @@
 """What workers can be told to do in tests; each takes the task and returns its answer."""
 
+import json
 import os
 import signal
 import time
 from pathlib import Path
 
 from tsas_cli.sweeping.outcome import success
+
+
+def texts(numbers, **more):
+    """Return tasks as workers are told of them."""
+    return [json.dumps({"number": number, **more}) for number in numbers]
 
 
 def squared(task):

@@ -1,29 +1,21 @@
 """What was edited in a stage's folder is told on top of the page, by `compare` and by `track`."""
 
-import json
 import re
 from pathlib import Path
 
-import pytest
-
 import tsas_cli as tsas
+from tests.reporting.made_folders import edited
 from tests.verifying.test_verify import chain, made  # noqa: F401 # fixtures
 from tsas_cli.verifying.claims import change_notes
 
 TOLD = "Changed since it was written: model/simulation.json."
 
 
-def edit(path):
-    content = json.loads(Path(path).read_text())
-    content["runs"]["a"]["channels"]["f_in_N"]["rmse"] *= 2.0
-    Path(path).write_text(json.dumps(content))
-
-
-@pytest.mark.usefixtures("chain")
 def test_an_edited_number_is_told_on_top_of_the_page_and_in_a_comparison():
     folder = Path("result/model")
     assert change_notes([folder, folder / "model.toml", None, {}, Path("sine")]) == []
-    edit(folder / "simulation.json")
+    with edited(folder / "simulation.json") as content:
+        content["runs"]["a"]["channels"]["f_in_N"]["rmse"] *= 2.0
     tsas.report(["dataset", folder], out="page.html")
     page = Path("page.html").read_text(encoding="utf-8")
     assert TOLD in page[: page.index("<section")]
@@ -32,7 +24,6 @@ def test_an_edited_number_is_told_on_top_of_the_page_and_in_a_comparison():
     assert change_notes([folder / "model.toml"]) == []
 
 
-@pytest.mark.usefixtures("chain")
 def test_an_edited_model_is_told_by_what_follows_with_it():
     model = Path("result/model/model.toml")
     text = model.read_text(encoding="utf-8")
@@ -42,7 +33,6 @@ def test_an_edited_model_is_told_by_what_follows_with_it():
     assert any(note.startswith("Changed since it was written: model/model.toml.") for note in notes)
 
 
-@pytest.mark.usefixtures("chain")
 def test_a_list_that_says_nothing_and_a_file_that_is_gone_are_told():
     folder = Path("result/model")
     (folder / "runs/a.parquet").unlink()

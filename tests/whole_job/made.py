@@ -57,13 +57,9 @@ def make(folder):
             sensors=Sensors(rate_Hz=RATE_HZ),
             seed=seed,
         )
-        np.savetxt(
-            folder / "raw" / f"{name}.csv",
-            np.column_stack(list(columns.values())),
-            delimiter=",",
-            header=",".join(columns),
-            comments="",
-        )
+        rows, header = np.column_stack(list(columns.values())), ",".join(columns)
+        path = folder / "raw" / f"{name}.csv"
+        np.savetxt(path, rows, delimiter=",", header=header, comments="")
     columns = "".join(COLUMN.format(*item) for item in UNITS.items())
     text = MAP.format(length=RIG.sheath_length_mm, bend=RIG.total_bend_rad) + columns
     (folder / "map.toml").write_text(text, encoding="utf-8")

@@ -16,6 +16,7 @@ from tests.whole_job.stages import STAGES
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 OUTSIDE = re.compile(r"AF_INET|AF_NETLINK|AF_PACKET")  # in a line of strace: not a pipe of its own
+ASCII = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 START = "start_time"  # of a recording's properties
 SEALED = ["unshare", "--map-root-user", "--net"]
 TRACED = ["strace", "-f", "-qq", "--seccomp-bpf", "-e", "trace=network", "-o"]
@@ -44,11 +45,11 @@ class Job:
         )
         assert done.returncode == 0, done.stderr
 
-    def files(self, suffix=""):
+    def files(self):
         """Return the content of each file by its path in the folder."""
         return {
             path.relative_to(self.folder).as_posix(): path.read_bytes()
-            for path in sorted(self.folder.rglob(f"*{suffix}"))
+            for path in sorted(self.folder.rglob("*"))
             if path.is_file()
         }
 
@@ -70,16 +71,8 @@ def log(tmp_path_factory):
 @pytest.fixture(scope="module")
 def first(made, log, tmp_path_factory):
     """Return the job in plain surroundings, with its system calls watched."""
-    plain = {
-        "TZ": "UTC",
-        "LC_ALL": "C",
-        "LANG": "C",
-        "PYTHONUTF8": "0",
-        "PYTHONCOERCECLOCALE": "0",
-        "PYTHONHASHSEED": "1",
-        "TSAS_THREADS": "1",
-        "OPENBLAS_NUM_THREADS": "1",
-    }
+    plain = ASCII | {"TZ": "UTC", "LANG": "C", "PYTHONHASHSEED": "1"}
+    plain |= {"TSAS_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     wrapped = [*TRACED, str(log)] if works([*TRACED, str(log)]) else []
     return Job(tmp_path_factory.mktemp("first") / "a", made, plain, umask=0o022, wrapped=wrapped)
 
@@ -88,13 +81,8 @@ def first(made, log, tmp_path_factory):
 def second(made, tmp_path_factory):
     """Return the job elsewhere in every respect, without a network where that works."""
     root = tmp_path_factory.mktemp("second")
-    elsewhere = german(root / "locale") | {
-        "TZ": "Asia/Kolkata",
-        "PYTHONUTF8": "1",
-        "PYTHONHASHSEED": "2",
-        "TSAS_THREADS": "2",
-        "OPENBLAS_NUM_THREADS": "2",
-    }
+    elsewhere = {"TZ": "Asia/Kolkata", "PYTHONUTF8": "1", "PYTHONHASHSEED": "2"}
+    elsewhere |= {"TSAS_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"} | german(root / "locale")
     wrapped = SEALED if works(SEALED) else []
     return Job(root / "tiefer" / "Läufe 2", made, elsewhere, umask=0o077, wrapped=wrapped)
 
@@ -117,19 +105,15 @@ def german(folder):
     return where | {"LC_ALL": name, "LANG": name}
 
 
-def test_every_stage_writes(first):
-    files = first.files()
-    for number, stage in enumerate(STAGES):
-        out = stage.split("--out ")[1].split()[0]
-        assert any(name.split("/")[0] == out for name in files), stage
-        assert files[f"printed-{number}.txt"]
-
-
 def test_files_are_the_same_bytes_in_another_folder_zone_language_and_number_of_threads(
     first, second
 ):
     ours, theirs = first.files(), second.files()
     assert list(ours) == list(theirs)
+    for number, stage in enumerate(STAGES):
+        out = stage.split("--out ")[1].split()[0]
+        assert any(name.split("/")[0] == out for name in ours), stage
+        assert ours[f"printed-{number}.txt"]
     streams = [name for name in ours if name.endswith(".rrd")]
     assert len(streams) > 4
     for files in (ours, theirs):  # whose checksums differ too
@@ -161,9 +145,10 @@ def test_no_file_says_where_or_by_whom_it_was_made(first):
         assert str(first.folder).encode() not in content, name
 
 
-def test_nothing_is_asked_of_a_network(first, second):
-    assert not first.calls.exists(), first.calls.read_text()
-    assert not second.calls.exists(), second.calls.read_text()
+def test_nothing_is_asked_of_a_network_and_rerun_counts_nothing(first, second):
+    for job in (first, second):
+        assert not job.calls.exists(), job.calls.read_text()
+        assert [path for path in job.kept.rglob("*") if "rerun" in path.name] == []
 
 
 def test_not_even_by_compiled_code(first, log):
@@ -171,11 +156,6 @@ def test_not_even_by_compiled_code(first, log):
         pytest.skip("strace is not installed or may not trace here")
     calls = log.read_text(encoding="utf-8").splitlines()
     assert [line for line in calls if OUTSIDE.search(line)] == []
-
-
-def test_streams_are_written_without_rerun_counting_it(first, second):
-    for job in (first, second):
-        assert [path for path in job.kept.rglob("*") if "rerun" in path.name] == []
 
 
 def test_the_ban_itself_works(tmp_path):
@@ -192,9 +172,8 @@ def test_the_ban_itself_works(tmp_path):
         assert OUTSIDE.search((tmp_path / "strace.txt").read_text())
 
 
-def test_output_is_readable_where_the_language_knows_ascii_only(tmp_path):
-    plain = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+def test_output_is_readable_where_the_language_knows_ascii_only():
     call = [sys.executable, "-m", "tsas_cli", "explain", "backlash"]
-    done = subprocess.run(call, env=os.environ | plain, capture_output=True, check=False)
+    done = subprocess.run(call, env=os.environ | ASCII, capture_output=True, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
     assert "−" in done.stdout.decode("utf-8")

@@ -1,4 +1,4 @@
-"""Recordings of a drive, checked: motor speed in, end of the tendon out; and their response (H1)."""
+"""Checked recordings of a drive: motor speed in, end of the tendon out; their response (H1)."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -8,9 +8,7 @@ from tests.fuzz.rules import chosen
 from tests.recordings.readers.bags import save_mcap, save_ros1, save_ros2
 from tsas_cli.recordings.readers import bags  # noqa: F401 # instrumented
 
-FORMATS = [
-    whole_file(Offering("bags"), f"a.{suffix}") for suffix in ("mcap", "bag", "db3")
-]
+FORMATS = [whole_file(Offering("bags"), f"a.{suffix}") for suffix in ("mcap", "bag", "db3")]
 SHARE = 0.1
 MOST_BYTES = 50_000
 WORDS = (

@@ -12,6 +12,8 @@ from rerun.chunk import RrdReader
 from tests.reporting.made_folders import make_diagnosis, play
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_parquet
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.stream import write_stream
 
 MODEL = """format = 1
 [parameters.friction_coefficient]
@@ -72,6 +74,12 @@ def read(path: Path) -> dict[str, Read]:
         if not chunk.is_static:
             entity.chunks.append(chunk.num_rows)
     return dict(found)
+
+
+def stream(folder: Path, *stages: Path) -> dict[str, Read]:
+    """Write the stream of stages into a folder; return its entities."""
+    write_stream(read_inputs(list(stages)), folder / "s.rrd")
+    return read(folder / "s.rrd")
 
 
 def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named") -> Path:

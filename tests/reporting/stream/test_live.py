@@ -43,25 +43,25 @@ def rows_by_run(path):
     return rows
 
 
-def answer(dataset, run):
-    """Return what a model may have answered to a run."""
+@pytest.fixture
+def simulated(tmp_path):
+    """Return what tells a stream of a run of two, with what the simulation says so far."""
+    dataset = read_dataset(make_dataset(tmp_path / "dataset", ("a", "b"), samples=300))
+    folder = make_simulation(tmp_path / "dataset", tmp_path / "simulated")
+    stage = SimulationFile.model_validate_json((folder / "simulation.json").read_text())
     ones = np.ones(300)
     columns = {"time_s": np.arange(300.0), "f_in_N": ones, "x_in_mm": ones}
-    return Recording(dataset.only([run]).runs[0], columns)
+
+    def step(run, so_far):
+        said = stage.model_copy(update={"runs": {name: stage.runs[name] for name in so_far}})
+        answer = Recording(dataset.only([run]).runs[0], columns)
+        return lambda live: live.simulated(dataset, said, answer, data_sheet(dataset.manifest))
+
+    return step
 
 
-def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
-    dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
-    simulated = make_simulation(dataset, tmp_path / "simulated")
-    stage = SimulationFile.model_validate_json((simulated / "simulation.json").read_text())
-    opened = read_dataset(dataset)
-    model = data_sheet(opened.manifest)
-
-    def step(run):
-        so_far = stage.model_copy(update={"runs": {run: stage.runs[run]}})
-        return lambda live: live.simulated(opened, so_far, answer(opened, run), model)
-
-    first, both = seen([step("a"), step("b")])
+def test_each_simulated_run_is_there_before_the_next_is_computed(seen, simulated):
+    first, both = seen([simulated("a", "a"), simulated("b", "b")])
     assert first["/run/a/f_in_N/simulated"] == 300
     assert first["/run/a/f_in_N/measured"] == 300
     assert not any(path.startswith("/run/b") for path in first)
@@ -83,18 +83,14 @@ def test_tracked_runs_too(seen, tmp_path):
     assert len({path for path in both if "tracking_error" in path}) == 2
 
 
-def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch):
+def test_layouts_follow_the_runs_and_do_not_crowd_them_out(simulated, tmp_path, monkeypatch):
     laid_out = []
     outlined = lambda self, layout: laid_out.append(str(outline(layout.root_container)))  # noqa: E731
     monkeypatch.setattr(Recorder, "lay_out", outlined)
-    dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
-    simulated = make_simulation(dataset, tmp_path / "simulated")
-    stage = SimulationFile.model_validate_json((simulated / "simulation.json").read_text())
-    opened = read_dataset(dataset)
     with to_file(tmp_path / "live.rrd", "live") as recorder:
         live = LiveStream(recorder, tmp_path)
         for run in "ab":
-            live.simulated(opened, stage, answer(opened, run), data_sheet(opened.manifest))
+            simulated(run, "ab")(live)
         assert len(laid_out) == 1
         live.lay_out()
         live.lay_out()

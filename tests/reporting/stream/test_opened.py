@@ -14,10 +14,6 @@ def whole(tmp_path_factory):
     return make_stream(tmp_path_factory.mktemp("streams") / "waves.rrd")
 
 
-def test_a_stream_of_ours_is_finished(whole):
-    assert is_finished(whole)
-
-
 @pytest.mark.parametrize(
     ("content", "told"),
     [
@@ -28,6 +24,7 @@ def test_a_stream_of_ours_is_finished(whole):
     ],
 )
 def test_what_is_no_whole_stream_is_refused(whole, tmp_path, content, told):
+    assert is_finished(whole)
     path = tmp_path / "spoilt.rrd"
     path.write_bytes(content(whole.read_bytes()))
     with pytest.raises(InputError, match=told) as error:

@@ -3,38 +3,22 @@
 import json
 from datetime import datetime
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tests.reporting.made_folders import (
-    make_calibration,
-    make_check,
-    make_dataset,
-    make_simulation,
-    make_tracking,
-)
-from tests.reporting.stream.streams import make_diagnosed, read
-from tsas_cli.recordings.manifest import Manifest, Run
+from tests.reporting import made_folders as by_hand
+from tests.reporting.stream.streams import make_diagnosed, stream
 from tsas_cli.recordings.run_files import RunColumns
-from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.names import BY_KEY
-from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.reporting.stream.stream import plain_text
 from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 SAMPLES = 2 * ROWS + 100
-
-
-def stream(folder: Path, *stages: Path) -> dict:
-    write_stream(read_inputs(list(stages)), folder / "s.rrd")
-    return read(folder / "s.rrd")
 
 
 def overview(found: dict) -> str:
@@ -44,9 +28,9 @@ def overview(found: dict) -> str:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("made")
-    dataset = make_dataset(folder / "dataset", samples=SAMPLES)
-    make_simulation(dataset, folder / "simulate")
-    make_calibration(dataset, folder / "calibrate")
+    dataset = by_hand.make_dataset(folder / "dataset", samples=SAMPLES)
+    by_hand.make_simulation(dataset, folder / "simulate")
+    by_hand.make_calibration(dataset, folder / "calibrate")
     make_diagnosed(dataset, folder / "diagnose")
     return folder
 
@@ -164,12 +148,7 @@ def test_a_gap_stays_a_gap_and_no_loop_bridges_it(tmp_path):
     time_s = np.arange(200) / 100
     f_in = np.where((time_s > 0.5) & (time_s < 0.6), np.nan, 20 + time_s)
     table = {"time_s": time_s, "x_in_mm": 5 * time_s, "f_in_N": f_in}
-    run = Run(id="<script>", file="runs/a.parquet", sha256="0" * 64)
-    manifest = Manifest(format=1, name="gap", kind="measured", run=(run,))
-    arrays = {name: pa.array(values, from_pandas=True) for name, values in table.items()}
-    (tmp_path / "d").mkdir()
-    write_dataset(tmp_path / "d", manifest, {"<script>": pa.table(arrays)})
-    found = stream(tmp_path, tmp_path / "d")
+    found = stream(tmp_path, write_dataset(tmp_path / "d", [Run("<script>", table)]))
     line = found["/run/\\<script\\>/f_in_N/measured"]
     assert line.scalars.size == 200
     assert (np.isnan(line.scalars) == np.isnan(f_in)).all()
@@ -179,16 +158,10 @@ def test_a_gap_stays_a_gap_and_no_loop_bridges_it(tmp_path):
 
 
 def test_a_start_puts_all_of_a_run_on_the_session(tmp_path):
-    run = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64}
-    run["started"] = datetime(2026, 3, 2, 9, 30)  # noqa: DTZ001 # as a manifest may say it
-    manifest = Manifest.model_validate(
-        {"format": 1, "name": "n", "kind": "measured", "run": [run, run | {"id": "b"}]}
-    )
-    time_s = np.arange(50) / 10
-    table = pa.table({"time_s": time_s, "x_in_mm": time_s, "f_in_N": time_s})
-    (tmp_path / "d").mkdir()
-    write_dataset(tmp_path / "d", manifest, {"a": table, "b": table})
-    found = stream(tmp_path, tmp_path / "d")
+    told = {"started": datetime(2026, 3, 2, 9, 30)}  # noqa: DTZ001 # as a manifest may say it
+    table = dict.fromkeys(("time_s", "x_in_mm", "f_in_N"), np.arange(50) / 10)
+    runs = [Run(name, table, told) for name in "ab"]
+    found = stream(tmp_path, write_dataset(tmp_path / "d", runs))
     moving = [entity for path, entity in found.items() if entity.times]
     assert len(moving) == 2 * (2 + 1)  # two series and a point of each run
     for entity in moving:
@@ -197,11 +170,11 @@ def test_a_start_puts_all_of_a_run_on_the_session(tmp_path):
 
 
 def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
-    dataset = make_dataset(tmp_path / "dataset")
-    finding = {"code": "clipped", "run": "b", "sentence": "f_in_N is clipped", "remedy": ""}
+    dataset = by_hand.make_dataset(tmp_path / "dataset")
+    finding = {"code": "clipped", "run": "b", "sentence": "f_in_N is clipped"}
     late = finding | {"severity": "error", "first_s": 1.25}
     whole = finding | {"severity": "note", "first_s": None, "sentence": "rate is low"}
-    found = stream(tmp_path, make_check(dataset, tmp_path / "check", [late, whole]))
+    found = stream(tmp_path, by_hand.make_check(dataset, tmp_path / "check", [late, whole]))
     faults = found["/run/b/faults"]
     assert faults.at().tolist() == [0, 1_250_000_000]
     assert [row[0] for row in faults.rows["TextLog:level"]] == ["INFO", "ERROR"]
@@ -211,14 +184,9 @@ def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
 
 
 def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
-    dataset = make_dataset(tmp_path / "dataset")
-    finding = {
-        "code": "unreadable",
-        "severity": "error",
-        "run": "a",
-        "sentence": "a.parquet is empty",
-    }
-    check = make_check(dataset, tmp_path / "check", [finding])
+    dataset = by_hand.make_dataset(tmp_path / "dataset")
+    finding = {"code": "unreadable", "run": "a", "sentence": "a.parquet is empty"}
+    check = by_hand.make_check(dataset, tmp_path / "check", [finding | {"severity": "error"}])
     (dataset / "runs" / "0.parquet").write_bytes(b"")
     found = stream(tmp_path, check)
     assert "/run/b/f_in_N/measured" in found
@@ -228,7 +196,7 @@ def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
 
 def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_path):
     """The made force is missed by 1 N undisturbed, and by 2 N disturbed."""
-    found = stream(tmp_path, make_tracking(tmp_path / "tracked"))
+    found = stream(tmp_path, by_hand.make_tracking(tmp_path / "tracked"))
     for condition, missed_N in (("undisturbed", 1.0), ("disturbed", 2.0)):
         run = f"/run/pid-{condition}"
         assert found[f"{run}/tracking_error_N"].scalars == pytest.approx(missed_N)
@@ -238,13 +206,10 @@ def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_pat
     adapted = found["/run/adaptive-sliding-mode-disturbed/phi1_rpm_s3_per_mm"]
     assert set(adapted.scalars) == {0.005, 0.1}
     assert "/run/pid-disturbed/phi1_rpm_s3_per_mm" not in found
+    assert r"pid\-disturbed: the motor is at its \<limit\>" in overview(found)
 
 
 def test_the_overview_says_what_was_found_and_escapes_what_files_hold(made, tmp_path):
-    tracked = stream(tmp_path, make_tracking(tmp_path / "tracked"))
-    said = overview(tracked)
-    assert r"pid\-disturbed: the motor is at its \<limit\>" in said
-    (tmp_path / "s.rrd").unlink()
     said = overview(stream(tmp_path, made / "diagnose"))
     assert said.startswith("# bench")
     assert "**Cause found: normalised residual" in said
@@ -285,17 +250,17 @@ def test_each_column_is_read_once(made, tmp_path, monkeypatch):
 
 
 def test_only_runs_that_a_stage_took_are_shown(made, tmp_path):
-    folder = make_simulation(made / "dataset", made / "some")
-    path = folder / "simulation.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"chosen": ["b"]}))
+    folder = by_hand.make_simulation(made / "dataset", made / "some")
+    with by_hand.edited(folder / "simulation.json") as content:
+        content["chosen"] = ["b"]
     found = stream(tmp_path, folder)
     assert "/run/b/f_in_N/simulated" in found
     assert not any(path.startswith("/run/a/") for path in found)
 
 
 def test_answers_to_another_recording_are_refused_and_nothing_is_left(tmp_path):
-    dataset = make_dataset(tmp_path / "dataset")
-    folder = make_simulation(dataset, tmp_path / "simulate")
+    dataset = by_hand.make_dataset(tmp_path / "dataset")
+    folder = by_hand.make_simulation(dataset, tmp_path / "simulate")
     path = folder / "runs" / "b.parquet"
     pq.write_table(pq.read_table(path).slice(0, 100), path)
     with pytest.raises(InputError, match=r"b\.parquet: 100 rows"):

@@ -1,14 +1,6 @@
 """What the viewer opens with."""
 
-import pytest
-
-from tests.reporting.made_folders import (
-    make_calibration,
-    make_check,
-    make_dataset,
-    make_simulation,
-    make_tracking,
-)
+from tests.reporting import made_folders as by_hand
 from tests.reporting.stream.streams import make_diagnosed, read, shown, views
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import stream_of, write_stream
@@ -27,19 +19,14 @@ def of_kind(part, *kinds):
     return [view for view in views(part) if view.class_identifier in kinds]
 
 
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    return make_dataset(tmp_path_factory.mktemp("tabs") / "dataset")
-
-
 def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
     made = {
         dataset: ["Overview"],
-        make_check(dataset, tmp_path / "check"): ["Overview"],
-        make_calibration(dataset, tmp_path / "calibrate"): ["Overview"],
-        make_simulation(dataset, tmp_path / "simulate"): ["Overview", "Residuals"],
+        by_hand.make_check(dataset, tmp_path / "check"): ["Overview"],
+        by_hand.make_calibration(dataset, tmp_path / "calibrate"): ["Overview"],
+        by_hand.make_simulation(dataset, tmp_path / "simulate"): ["Overview", "Residuals"],
         make_diagnosed(dataset, tmp_path / "diagnose"): ["Overview", "Residuals"],
-        make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
+        by_hand.make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
     }
     for folder, names in made.items():
         found, opens = tabs(folder)
@@ -49,11 +36,11 @@ def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
 
 def test_every_view_shows_something_that_was_recorded(dataset, tmp_path):
     folders = [
-        make_calibration(dataset, tmp_path / "calibrate"),
-        make_simulation(dataset, tmp_path / "simulate"),
+        by_hand.make_calibration(dataset, tmp_path / "calibrate"),
+        by_hand.make_simulation(dataset, tmp_path / "simulate"),
         make_diagnosed(dataset, tmp_path / "diagnose"),
     ]
-    for number, given in enumerate([folders, [make_tracking(tmp_path / "track")]]):
+    for number, given in enumerate([folders, [by_hand.make_tracking(tmp_path / "track")]]):
         inputs, path = read_inputs(given), tmp_path / f"{number}.rrd"
         write_stream(inputs, path)
         recorded = set(read(path))
@@ -67,8 +54,8 @@ def test_every_view_shows_something_that_was_recorded(dataset, tmp_path):
 def test_phases_and_faults_stand_with_the_run_that_they_are_of(dataset, tmp_path):
     fault = {"code": "stuck", "severity": "error", "run": "b", "sentence": "f_in_N is stuck"}
     folders = [
-        make_calibration(dataset, tmp_path / "calibrate"),
-        make_check(dataset, tmp_path / "check", [fault]),
+        by_hand.make_calibration(dataset, tmp_path / "calibrate"),
+        by_hand.make_check(dataset, tmp_path / "check", [fault]),
     ]
     overview = root_of(read_inputs(folders)).contents[0]
     runs = overview.contents[0].contents[1].contents

@@ -9,14 +9,8 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
-from tests.reporting.made_folders import (
-    columns,
-    make_dataset,
-    make_diagnosis,
-    make_simulation,
-    source,
-)
-from tests.reporting.stream.streams import read
+from tests.reporting import made_folders as by_hand
+from tests.reporting.stream.streams import stream
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
@@ -24,12 +18,11 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.writing import write_dataset, write_parquet
+from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.seen import seen_runs
 from tsas_cli.reporting.stream.tendon import MOST, moments, sheath_of, view_of_tendon
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 VALUES = {
     "friction_coefficient": (0.125, "1"),
@@ -61,23 +54,22 @@ def answer(recording, one, samples=None):
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("tendon")
-    dataset = make_dataset(folder / "dataset", ids=("a",), samples=3000)
-    out = make_diagnosis(dataset, folder / "diagnose", "named")
+    dataset = by_hand.make_dataset(folder / "dataset", ids=("a",), samples=3000)
+    out = by_hand.make_diagnosis(dataset, folder / "diagnose", "named")
     for name, one in (("model-nominal.toml", NOMINAL), ("model-extended.toml", EXTENDED)):
-        write_model(out / name, MODELS[one], version="0.1.0", dataset=source(dataset, out))
+        write_model(out / name, MODELS[one], version="0.1.0", dataset=by_hand.source(dataset, out))
     (out / "runs").mkdir()
     for recording in read_dataset(dataset):
         told = {"time_s": recording.time_s, "x_in_mm": recording.columns["x_in_mm"]}
         told["f_in_N"] = answer(recording, MODELS[EXTENDED]).f_in_N
         told[nominal_name("f_in_N")] = answer(recording, MODELS[NOMINAL]).f_in_N
         write_parquet(out / "runs" / f"{recording.run.id}.parquet", pa.table(told))
-    write_stream(read_inputs([out]), folder / "s.rrd")
     return folder
 
 
 @pytest.fixture(scope="module")
 def found(made):
-    return read(made / "s.rrd")
+    return stream(made, made / "diagnose")
 
 
 @pytest.fixture(scope="module")
@@ -163,21 +155,23 @@ def view_in(*folders):
     return view_of_tendon(run)
 
 
+def simulated(folder, dataset, one):
+    """Return what a stream shows of a simulation with 20 nodes."""
+    write_model(folder / "m.toml", one, version="0.1.0", dataset={})
+    tsas.simulate(dataset, model=folder / "m.toml", out=folder / "s", nodes=20)
+    return stream(folder, folder / "s")
+
+
 def test_a_simulation_shows_its_one_model(made, tmp_path):
-    dataset = read_dataset(made / "dataset")
-    write_model(tmp_path / "m.toml", MODELS[EXTENDED], version="0.1.0", dataset={})
-    out = tmp_path / "simulate"
-    tsas.simulate(dataset, model=tmp_path / "m.toml", out=out, nodes=20)
-    write_stream(read_inputs([out]), tmp_path / "s.rrd")
-    paths = read(tmp_path / "s.rrd")
+    paths = simulated(tmp_path, made / "dataset", MODELS[EXTENDED])
     assert len(paths["/run/a/tendon/simulated/tendon"].static["LineStrips3D:strips"]) == 20
     assert "/run/a/tendon/simulated/tension" in paths
 
 
 def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
     dataset = made / "dataset"
-    assert view_in(make_simulation(dataset, tmp_path / "simulate")) is None
-    assert view_in(make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
+    assert view_in(by_hand.make_simulation(dataset, tmp_path / "simulate")) is None
+    assert view_in(by_hand.make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
     out = tmp_path / "static"
     tsas.simulate(dataset, dynamics="static", out=out)
     assert json.loads((out / "simulation.json").read_text())["dynamics"] == "static"
@@ -187,34 +181,14 @@ def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
 
 def test_runs_with_gaps_without_x_in_and_with_other_loads(tmp_path):
     """A stage does not write down how it has cleaned forces; they are cleaned again."""
-    whole = columns(3000)
+    whole = by_hand.columns(3000)
     gap = whole | {"f_in_N": whole["f_in_N"].copy()}
     gap["f_in_N"][800:1600] = np.nan  # all of the second stroke
     by_force = {name: values for name, values in whole.items() if name != "x_in_mm"}
     given = {"gap": (gap, "spring"), "f_in": (by_force, "spring"), "f_out": (whole, "force")}
-    runs = [
-        Run(
-            id=name,
-            file=f"runs/{name}.parquet",
-            sha256="0" * 64,
-            sheath_length_mm=785.0,
-            total_bend_rad=math.pi,
-            preload_N=25.0,
-            load=load,
-        )
-        for name, (_, load) in given.items()
-    ]
-    (tmp_path / "d").mkdir()
-    tables = {
-        name: pa.table({n: pa.array(v, from_pandas=True) for n, v in table.items()})
-        for name, (table, _) in given.items()
-    }
-    manifest = Manifest(format=1, name="odd", kind="simulated", run=tuple(runs))
-    write_dataset(tmp_path / "d", manifest, tables)
-    write_model(tmp_path / "m.toml", MODELS[NOMINAL], version="0.1.0", dataset={})
-    out = tmp_path / "s"
-    tsas.simulate(tmp_path / "d", model=tmp_path / "m.toml", out=out, nodes=20)
-    write_stream(read_inputs([out]), tmp_path / "s.rrd")
-    paths = read(tmp_path / "s.rrd")
+    told = {"sheath_length_mm": 785.0, "total_bend_rad": math.pi, "preload_N": 25.0}
+    runs = [Run(name, table, told | {"load": load}) for name, (table, load) in given.items()]
+    write_dataset(tmp_path / "d", runs, data_sheet={})
+    paths = simulated(tmp_path, tmp_path / "d", MODELS[NOMINAL])
     for name in given:
         assert len(paths[f"/run/{name}/tendon/simulated/tendon"].at()) > 150

@@ -5,14 +5,13 @@ import signal
 import socket
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import pytest
 
+from tests.outputs import refused
+from tests.processes import alive, family
 from tsas_cli.reporting.viewer import child
 from tsas_cli.reporting.viewer.child import LOOPBACK, free_ports, viewer_child
-from tsas_cli.support.errors import InputError
 
 SERVE = f"""#!{sys.executable}
 import signal, socket, subprocess, sys, time
@@ -28,13 +27,6 @@ sys.exit(3)
 """
 
 
-def alive(pid):
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rsplit(") ", 1)[1][0] != "Z"
-    except OSError:
-        return False
-
-
 @pytest.fixture
 def script(tmp_path, monkeypatch):
     def install(text):
@@ -47,63 +39,63 @@ def script(tmp_path, monkeypatch):
     return install
 
 
-@pytest.mark.parametrize("kind", ["willing", "stubborn"])
-def test_it_answers_in_the_block_and_is_gone_after_it(script, monkeypatch, kind):
+@pytest.fixture
+def port():
+    return free_ports(1)[0]
+
+
+@pytest.fixture
+def viewer(script, port):
+    """Return a function that opens a viewer of a kind."""
     script(SERVE)
+    return lambda kind="": viewer_child([str(port), kind], port=port)
+
+
+@pytest.mark.parametrize("kind", ["willing", "stubborn"])
+def test_it_answers_in_the_block_and_is_gone_after_it(viewer, port, monkeypatch, kind):
     if kind == "stubborn":
         monkeypatch.setattr(child, "END_S", 0.3)
-    (port,) = free_ports(1)
-    with viewer_child([str(port), kind], port=port) as running:
+    with viewer(kind) as running:
         socket.create_connection((LOOPBACK, port), timeout=1).close()
         assert os.getpgid(running.process.pid) == running.process.pid
-    assert not alive(running.process.pid)
+    assert not family(running.process.pid)
     assert running.process.returncode == (-signal.SIGKILL if kind == "stubborn" else -15)
 
 
-def test_it_is_gone_after_an_error_too(script):
-    script(SERVE)
-    (port,) = free_ports(1)
-    with pytest.raises(ZeroDivisionError), viewer_child([str(port), ""], port=port) as running:
+def test_a_wait_can_be_short(viewer):
+    with viewer() as running:
+        running.wait(0.1)
+        assert family(running.process.pid)
+
+
+def test_it_is_gone_after_an_error_too(viewer):
+    with pytest.raises(ZeroDivisionError), viewer() as running:
         1 / 0  # noqa: B018
-    assert not alive(running.process.pid)
+    assert not family(running.process.pid)
 
 
-def test_a_viewer_that_is_closed_is_no_failure(script):
-    script(SERVE)
-    (port,) = free_ports(1)
-    with viewer_child([str(port), "closed"], port=port) as running:
+def test_a_viewer_that_is_closed_is_no_failure(viewer):
+    with viewer("closed") as running:
         running.wait()
     assert running.process.returncode == 0
 
 
-def test_a_wait_can_be_short(script):
-    script(SERVE)
-    (port,) = free_ports(1)
-    with viewer_child([str(port), ""], port=port) as running:
-        running.wait(0.1)
-        assert alive(running.process.pid)
-
-
-def test_a_viewer_that_fails_is_quoted(script):
+def test_a_viewer_that_fails_is_quoted(script, port):
     script(FAIL)
     told = r"failed \(Error: no adapter\).*--web.*tsas doctor"
-    with pytest.raises(InputError, match=told), viewer_child([], port=free_ports(1)[0]):
-        pytest.fail("never runs")
+    refused(viewer_child([], port=port), told)
 
 
 def test_a_viewer_that_does_not_answer_is_ended(script, monkeypatch):
     script(SERVE)
     monkeypatch.setattr(child, "START_S", 0.3)
     port, other = free_ports(2)
-    told = f"does not answer on port {other}"
-    with pytest.raises(InputError, match=told), viewer_child([str(port), ""], port=other):
-        pytest.fail("never runs")
+    refused(viewer_child([str(port), ""], port=other), f"does not answer on port {other}")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends the children of the dead")
-def test_it_dies_with_a_parent_that_is_killed(script):
+def test_it_dies_with_a_parent_that_is_killed(script, port):
     path = script(SERVE)
-    (port,) = free_ports(1)
     parent = f"""
 from pathlib import Path
 from tsas_cli.reporting.viewer import child
@@ -114,9 +106,6 @@ with child.viewer_child(["{port}", ""], port={port}) as running:
 """
     with subprocess.Popen([sys.executable, "-c", parent], stdout=subprocess.PIPE) as process:
         pid = int(process.stdout.readline())
-        assert alive(pid)
+        assert family(pid)
         process.kill()
-    until = time.monotonic() + 40
-    while alive(pid) and time.monotonic() < until:
-        time.sleep(0.02)
-    assert not alive(pid)
+    assert alive({pid}) == set()

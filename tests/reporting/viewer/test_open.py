@@ -9,13 +9,9 @@ def state(tmp_path, monkeypatch):
     return tmp_path / "state"
 
 
-def test_it_is_said_once_and_names_the_command(state):
+def test_it_is_said_once_to_each_user_and_names_the_command(state, monkeypatch):
     assert "rerun analytics disable" in NOTE
     assert [note_once(), note_once(), note_once()] == [NOTE, "", ""]
-
-
-def test_another_user_is_told_too(state, monkeypatch):
-    note_once()
     monkeypatch.setenv("TSAS_STATE_DIR", str(state / "other"))
     assert note_once() == NOTE
 

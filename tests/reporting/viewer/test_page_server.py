@@ -79,11 +79,6 @@ def test_the_page_is_passed_on_and_the_file_is_beside_it(inside, file):
         assert get(port, "/missing.svg")[0] == 404
 
 
-def test_without_a_file_there_is_none(inside):
-    with served(inside) as port:
-        assert get(port, "/stream.rrd")[2] == PAGE  # that is up to Rerun
-
-
 def test_the_browser_lets_the_page_reach_this_machine_alone(inside):
     with served(inside, data=[4711]) as port:
         policy = get(port, "/")[1]["Content-Security-Policy"]
@@ -111,9 +106,9 @@ def test_a_large_file_is_not_in_memory(inside, tmp_path):
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 50_000  # kB
 
 
-def test_the_port_is_free_again_afterwards(inside):
+def test_without_a_file_there_is_none_and_the_port_is_free_again_afterwards(inside):
     with served(inside) as port:
-        pass
+        assert get(port, "/stream.rrd")[2] == PAGE  # that is up to Rerun
     assert free_ports(1, port) == (port,)
 
 
