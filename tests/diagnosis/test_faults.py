@@ -5,7 +5,7 @@ The recordings are those of the independent rig.
 
 import pytest
 
-from tsas_cli.diagnosis.faults.search import Candidate
+from tsas_cli.diagnosis.faults.candidates import Candidate
 from tsas_cli.diagnosis.faults.words import record_of
 from tsas_cli.stages.diagnose import diagnose
 from tsas_studies.challenge.cases import Case, Hidden
@@ -77,6 +77,26 @@ def test_hum_is_said_with_its_frequency(tmp_path):
     (found,) = result.record.faults
     assert (found.code, found.run, found.column) == ("hum", None, "f_out_N")
     assert found.sentence == "f_out_N swings at 1.4 Hz in all runs, whatever the motion"
+
+
+def test_the_beginning_of_a_fault_is_found_between_the_parts_of_a_run(tmp_path):
+    step = of_a_run("step_in_a_run", channel="f_out_N", offset=1.0, since=0.53)
+    (found,) = diagnose(made(tmp_path, "recording", step)).record.faults
+    assert found.first_s == pytest.approx(0.53 * 20.0, abs=0.15)
+
+
+def test_counts_that_an_encoder_misses_are_said_as_steps(tmp_path):
+    missed = of_a_run("missed_counts", channel="x_out_mm", lost_mm=0.15, times=3)
+    (found,) = diagnose(made(tmp_path, "recording", missed)).record.faults
+    assert (found.code, found.run, found.column) == ("run-step", "b", "x_out_mm")
+    assert found.sentence.count(" mm less since about ") == 3
+
+
+def test_a_sensor_that_saturates_softly_is_said(tmp_path):
+    values = {"channels": ("f_in_N",), "depth": 1.5, "knee": 1.5}
+    result = diagnose(made(tmp_path, "recording", Hidden("soft_saturation", values)))
+    (found,) = result.record.faults
+    assert (found.code, found.run, found.column) == ("saturates", None, "f_in_N")
 
 
 def test_what_wanders_without_any_motion_is_no_mechanism(tmp_path):

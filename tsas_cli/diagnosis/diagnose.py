@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.faults.rivals import effects_as_good
-from tsas_cli.diagnosis.faults.search import fault_of_recording
+from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
 from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of, wandering
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
@@ -125,18 +125,30 @@ def diagnose_runs(
     try:
         fault = fault_of_recording(search, accepted)
         if fault is not None and not any(effects_as_good(search, fault)):
-            record = record_of(fault.found, [run.run.id for run in runs])
-            reason = reason_of_fault(record, fault.share)
-            return Diagnosis(
-                "undecided", reason, model, model, cannot_tell=cannot_tell, fault=record
-            )
+            return _of_a_fault(fault, base)
         found = _concluded(proven_effects(find_effects(search), step), base, step)
     except Ended:
         return _ended(search, model, cannot_tell)
+    if fault is not None and found.unexplained:
+        by_fault = _of_a_fault(fault, base)
+        if found.causes and all(cause.law_differs for cause in found.causes):
+            return by_fault
+        if not found.causes:
+            found = replace(found, fault=by_fault.fault, reason=f"{found.reason} {by_fault.reason}")
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model
     whole = None if whole is None else with_preload_correction(whole, runs)
     return replace(found, model=extended, nominal=nominal, stand_in_model=whole)
+
+
+def _of_a_fault(fault: FoundFault, base: FittedModel) -> Diagnosis:
+    """Return that a fault of the recordings comes before any mechanism."""
+    record = record_of(fault.found, [run.run.id for run in base.problem.runs])
+    reason = reason_of_fault(record, fault.share)
+    cannot_tell = tuple(base.cannot_tell)
+    return Diagnosis(
+        "undecided", reason, base.model, base.model, cannot_tell=cannot_tell, fault=record
+    )
 
 
 def _ended(search: Search, model: Model, cannot_tell: tuple[str, ...]) -> Diagnosis:

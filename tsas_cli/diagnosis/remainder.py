@@ -21,6 +21,7 @@ from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.wording import listed
 
 HATS = 10  # hat functions of each signal and direction
 RIDGE = 1.0  # regularisation, in units of noise
@@ -257,5 +258,6 @@ def _oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
     if len(found) < max(2, len(bench.rigs) // 2):
         return None
     frequency = float(np.median([f for _, f in found]))
-    names = " and ".join(sorted({name for name, _ in found}))
-    return f"time_s ({names} oscillates at {frequency:.3g} Hz)"
+    names = sorted({name for name, _ in found})
+    verb = "oscillates" if len(names) == 1 else "oscillate"
+    return f"time_s ({listed(names)} {verb} at {frequency:.3g} Hz)"

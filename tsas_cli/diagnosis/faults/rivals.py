@@ -6,7 +6,8 @@ simpler explanation, and the search for causes goes on.
 
 from collections.abc import Iterator
 
-from tsas_cli.diagnosis.faults.search import OWN_FRICTION, FoundFault, beside
+from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION, beside
+from tsas_cli.diagnosis.faults.search import FoundFault
 from tsas_cli.diagnosis.search import LINEAR, Search
 
 AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the fault

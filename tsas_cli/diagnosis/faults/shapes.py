@@ -13,9 +13,59 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
 WINDOWS = 24  # parts of a run whose zero or gain may differ
-CONSTANTS_S = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)  # of amplifiers coupled to AC
 RATES = tuple(sign * rate for rate in (0.001, 0.002, 0.003, 0.004, 0.005) for sign in (-1.0, 1.0))
 SMALL = 5.0  # times the noise of a driving end: the step that its columns are calculated with
+
+
+@dataclass(frozen=True, eq=False)
+class ReadRun:
+    """A run at a trial's rig, and what a wrong reading of a channel does to its residuals."""
+
+    errors: RunErrors
+    rig: Rig
+    predicted: Predictions
+
+    @property
+    def time_s(self) -> Floats:
+        """Time since the start of the run [s], shape (n,)."""
+        return np.asarray(self.errors.run.time_s - self.errors.run.time_s[0])
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channels that may be wrong: those of the residuals, then the driving one."""
+        drive = self.errors.run.drive_column
+        return (*self.errors.samples, *(() if drive in self.errors.samples else (drive,)))
+
+    def values(self, name: str) -> Floats:
+        """Return what a channel reads without a fault, shape (n,)."""
+        if name in self.errors.samples:
+            return self.predicted[name]
+        return self.errors.run.conditioned[name].values
+
+    def changed(self, name: str, reading: Floats) -> Floats:
+        """Return the change of the residuals where a channel reads so much more, shape (r,)."""
+        if name in self.errors.samples:
+            return self.errors.changed({name: -reading})
+        largest = float(np.abs(reading).max())
+        if largest == 0.0:
+            return self.errors.changed({})
+        conditioned = self.errors.run.conditioned[name]
+        size = SMALL * max(conditioned.noise, 1e-4) / largest
+        moved = predict_driven(
+            self.errors.simulation, self.rig, values=conditioned.values + size * reading
+        )
+        changes = {name: (moved[name] - self.predicted[name]) / size for name in moved}
+        return self.errors.changed(changes)
+
+    def changed_in(
+        self, code: str, name: str, first_s: float | None, last_s: float | None
+    ) -> Floats:
+        """Return the change of the residuals by a zero or a gain of a part of the run, (r,)."""
+        scale = self.values(name) if code == "run-gain" else np.ones(self.time_s.size)
+        since = self.changed(name, scale * (self.time_s >= (first_s or 0.0)))
+        if last_s is None:
+            return since
+        return since - self.changed(name, scale * (self.time_s >= last_s))
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,9 +73,9 @@ class RunShapes:
     """The changes of a run's residuals by a fault of one unit in each channel.
 
     `offset` and `gain` have a column for each of the parts of the run that begin at `starts_s`,
-    shape (n, parts); `late` and `pace` are those of a delay of 1 s and of a clock that gains 1 s
-    per second, shape (n,); `coupled` of an amplifier coupled to AC by its time constant [s], and
-    `clocked` of a clock by its pace: a steep channel is no straight line over a large shift.
+    shape (r, parts); `late` and `pace` are those of a delay of 1 s and of a clock that gains 1 s
+    per second, shape (r,); `clocked` of a clock by its pace: a steep channel is no straight line
+    over a large shift.
     """
 
     starts_s: Floats
@@ -33,84 +83,58 @@ class RunShapes:
     gain: Mapping[str, Floats]
     late: Mapping[str, Floats]
     pace: Mapping[str, Floats]
-    coupled: Mapping[str, Mapping[float, Floats]]
     clocked: Mapping[str, Mapping[float, Floats]]
 
 
-def shapes_of(bench: Bench, trial: HypothesisFit, k: int) -> RunShapes:
-    """Return what faults of run k do to its residuals at a trial's rig."""
-    errors, rig = bench.errors_for(trial)[k], bench.rig(trial, k)
-    time_s = errors.run.time_s - errors.run.time_s[0]
-    predicted = errors.predict(rig)
+def runs_at(bench: Bench, trial: HypothesisFit) -> list[ReadRun]:
+    """Return the runs of a bench at a trial's rigs."""
+    rigs = (bench.rig(trial, k) for k in range(len(bench.rigs)))
+    pairs = zip(bench.errors_for(trial), rigs, strict=True)
+    return [ReadRun(errors, rig, errors.predict(rig)) for errors, rig in pairs]
+
+
+def shapes_of(read: ReadRun) -> RunShapes:
+    """Return what faults of a run do to its residuals."""
+    time_s = read.time_s
     edges = np.linspace(0, time_s.size, WINDOWS + 1).astype(int)
     inside = np.zeros((WINDOWS, time_s.size))
     for window, (start, stop) in enumerate(pairwise(edges)):
         inside[window, start:stop] = 1.0
-    offset, gain, late, pace = {}, {}, {}, {}
-    coupled, clocked = {}, {}
-    for name in errors.samples:
-        values = predicted[name]
+    since = np.cumsum(inside[::-1], axis=0)[::-1]  # from each start to the end
+    offset, gain, late, pace, clocked = {}, {}, {}, {}, {}
+    for name in read.channels:
+        values = read.values(name)
         speed = np.gradient(values, time_s)
-        offset[name] = _columns(errors, name, -inside)
-        gain[name] = _columns(errors, name, -inside * values)
-        late[name] = errors.changed({name: speed})
-        pace[name] = errors.changed({name: -speed * time_s})
-        clocked[name] = {
-            rate: errors.changed({name: values - np.interp((1.0 + rate) * time_s, time_s, values)})
-            for rate in RATES
-        }
-        if name.endswith("_N"):
-            coupled[name] = {
-                constant: errors.changed({name: values - _coupled(time_s, values, constant)})
-                for constant in CONSTANTS_S
+        offset[name] = _parts(np.array([read.changed(name, s) for s in since]))
+        gain[name] = _parts(np.array([read.changed(name, s * values) for s in since]))
+        late[name] = read.changed(name, -speed)
+        pace[name] = read.changed(name, speed * time_s)
+        if name in read.errors.samples:
+            clocked[name] = {
+                rate: read.changed(name, np.interp((1.0 + rate) * time_s, time_s, values) - values)
+                for rate in RATES
             }
-    column = errors.run.drive_column
-    if column not in errors.samples:
-        driven = _Driven(errors, rig, predicted)
-        values = errors.run.conditioned[column].values
-        since = np.cumsum(inside[::-1], axis=0)[::-1]  # from each start to the end
-        speed = np.gradient(values, time_s)
-        offset[column] = _parts(np.array([driven.by(s) for s in since]))
-        gain[column] = _parts(np.array([driven.by(s * values) for s in since]))
-        late[column] = driven.by(-speed)
-        pace[column] = driven.by(speed * time_s)
-    return RunShapes(time_s[edges[:-1]], offset, gain, late, pace, coupled, clocked)
+    return RunShapes(time_s[edges[:-1]], offset, gain, late, pace, clocked)
 
 
-def _coupled(time_s: Floats, values: Floats, constant_s: float) -> Floats:
+def passed(time_s: Floats, values: Floats, constant_s: float) -> Floats:
     """Return what an amplifier passes that is coupled to AC with a time constant."""
     from scipy.signal import lfilter
 
-    decay = np.exp(-np.diff(time_s).mean() / constant_s)
-    return np.asarray(lfilter([1.0, -1.0], [1.0, -decay], values))
+    return np.asarray(lfilter([1.0, -1.0], [1.0, -_decay(time_s, constant_s)], values))
 
 
-def _columns(errors: RunErrors, name: str, changes: Floats) -> Floats:
-    return np.array([errors.changed({name: change}) for change in changes]).T
+def before_amplifier(time_s: Floats, values: Floats, constant_s: float) -> Floats:
+    """Return what an amplifier read that is coupled to AC: the inverse of `passed`."""
+    from scipy.signal import lfilter
+
+    return np.asarray(lfilter([1.0, -_decay(time_s, constant_s)], [1.0, -1.0], values))
+
+
+def _decay(time_s: Floats, constant_s: float) -> float:
+    return float(np.exp(-np.diff(time_s).mean() / constant_s))
 
 
 def _parts(since: Floats) -> Floats:
-    """Return the columns of the parts, (n, parts), from those of all that follow, (parts, n)."""
+    """Return the columns of the parts, (r, parts), from those of all that follow, (parts, r)."""
     return np.asarray((since - np.vstack((since[1:], np.zeros_like(since[:1])))).T)
-
-
-@dataclass(frozen=True, eq=False)
-class _Driven:
-    """The run with another reading of its driving end."""
-
-    errors: RunErrors
-    rig: Rig
-    predicted: Predictions
-
-    def by(self, reading: Floats) -> Floats:
-        """Return the change of the residuals by one unit of a wrong reading, shape (n,)."""
-        conditioned = self.errors.run.conditioned[self.errors.run.drive_column]
-        largest = float(np.abs(reading).max())
-        if largest == 0.0:
-            return self.errors.changed({})
-        size = SMALL * max(conditioned.noise, 1e-4) / largest
-        moved = predict_driven(
-            self.errors.simulation, self.rig, values=conditioned.values + size * reading
-        )
-        changes = {name: (moved[name] - self.predicted[name]) / size for name in moved}
-        return self.errors.changed(changes)

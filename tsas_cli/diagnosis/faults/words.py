@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from tsas_cli.diagnosis.faults.search import Candidate
+from tsas_cli.diagnosis.faults.candidates import Candidate
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.diagnosis import RecordingFault
@@ -34,7 +34,7 @@ def reason_of_fault(fault: RecordingFault, share: float) -> str:
     return (
         f"A fault of the recordings explains {100.0 * min(share, 1.0):.0f} % of what the nominal "
         f"model leaves beyond the noise: {fault.sentence}. {remedy}, or accept it with --despite "
-        f"{fault.code}; no mechanism is sought before."
+        f"{fault.code}."
     )
 
 
@@ -57,6 +57,8 @@ def _sentence(c: Candidate, runs: Sequence[str]) -> str:
 
 
 def _when(c: Candidate) -> str:
+    if c.steps:
+        return ""
     if c.first_s is not None and c.last_s is not None:
         return f" from about {c.first_s:.3g} to {c.last_s:.3g} s"
     if c.first_s is not None:
@@ -123,6 +125,19 @@ def _coupled(c: Candidate) -> str:
     )
 
 
+def _step(c: Candidate) -> str:
+    (name,) = c.channels
+    unit = BY_NAME[name].unit
+    steps = [f"{abs(d):.2g} {unit} {_more(d)} since about {t:.3g} s" for t, d in c.steps]
+    return f"{name} reads {listed(steps)}, as of an encoder that misses counts or slips"
+
+
+def _saturates(c: Candidate) -> str:
+    (name,) = c.channels
+    level = f"{c.amount:.3g} {BY_NAME[name].unit}"
+    return f"{name} reads less than it should beyond about {level}, as a sensor that saturates"
+
+
 def _hum(c: Candidate) -> str:
     (name,) = c.channels
     return f"{name} swings at {c.amount:.3g} Hz in all runs, whatever the motion"
@@ -137,5 +152,7 @@ _SAID: Mapping[str, Callable[[Candidate], str]] = {
     "run-friction": _friction,
     "run-length": _length,
     "hum": _hum,
+    "run-step": _step,
+    "saturates": _saturates,
 }
 CODES = tuple(_SAID)

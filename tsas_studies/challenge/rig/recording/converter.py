@@ -1,6 +1,7 @@
 """A sensor and its amplifier: the end of the range, hysteresis, creep, crosstalk."""
 
 import numpy as np
+from scipy.signal import butter, sosfiltfilt
 
 from tsas_studies.challenge.rig.motions import Floats
 from tsas_studies.challenge.rig.recording.recorded import FORCES, Runs, changed
@@ -42,9 +43,18 @@ def _highest(runs: Runs, channel: str) -> float:
 def sensor_hysteresis(
     runs: Runs, _rng: np.random.Generator, *, channels: tuple[str, ...], share: float
 ) -> Runs:
-    """Return channels that stay behind a change by a share of 10 N."""
+    """Return channels that stay behind a change by a share of 10 N.
+
+    The noise comes from behind the sensor: its loop follows the channel below 10 Hz.
+    """
     loop = Transducer(hysteresis_share=share)
-    return changed(runs, channels, lambda t, v: transduced(loop, t, v))
+
+    def held_back(time_s: Floats, values: Floats) -> Floats:
+        low_pass = butter(2, 10.0, fs=1.0 / (time_s[1] - time_s[0]), output="sos")
+        slow = np.asarray(sosfiltfilt(low_pass, values))
+        return values + transduced(loop, time_s, slow) - slow
+
+    return changed(runs, channels, held_back)
 
 
 def sensor_creep(

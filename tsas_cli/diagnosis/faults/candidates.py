@@ -1,0 +1,268 @@
+"""Every fault of a recording by one unknown, with the squares of the residual that it takes away.
+
+The zero or the gain of a channel over a part of a run, its delay, the pace of its clock, the
+friction or the stiffness of one run; in all runs a coupling to AC, a saturation, or a swing.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from tsas_cli.diagnosis.faults.hum import swings
+from tsas_cli.diagnosis.faults.shapes import (
+    RATES,
+    WINDOWS,
+    ReadRun,
+    RunShapes,
+    passed,
+    shapes_of,
+)
+from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.tolerances import SCATTER, friction_of_runs
+from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.support.arrays import Floats, Indices, Mask
+
+STIFFNESS, OWN_FRICTION = "tendon_stiffness_N", "run-friction"
+OF_THE_CATALOGUE = "channel_delay"  # no fault of a run: the search for causes finds it
+CONSTANTS_S = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)  # of amplifiers coupled to AC
+LEVELS = np.linspace(0.4, 0.98, 16)  # of all values, below which a sensor may not saturate
+TINY = 1e-9
+MOST_SCATTER = 3.0  # standard deviations of the friction from run to run
+ONCE = (0.5, 2.0)  # the amount of an effect whose size its shape tells
+HELD_BACK = (0.1, 1.5)  # the share that a saturated sensor holds back, with a scatter
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A fault by one unknown: what it is, where, the amount, and the squares that it takes away.
+
+    `run` is None for a fault of all runs; `edges` counts the ends of the part of the run that it
+    is in, from `first_s` to `last_s`. A run is `alone` if no other has its bend. `steps` are the
+    times and amounts of several steps of a zero.
+    """
+
+    code: str
+    run: int | None
+    channels: tuple[str, ...]
+    amount: float
+    reduction: float
+    edges: int = 0
+    first_s: float | None = None
+    last_s: float | None = None
+    alone: bool = False
+    steps: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """The residual of a trial beside its parameters and tolerances, and columns beside them."""
+
+    basis: Floats  # orthonormal, of residuals and priors, shape (n + m, p)
+    residual: Floats
+    squares: float
+
+    def project(self, columns: Floats) -> Floats:
+        """Return columns, shape (n, m), beside the basis."""
+        n = columns.shape[0]
+        padded = np.vstack((columns, np.zeros((self.basis.shape[0] - n, columns.shape[1]))))
+        return np.asarray(padded - self.basis @ (self.basis.T @ padded))
+
+    def without(self, column: Floats) -> "Beside":
+        """Return the residual beside a column too, shape (n,)."""
+        own = self.project(column[:, None])
+        own = own / np.linalg.norm(own)
+        residual = self.residual - own[:, 0] * float(own[:, 0] @ self.residual)
+        return Beside(np.hstack((self.basis, own)), residual, float(residual @ residual))
+
+
+def beside(trial: HypothesisFit, tolerated: Floats, run: Indices, *, alike: bool = False) -> Beside:
+    """Return the residual that neither the parameters of a trial nor tolerances explain.
+
+    The friction of the runs has a tolerance, unless it is `alike` in all of them.
+    """
+    free = trial.solution.jacobian[:, ~trial.solution.at_bound]
+    frictions = friction_of_runs(trial, run)
+    if alike:
+        frictions = frictions[:, :0]
+    own = np.column_stack((frictions, tolerated))
+    count = own.shape[1]
+    size = np.linalg.norm(free, axis=0)
+    columns = np.hstack((free[:, size > 0.0] / size[size > 0.0], own))
+    priors = np.hstack((np.zeros((count, np.count_nonzero(size))), np.eye(count)))
+    basis = np.linalg.qr(np.vstack((columns, priors)))[0]
+    residual = np.append(trial.solution.residual, np.zeros(count))
+    residual = residual - basis @ (basis.T @ residual)
+    return Beside(basis, residual, float(residual @ residual))
+
+
+def candidates(
+    bench: Bench, trial: HypothesisFit, reads: Sequence[ReadRun], left: Beside, run: Indices
+) -> list[Candidate]:
+    """Return all faults with the squares that each takes away, the largest first."""
+    shapes = [shapes_of(read) for read in reads]
+    found = [
+        *(c for k, own in enumerate(shapes) for c in _of_run(k, own, left, run)),
+        *_of_clocks(shapes, left),
+        *(c for constant_s in CONSTANTS_S for c in of_amplifiers(reads, left, constant_s)),
+        *_of_saturation(reads, left),
+        *_of_manifest(trial, left, run),
+        *_of_hum(bench, trial, left, run),
+    ]
+    return sorted(found, key=lambda c: -c.reduction)
+
+
+def of_frictions(
+    trial: HypothesisFit, tolerated: Floats, run: Indices, bends: Sequence[float]
+) -> Iterator[tuple[Candidate, float]]:
+    """Yield a friction of each run's own beyond its tolerance, and the squares without it."""
+    frictions = friction_of_runs(trial, run)
+    left = beside(trial, tolerated, run, alike=True)
+    for k in range(frictions.shape[1]):
+        column = left.project(-frictions[:, [k]])[:, 0]
+        for found in one(OWN_FRICTION, k, (), column, left):
+            if abs(found.amount) > MOST_SCATTER:
+                alone = bends.count(bends[k]) == 1
+                yield replace(found, amount=SCATTER * found.amount, alone=alone), left.squares
+
+
+def _of_run(k: int, shapes: RunShapes, left: Beside, run: Indices) -> Iterator[Candidate]:
+    """Yield the best part of the run, for each channel, for its zero and its gain."""
+    for code, columns in (("run-offset", shapes.offset), ("run-gain", shapes.gain)):
+        for name, own in columns.items():
+            parts = left.project(_in_run(own, run == k))
+            gram, score = parts.T @ parts, parts.T @ left.residual
+            sums = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
+            scores = np.append(0.0, np.cumsum(score))
+            for first, last in combinations(range(WINDOWS + 1), 2):
+                square = (
+                    sums[last, last] - sums[first, last] - sums[last, first] + sums[first, first]
+                )
+                if square > 1.0:
+                    along = scores[last] - scores[first]
+                    edges = (first > 0) + (last < WINDOWS)
+                    ends = np.append(shapes.starts_s, np.nan)[[first, last]]
+                    yield Candidate(
+                        code,
+                        k,
+                        (name,),
+                        along / square,
+                        along**2 / square,
+                        int(edges),
+                        float(ends[0]) if first else None,
+                        float(ends[1]) if last < WINDOWS else None,
+                    )
+    for code, late in (("run-delay", shapes.late), ("clock", shapes.pace)):
+        names = tuple(late)
+        for channels in _groups(names):
+            whole = _in_run(_sum(late, channels)[:, None], run == k)
+            yield from one(code, k, channels, left.project(whole)[:, 0], left)
+    for channels in _groups(tuple(shapes.clocked)):
+        for rate in RATES:
+            whole = _sum({name: shapes.clocked[name][rate] for name in channels}, channels)
+            column = left.project(_in_run(whole[:, None], run == k))[:, 0]
+            yield from _of_rate(one("clock", k, channels, column, left), rate)
+
+
+def _of_clocks(shapes: Sequence[RunShapes], left: Beside) -> Iterator[Candidate]:
+    """Yield clocks of some channels that run at another pace in all runs, or are late in all."""
+    for channels in _groups(tuple(shapes[0].pace)):
+        if all(set(channels) <= set(own.pace) for own in shapes):
+            for code in ("clock", OF_THE_CATALOGUE):
+                of_runs = [own.pace if code == "clock" else own.late for own in shapes]
+                yield from _of_all(code, channels, [_sum(own, channels) for own in of_runs], left)
+    for channels in _groups(tuple(shapes[0].clocked)):
+        for rate in RATES if all(set(channels) <= set(own.clocked) for own in shapes) else ():
+            parts = [np.sum([own.clocked[n][rate] for n in channels], axis=0) for own in shapes]
+            yield from _of_rate(_of_all("clock", channels, parts, left), rate)
+
+
+def _of_rate(found: Iterator[Candidate], rate: float) -> Iterator[Candidate]:
+    """Yield clocks whose pace is about the one that their columns are calculated with."""
+    for c in found:
+        if ONCE[0] < c.amount < ONCE[1]:
+            yield replace(c, amount=rate * c.amount)
+
+
+def of_amplifiers(reads: Sequence[ReadRun], left: Beside, constant_s: float) -> Iterator[Candidate]:
+    """Yield a coupling to AC of a tension in all runs, of about the size that it has."""
+    for name in _common(reads):
+        columns = []
+        for read in reads:
+            values = read.values(name)
+            columns.append(read.changed(name, passed(read.time_s, values, constant_s) - values))
+        for found in _of_all("ac-coupled", (name,), columns, left):
+            if ONCE[0] < found.amount < ONCE[1]:
+                yield replace(found, amount=constant_s)
+
+
+def _of_saturation(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
+    """Yield a tension whose sensor holds back a share of all beyond a level, in all runs."""
+    for name in _common(reads):
+        values = [read.values(name) for read in reads]
+        for level in np.quantile(np.concatenate(values), LEVELS):
+            beyond = [np.maximum(own - level, 0.0) for own in values]
+            pairs = zip(reads, beyond, strict=True)
+            columns = [read.changed(name, -own) for read, own in pairs]
+            for found in _of_all("saturates", (name,), columns, left):
+                if HELD_BACK[0] < found.amount < HELD_BACK[1]:
+                    yield replace(found, amount=float(level))
+
+
+def _common(reads: Sequence[ReadRun]) -> list[str]:
+    """Return the tensions that all runs compare with the model."""
+    names = [name for name in reads[0].errors.samples if name.endswith("_N")]
+    return [name for name in names if all(name in read.errors.samples for read in reads)]
+
+
+def _sum(columns: Mapping[str, Floats], channels: tuple[str, ...]) -> Floats:
+    return np.asarray(np.sum([columns[name] for name in channels], axis=0))
+
+
+def _of_all(
+    code: str, channels: tuple[str, ...], parts: Sequence[Floats], left: Beside
+) -> Iterator[Candidate]:
+    """Yield a fault of all runs, by its column in each of them."""
+    column = left.project(np.concatenate(parts)[:, None])[:, 0]
+    yield from one(code, None, channels, column, left)
+
+
+def _of_manifest(trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[Candidate]:
+    """Yield a stiffness, or a length, of one run's own."""
+    for j, unknown in enumerate(trial.unknowns):
+        if unknown.name == STIFFNESS and not trial.solution.at_bound[j]:
+            for k in range(int(run.max()) + 1):
+                column = -trial.solution.jacobian[:, j] * (run == k)
+                yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)
+
+
+def _of_hum(bench: Bench, trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[Candidate]:
+    """Yield a swing of a channel at one frequency in all runs."""
+    at = signals_at_residuals(bench, trial)
+    for name, frequency, columns in swings(bench, trial, at, left.residual[: run.size], run):
+        basis = np.linalg.qr(left.project(columns))[0]
+        along = basis.T @ left.residual
+        yield Candidate("hum", None, (name,), frequency, float(along @ along))
+
+
+def one(
+    code: str, k: int | None, channels: tuple[str, ...], column: Floats, left: Beside
+) -> Iterator[Candidate]:
+    """Yield a fault by its column beside the basis, shape (n + m,), if it changes anything."""
+    square = float(column @ column)
+    if square > TINY:
+        along = float(column @ left.residual)
+        yield Candidate(code, k, channels, along / square, along**2 / square)
+
+
+def _in_run(own: Floats, here: Mask) -> Floats:
+    column = np.zeros((here.size, own.shape[1]))
+    column[here] = own
+    return column
+
+
+def _groups(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """Yield one channel, or two, of these: the others are on the first clock."""
+    for count in (1, 2):
+        yield from combinations(names, count)
