@@ -7,7 +7,8 @@ import pytest
 
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
-from tsas_cli.controllers.closed_loop import plant_at_rest
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.controllers.closed_loop import COLUMNS, plant_at_rest
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.state import POSITION
@@ -65,6 +66,6 @@ def test_a_zero_of_the_sensor_does_not_move_the_start():
 
 def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
-    assert len(plain) == 4 * 11
+    assert len(plain) == len(CONTROLLERS) * COLUMNS
     for ours, theirs in zip(plain, compiled, strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-6)

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode, adaptive_sliding_mode
+from tsas_cli.controllers.laws import MEMORY, ControllerSettings, control
 from tsas_cli.controllers.pid import Pid, pid
 from tsas_cli.controllers.signals import Signals
 from tsas_cli.controllers.sliding_mode import Phi, Surface, distance, reaching, sliding_mode
@@ -70,3 +72,16 @@ def test_every_estimate_stops_at_its_own_bounds():
     memory = np.array(PHI)
     adaptive_sliding_mode(SEEN, bounded._replace(psi=Phi(-0.3, -0.5, -0.7)), memory, 10.0)
     assert memory == pytest.approx((0.001, 17.0, 0.03))
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS)
+def test_a_controller_keeps_no_more_than_the_memory_holds(controller):
+    """A kernel would write behind it, and nobody would notice."""
+    kept = ControllerSettings().of(controller).COLUMNS
+    assert len(kept) <= MEMORY, f"{kept}: MEMORY of controllers/laws.py holds {MEMORY}"
+
+
+def test_a_controller_without_a_call_is_no_other_one():
+    laws = ControllerSettings().laws("pid", 0.02)._replace(kind=len(CONTROLLERS))
+    with pytest.raises(ValueError, match=r"without its call in controllers/laws\.py"):
+        control(SEEN, laws, np.zeros(MEMORY), 0.1)

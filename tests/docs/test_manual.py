@@ -184,7 +184,8 @@ def test_a_text_without_a_part_is_refused():
 
 
 def test_every_effect_has_a_signature():
-    assert list(SIGNATURES) == [effect.name for effect in EFFECTS]
+    names = [effect.name for effect in EFFECTS]
+    assert list(SIGNATURES) == names, "docs/manual/signatures.py has one for each, in order"
 
 
 @EVERY_EFFECT

@@ -8,6 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tests.physics.slip.test_any_effect import any_effects
 from tests.physics.test_any_rig import any_motion, any_rig
+from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.by_pieces import simulate_pieces
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput
@@ -92,6 +93,12 @@ def test_what_a_sensor_remembers_goes_over_the_borders():
     assert_same(in_pieces(rig, DRIVE, 150), simulate(rig, DRIVE), rtol=1e-13)
     without = simulate(with_values(RIG, DELAYS), DRIVE)
     assert np.abs(simulate(rig, DRIVE).f_in_N - without.f_in_N).max() > 0.5
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
+def test_every_effect_goes_over_the_borders(effect):
+    rig = with_values(RIG, {f"{effect.name}.{p.name}": p.start for p in effect.parameters})
+    assert_same(in_pieces(rig, DRIVE, 150, nodes=8), simulate(rig, DRIVE, nodes=8))
 
 
 @pytest.mark.parametrize(("load", "channel"), [("force", "f_out_N"), ("displacement", "x_out_mm")])

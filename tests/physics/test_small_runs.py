@@ -197,7 +197,8 @@ def test_where_the_closed_form_holds(effect):
     """A sensor's fault comes after it, what acts on tendon or load is not in it."""
     rig = with_values(RIG, {f"{effect.name}.{p.name}": p.start for p in effect.parameters})
     known = effect.name in AT_THE_ENDS_ALONE or effect.acts_on == "sensor"
-    assert is_closed(rig, DriveInput(MOTION)) == known
+    wrong = f"{effect.name}: its closed_form, or AT_THE_ENDS_ALONE, says otherwise"
+    assert is_closed(rig, DriveInput(MOTION)) == known, wrong
 
 
 def test_where_else_the_closed_form_does_not_hold():

@@ -27,8 +27,8 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.strict_table import StrictTable
 
-PID, SLIDING, ADAPTIVE, OBSERVER = range(len(CONTROLLERS))
-MEMORY = 3  # numbers that a controller keeps from sample to sample
+PID, SLIDING, ADAPTIVE, OBSERVER = range(len(CONTROLLERS))  # one for each, in their order
+MEMORY = 3  # numbers that a controller keeps from sample to sample, at most
 
 
 class ControlLaws(NamedTuple):
@@ -100,4 +100,6 @@ def control(
         adaptive = laws.adaptive_sliding_mode
         u = adaptive_sliding_mode(signals, adaptive, memory, step_s)
         return u, distance(signals, adaptive.surface)
-    return disturbance_observer(signals, laws.disturbance_observer, memory, step_s), 0.0
+    if laws.kind == OBSERVER:
+        return disturbance_observer(signals, laws.disturbance_observer, memory, step_s), 0.0
+    raise ValueError("a controller without its call in controllers/laws.py")

@@ -35,7 +35,9 @@ from tsas_cli.support.arrays import Floats
 Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
 CHANNELS: tuple[Channel, ...] = ("f_in_N", "f_out_N", "x_out_mm")
 
-OWN_MEMORY = 5  # of a channel, before that of the law that acts on it
+# The memory of a channel: of its low pass, of its elastoplastic element, then of the law on it.
+TIME, INPUT, BEHIND, ELEMENT_INPUT, ELEMENT_FORCE = range(5)
+OWN_MEMORY = 5
 
 
 def new_memory() -> Floats:
@@ -105,12 +107,12 @@ def with_hysteresis(forces: Floats, share: float, span_N: float, memory: Floats)
     `memory` is a channel's row of that of the sensors, updated in place.
     """
     out = np.empty(forces.size)
-    before, element_N = memory[3], memory[4]
+    before, element_N = memory[ELEMENT_INPUT], memory[ELEMENT_FORCE]
     for i in range(forces.size):
         element_N = 0.0 if np.isnan(before) else yielded(element_N, forces[i] - before, span_N)
         before = forces[i]
         out[i] = read_hysteresis(before, element_N, share)
-    memory[3], memory[4] = before, element_N
+    memory[ELEMENT_INPUT], memory[ELEMENT_FORCE] = before, element_N
     return out
 
 
@@ -121,7 +123,7 @@ def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Fl
     `memory` is a channel's row of that of the sensors, updated in place.
     """
     out = np.empty(values.size)
-    time, value, behind = memory[:3]
+    time, value, behind = memory[TIME], memory[INPUT], memory[BEHIND]
     for i in range(values.size):
         if np.isnan(time):
             behind = 0.0
@@ -129,7 +131,7 @@ def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Fl
             behind = lag_after(behind, values[i] - value, time_s[i] - time, lag_s)
         time, value = time_s[i], values[i]
         out[i] = value - behind
-    memory[0], memory[1], memory[2] = time, value, behind
+    memory[TIME], memory[INPUT], memory[BEHIND] = time, value, behind
     return out
 
 

@@ -119,8 +119,8 @@ def track(
     drive
         What the controller knows of the drive, or its file; kinematics without it.
     controllers
-        One or several of `pid`, `sliding-mode`, `adaptive-sliding-mode`, `disturbance-observer`,
-        or `all`.
+        One or several names of `tsas_cli.controllers.CONTROLLERS`, such as `pid`, or `all`;
+        docs/tracking.md says what each does.
     compare
         All controllers, with and without a disturbance, over 10 seeds.
     reference

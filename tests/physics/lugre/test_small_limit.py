@@ -49,7 +49,9 @@ def test_every_effect(name):
     rig = with_values(STIFF, {f"{name}.{p}": size for p, size in sizes.items()})
     _, lugre, off = both(rig, nominal)
     plain = simulate(STIFF, nominal, "lugre", nodes=N, tolerance=2e-4)
-    assert max(off.values()) < 5e-3
+    assert max(off.values()) < 5e-3, (
+        f"physics/lugre/ has another {name} than physics/slip/, or none"
+    )
     assert max(off.values()) < 0.25 * max(apart(plain, lugre).values())
     assert {-1, 0, 1} == set(lugre.phase.tolist())
 

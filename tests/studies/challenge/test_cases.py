@@ -15,6 +15,7 @@ from tsas_studies.challenge.rig.unknowns import UNKNOWNS
 KINDS = ("near", "fault")
 ALL = cases(7)
 CLEAN = [case for case in ALL if case.conditions == "clean"]
+NO_SIZE = "an effect has its place in the rig (rig/hidden.py) and its full size (near.NEAR_FULL)"
 CATALOGUE = {effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS}
 
 
@@ -24,7 +25,7 @@ def mixed(case):
 
 def test_every_effect_is_there_at_every_size_and_the_rest_beside_it():
     one = Counter((c.hidden[0].cause, c.size) for c in CLEAN if c.kind == "one")
-    assert one == {(effect, size): 1 for effect in CATALOGUE for size in SIZES}
+    assert one == {(effect, size): 1 for effect in CATALOGUE for size in SIZES}, NO_SIZE
     assert {c.hidden[0].cause for c in CLEAN if c.kind == "unknown"} == set(UNKNOWNS)
     for kind, known, many in (("pair", PAIRS, 2), ("triple", TRIPLES, 3)):
         sets = [{h.cause for h in c.hidden} for c in CLEAN if c.kind == kind]
@@ -138,7 +139,7 @@ def test_seeds_to_build_with_and_to_score_with_are_apart():
 def test_a_small_part_has_each_effect_once_at_full_size_and_a_few_of_what_is_none():
     small = part(ALL)
     one = Counter(c.hidden[0].cause for c in small if c.kind == "one")
-    assert one == dict.fromkeys(CATALOGUE, 1)
+    assert one == dict.fromkeys(CATALOGUE, 1), NO_SIZE
     assert {c.size for c in small if c.kind == "one"} == {1.0}
     assert Counter(c.kind for c in small if c.kind != "one") == {
         "nothing": 2,

@@ -26,7 +26,7 @@ PLAIN = recorded(RIG, SENSORS)
 def test_the_rig_knows_the_whole_catalogue_and_nothing_of_it_is_unknown():
     assert {name: set(places) for name, places in CATALOGUE.items()} == {
         name: set(parameters) for name, parameters in NEUTRAL.items()
-    }
+    }, "CATALOGUE of tsas_studies/challenge/rig/hidden.py says where the rig has each parameter"
     assert not set(CATALOGUE) & (set(UNKNOWNS) | set(NEAR))
     assert not set(UNKNOWNS) & set(NEAR)
     assert len(UNKNOWNS) >= 6
