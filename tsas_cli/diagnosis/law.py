@@ -15,6 +15,7 @@ from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
+from tsas_cli.diagnosis.tolerances import scatter_is_no_effect
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
@@ -79,6 +80,7 @@ def describe(
     possible = {n for n in CHANGES if n in ranges and CHANGES[n] in bench.channels}
     sets = [names for names in SETS if possible.issuperset(names)]
     step.ahead(len(sets))
+    scatter = scatter_is_no_effect(trial, folds.run)
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
     found: list[tuple[tuple[str, ...], HypothesisFit, HeldOutFit, float]] = []
     for names in sets:
@@ -86,7 +88,7 @@ def describe(
         mesh = trial.on_mesh or bench.on_mesh(names)
         if mesh not in held_out:
             without = bench.fit(sorted(trial.effects), near=start, on_mesh=mesh)
-            held_out[mesh] = without, refitted(bench, without, folds)
+            held_out[mesh] = without, refitted(bench, without, folds, scatter=scatter)
         without, before = held_out[mesh]
         fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
         step()
@@ -94,7 +96,7 @@ def describe(
         least = min([without.mean_square * (1.0 - LEAST_REDUCTION), *fewer])
         if fitted.mean_square > least:  # what fits no better predicts no better
             continue
-        after = refitted(bench, fitted, folds)
+        after = refitted(bench, fitted, folds, scatter=scatter)
         reduction = gain(before.squares, after.squares)
         if reduction.convincing and not _worse(before, after):
             found.append((names, fitted, after, reduction.part))

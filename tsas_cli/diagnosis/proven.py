@@ -26,6 +26,7 @@ from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
     largest_forces,
+    scatter_is_no_effect,
     tolerances,
     within_scatter,
     within_tolerances,
@@ -92,8 +93,9 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     mesh = bench.on_mesh(named)
     final = judged.trial(named)
     folds = predicted_folds(final, judged.folds)
+    scatter = scatter_is_no_effect(final, judged.folds.run)
     held_out = {
-        names: refitted(bench, judged.trial(names, on_mesh=mesh), folds)
+        names: refitted(bench, judged.trial(names, on_mesh=mesh), folds, scatter=scatter)
         for names in judged_sets(named)
     }
     at_residuals = signals_at_residuals(bench, final)

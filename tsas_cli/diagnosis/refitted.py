@@ -1,7 +1,8 @@
 """Held-out errors by a new fit without each fold, simulated: what a diagnosis reports.
 
 The search holds out by one Gauss-Newton step, which fails where a model is far from the data. Here
-each fold is left out of a fit from that step on, and simulated with its values.
+each fold is left out of a fit from that step on, and simulated with its values. A held-out run has
+a plausible friction of its own where that is mere scatter, as its own preload and zeros.
 """
 
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
+from tsas_cli.diagnosis.tolerances import FRICTION, PLAUSIBLE, SCATTER
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at
@@ -29,8 +31,13 @@ class HeldOutFit:
     by_run: dict[tuple[int, str], float]
 
 
-def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
-    """Return the errors of a hypothesis on each fold, simulated with a fit to the others."""
+def refitted(
+    bench: Bench, trial: HypothesisFit, folds: Folds, *, scatter: bool = False
+) -> HeldOutFit:
+    """Return the errors of a hypothesis on each fold, simulated with a fit to the others.
+
+    With `scatter` each run has a plausible friction of its own.
+    """
     runs = bench.errors_for(trial)
     raw: dict[tuple[int, str], list[Floats]] = {}
     weighted = np.empty(folds.fold.size)
@@ -41,7 +48,11 @@ def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
         for k, run in enumerate(runs):
             if not held_out[k].any():
                 continue
-            rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
+            own = values
+            if scatter:
+                known = held_out[k] if folds.by_run else ~held_out[k]
+                own = _with_own_friction(bench, trial, values, k, known)
+            rig = rig_at(bench.rigs[k], k, trial.unknowns, own)
             here = weighted[starts[k] : starts[k + 1]]
             here[held_out[k]] = run.residuals(rig)[held_out[k]]
             for name, errors in run.raw(rig).items():
@@ -53,6 +64,22 @@ def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
     }
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
     return HeldOutFit(rmse, squares.astype(np.float64), by_run)
+
+
+def _with_own_friction(
+    bench: Bench, trial: HypothesisFit, values: Floats, k: int, known: Mask
+) -> Floats:
+    """Return the values with the plausible friction that fits known residuals of a run (linear)."""
+    step = SCATTER * np.array([u.name == FRICTION for u in trial.unknowns])
+
+    def residuals(at: Floats) -> Floats:
+        return run.residuals(rig_at(bench.rigs[k], k, trial.unknowns, at))[known]
+
+    run = bench.errors_for(trial)[k]
+    residual = residuals(values)
+    column = residuals(values + step) - residual
+    amount = -float(column @ residual) / (1.0 + float(column @ column))
+    return np.asarray(values + float(np.clip(amount, -PLAUSIBLE, PLAUSIBLE)) * step)
 
 
 def rms_of(parts: Sequence[Floats]) -> float:

@@ -5,7 +5,8 @@ each, earlier ones that have become redundant are removed. Where no single effec
 pairs are screened together, because effects of opposite sign mask each other.
 
 What tolerances do is free beside every hypothesis, by its prior: of two effects the one is better
-that leaves what every rig has.
+that leaves what every rig has. So is the friction of each run, unless the frictions change with the
+session: then they are no scatter.
 
 A running search caches its fits: a set of effects is fitted once, from the initial values of the
 path that reaches it first. `tried` returns what it has fitted so far.
@@ -28,7 +29,12 @@ from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
 from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances
+from tsas_cli.diagnosis.tolerances import (
+    is_in_line,
+    tolerances,
+    with_friction_of_runs,
+    with_tolerances,
+)
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
@@ -64,6 +70,7 @@ class Search:
     effects: tuple[Effect, ...] = EFFECTS
     trials: dict[tuple[Names, bool], HypothesisFit] = field(default_factory=dict)
     squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
+    scattered: dict[tuple[Names, bool], Floats] = field(default_factory=dict)  # by own frictions
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
     tolerated: dict[bool, Floats] = field(default_factory=dict)  # at the nominal model, by mesh
     leads: Names = frozenset()
@@ -99,19 +106,31 @@ class Search:
             self._store(names, self.bench.fit(sorted(names), near=near, on_mesh=mesh))
         return self.trials[names, mesh]
 
-    def held_out(self, names: Names, *, on_mesh: bool = False) -> Floats:
-        """Return the held-out squares of a set of effects, block by block."""
+    def held_out(self, names: Names, *, on_mesh: bool = False, scatter: bool = False) -> Floats:
+        """Return the held-out squares of a set of effects, block by block.
+
+        With `scatter` each run has a plausible friction of its own.
+        """
         trial = self.trial(names, on_mesh=on_mesh)
-        return self.squares[names, trial.on_mesh]
+        return (self.scattered if scatter else self.squares)[names, trial.on_mesh]
+
+    def scatters(self, names: Names) -> bool:
+        """Return whether the frictions of the runs beside a set of effects are mere scatter."""
+        session_s = np.array([run.run.session_s for run in self.bench.closed])
+        return not is_in_line(self.trial(names), self.folds.run, session_s)
 
     def gain(self, before: Names, after: Names) -> Reduction:
         """Return the reduction between two sets of effects, both on the mesh if one needs it."""
-        mesh = self.bench.on_mesh(before | after)
-        return gain(self.held_out(before, on_mesh=mesh), self.held_out(after, on_mesh=mesh))
+        mesh, scatter = self.bench.on_mesh(before | after), self.scatters(before)
+        return gain(
+            self.held_out(before, on_mesh=mesh, scatter=scatter),
+            self.held_out(after, on_mesh=mesh, scatter=scatter),
+        )
 
     def is_quiet(self, names: Names) -> bool:
         """Return whether noise alone, white or slow, is left with these effects."""
-        mean_square = self.held_out(names).sum() / self.folds.block.size
+        squares = self.held_out(names, scatter=self.scatters(names))
+        mean_square = squares.sum() / self.folds.block.size
         if mean_square < 1.0 + EXCESS_OF_COMPLETE_MODEL:
             return True
         return bool(mean_square < 1.0 + MOST_SLOW and self.is_complete(names))
@@ -130,15 +149,16 @@ class Search:
 
     def reduction(self, before: Names, after: Names) -> float:
         """Return the reduction of the held-out mean square between two sets of effects."""
-        mesh = self.bench.on_mesh(before | after)
-        return self._excess(before, mesh) - self._excess(after, mesh)
+        mesh, scatter = self.bench.on_mesh(before | after), self.scatters(before)
+        return self._excess(before, mesh, scatter) - self._excess(after, mesh, scatter)
 
     def sufficient(self, names: Names, mesh: bool) -> float:
         """Return the reduction of the held-out mean square that a further cause has to make."""
-        excess = self._excess(names, mesh)
+        scatter = self.scatters(names)
+        excess = self._excess(names, mesh, scatter)
         if not names:
             return SHARE * (excess - EXCESS_OF_COMPLETE_MODEL)
-        return max(SHARE * excess, LEAST * self._excess(frozenset(), mesh))
+        return max(SHARE * excess, LEAST * self._excess(frozenset(), mesh, scatter))
 
     def add(self, names: Names, least: float = 0.0) -> list[tuple[str, Reduction]]:
         """Return each further effect that passes screening, fitted, with its gain, best first.
@@ -227,9 +247,10 @@ class Search:
                 return self._without_redundant(fewer)
         return names
 
-    def _excess(self, names: Names, mesh: bool) -> float:
+    def _excess(self, names: Names, mesh: bool, scatter: bool) -> float:
         """Return by how much the held-out mean square exceeds that of noise alone."""
-        return float(self.held_out(names, on_mesh=mesh).sum()) / self.folds.block.size - 1.0
+        squares = self.held_out(names, on_mesh=mesh, scatter=scatter)
+        return float(squares.sum()) / self.folds.block.size - 1.0
 
     def _least_part(self, names: Names, reduction: float) -> float:
         """Return the share of the squares that a signature explains at least, for a reduction."""
@@ -277,3 +298,5 @@ class Search:
             self.trial(frozenset(), on_mesh=mesh)
         beside = with_tolerances(trial, self.tolerated[mesh])
         self.squares[names, mesh] = held_out_squares(beside, self.folds)
+        scattered = with_friction_of_runs(beside, self.folds.run)
+        self.scattered[names, mesh] = held_out_squares(scattered, self.folds)

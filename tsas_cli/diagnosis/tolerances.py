@@ -185,10 +185,31 @@ def with_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
 
 
 def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
-    """Return a fit with a friction of its own for each run."""
+    """Return a fit with a plausible friction of its own for each run."""
     columns = friction_of_runs(trial, run)
     names = [(f"{FRICTION} {k}", k, 1.0) for k in range(columns.shape[1])]
-    return trial.with_columns(names, columns)
+    return trial.with_columns(names, columns, PLAUSIBLE)
+
+
+def is_in_line(trial: HypothesisFit, run: Indices, session_s: Floats) -> bool:
+    """Return whether the frictions of the runs change with the session, and are no scatter.
+
+    `session_s` is the start of each run in the session [s], shape (runs,). They are where their
+    scatter about a line is too small for a coincidence (F test).
+    """
+    from scipy.special import fdtrc
+
+    columns = friction_of_runs(trial, run)
+    free = columns.shape[1] - 2
+    if free < 1 or np.ptp(session_s) == 0.0:
+        return False
+    about_it = _beside(projector(trial), columns)
+    frictions = np.linalg.lstsq(about_it, trial.solution.residual, rcond=1e-6)[0]
+    line = np.column_stack((np.ones(session_s.size), session_s / np.ptp(session_s)))
+    fitted = line @ np.linalg.lstsq(line, frictions, rcond=None)[0]
+    size, scatter = np.sum((fitted - fitted.mean()) ** 2), np.sum((frictions - fitted) ** 2)
+    by_chance = fdtrc(1, free, size * free / scatter) if scatter > 0.0 else 0.0
+    return bool(by_chance < COINCIDENCE)
 
 
 def within_scatter(trial: HypothesisFit, effect: str, run: Indices) -> bool:
@@ -224,6 +245,13 @@ def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
         return False
     left = _beside(np.linalg.qr(columns)[0], column)
     return float(left @ left) < 0.1 * float(column @ column)
+
+
+def scatter_is_no_effect(trial: HypothesisFit, run: Indices) -> bool:
+    """Return whether no effect of a fit does what a friction of its own for each run does."""
+    columns = zip(trial.solution.jacobian.T, trial.unknowns, strict=True)
+    of_effects = (column for column, u in columns if u.name.partition(".")[0] in trial.effects)
+    return not any(is_scatter(trial, column, run) for column in of_effects)
 
 
 def moved_by_tolerances(
