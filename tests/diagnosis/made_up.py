@@ -25,7 +25,7 @@ class Bench:
 
     def __init__(self, mean_squares, mesh=(), weighed=0):
         self.mean_squares, self.mesh, self.weighed = mean_squares, mesh, weighed
-        self.fits = []
+        self.fits, self.closed = [], ()
 
     def on_mesh(self, effects):
         return bool(set(effects) & set(self.mesh))
@@ -58,10 +58,12 @@ def without_tolerances(monkeypatch):
     """Let rigs be without tolerances."""
     monkeypatch.setattr(search, "tolerances", lambda bench, trial: None)
     monkeypatch.setattr(search, "with_tolerances", lambda trial, tolerated: trial)
+    monkeypatch.setattr(search, "with_friction_of_runs", lambda trial, run: trial)
+    monkeypatch.setattr(search, "is_in_line", lambda trial, run, session_s: False)
 
 
 def search_over(bench, known, *step):
-    folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS)
+    folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS, run=None)
     effects = tuple(OF[name] for name in sorted(known))
     return Search(bench, folds, *step, effects=effects, tolerated={False: None, True: None})
 

@@ -1,5 +1,6 @@
 """Held-out errors by new fits, against scipy's fit without each run, of a nonlinear model."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -98,3 +99,13 @@ def test_errors_are_those_of_each_run_predicted_by_the_others(fitted):
     assert found.rmse["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
     last = found.squares[-4:].sum() * NOISE**2
     assert last == pytest.approx(float(errors[3] @ errors[3]), rel=1e-2)
+
+
+def test_a_held_out_run_has_a_plausible_friction_of_its_own(fitted):
+    """The last run's rate is 1.1 more: two deviations of 2 % of it are plausible."""
+    runs, bench, trial, folds = fitted
+    named = (replace(trial.unknowns[0], name="friction_coefficient"), *trial.unknowns[1:])
+    found = refitted(bench, replace(trial, unknowns=named), folds, scatter=True)
+    rate, offset = without(runs, 3)
+    errors = runs[3].data - curve(rate + 0.04, offset, 3)
+    assert found.by_run[3, "f_in_N"] == pytest.approx(np.sqrt(np.mean(errors**2)), rel=1e-3)

@@ -168,8 +168,7 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
     ]
     # 400 samples of 20 ms: a bin is 1/7.98 Hz wide.
     assert (
-        r._oscillation(bench_of(*made), None)
-        == "time_s (f_in_N and x_out_mm oscillates at 5.01 Hz)"
+        r._oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
     )
 
 

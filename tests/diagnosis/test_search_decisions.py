@@ -76,6 +76,22 @@ def test_gains_are_those_of_the_squares(made):
     assert search.gain(names(A), names()).part == pytest.approx(-3.0)
 
 
+@pytest.mark.parametrize(("in_line", "part"), [(False, 0.75), (True, 0.5)])
+def test_gains_are_beside_the_friction_of_each_run_unless_it_changes_with_the_session(
+    made, monkeypatch, in_line, part
+):
+    """Own frictions leave half of what the effect leaves, and all that none leaves."""
+    halved = {2.0: 1.0, 4.0: 4.0}
+    monkeypatch.setattr(
+        s,
+        "with_friction_of_runs",
+        lambda trial, run: SimpleNamespace(mean_square=halved[trial.mean_square]),
+    )
+    monkeypatch.setattr(s, "is_in_line", lambda trial, run, session_s: in_line)
+    search = made({names(): 4.0, names(A): 2.0})
+    assert search.gain(names(), names(A)).part == pytest.approx(part)
+
+
 def test_a_trial_is_fitted_once(made):
     search = made({names(A): 2.0})
     assert search.trial(names(A)) is search.trial(names(A))

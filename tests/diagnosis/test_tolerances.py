@@ -7,6 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.held_out import folds_of, held_out_squares
 from tsas_cli.diagnosis.tolerances import (
+    is_in_line,
     is_scatter,
     of_others,
     tolerances,
@@ -47,6 +48,20 @@ def test_a_plausible_scatter_is_left_out_of_the_residual_and_a_large_one_less(sc
     after = float(np.mean(without_tolerances(trial, NONE, RUN) ** 2)) - 1.0
     assert before == pytest.approx((50.0 * scatter) ** 2, rel=0.2)
     assert abs(after) < left * max(before, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("frictions", "starts_s", "in_line"),
+    [
+        ((0.0, 0.01, 0.02, 0.03), (0.0, 300.0, 600.0, 900.0), True),
+        ((0.0, 0.01, 0.02, 0.03), (0.0, 900.0, 300.0, 600.0), False),
+        ((0.01, -0.01, 0.02, -0.02), (0.0, 300.0, 600.0, 900.0), False),
+        ((0.0, 0.01, 0.02, 0.03), (0.0, 0.0, 0.0, 0.0), False),
+    ],
+)
+def test_frictions_that_change_with_the_session_are_no_scatter(frictions, starts_s, in_line):
+    trial = fit(FRICTION * np.array(frictions)[RUN])
+    assert is_in_line(trial, RUN, np.array(starts_s)) == in_line
 
 
 @pytest.mark.parametrize(("size", "left"), [(1.5, 0.02), (6.0, 16.0)])

@@ -114,14 +114,15 @@ class Search:
         trial = self.trial(names, on_mesh=on_mesh)
         return (self.scattered if scatter else self.squares)[names, trial.on_mesh]
 
-    def scatters(self, names: Names) -> bool:
+    def scatters(self, names: Names, mesh: bool) -> bool:
         """Return whether the frictions of the runs beside a set of effects are mere scatter."""
         session_s = np.array([run.run.session_s for run in self.bench.closed])
-        return not is_in_line(self.trial(names), self.folds.run, session_s)
+        return not is_in_line(self.trial(names, on_mesh=mesh), self.folds.run, session_s)
 
     def gain(self, before: Names, after: Names) -> Reduction:
         """Return the reduction between two sets of effects, both on the mesh if one needs it."""
-        mesh, scatter = self.bench.on_mesh(before | after), self.scatters(before)
+        mesh = self.bench.on_mesh(before | after)
+        scatter = self.scatters(before, mesh)
         return gain(
             self.held_out(before, on_mesh=mesh, scatter=scatter),
             self.held_out(after, on_mesh=mesh, scatter=scatter),
@@ -129,7 +130,7 @@ class Search:
 
     def is_quiet(self, names: Names) -> bool:
         """Return whether noise alone, white or slow, is left with these effects."""
-        squares = self.held_out(names, scatter=self.scatters(names))
+        squares = self.held_out(names, scatter=self.scatters(names, self.bench.on_mesh(names)))
         mean_square = squares.sum() / self.folds.block.size
         if mean_square < 1.0 + EXCESS_OF_COMPLETE_MODEL:
             return True
@@ -149,12 +150,13 @@ class Search:
 
     def reduction(self, before: Names, after: Names) -> float:
         """Return the reduction of the held-out mean square between two sets of effects."""
-        mesh, scatter = self.bench.on_mesh(before | after), self.scatters(before)
+        mesh = self.bench.on_mesh(before | after)
+        scatter = self.scatters(before, mesh)
         return self._excess(before, mesh, scatter) - self._excess(after, mesh, scatter)
 
     def sufficient(self, names: Names, mesh: bool) -> float:
         """Return the reduction of the held-out mean square that a further cause has to make."""
-        scatter = self.scatters(names)
+        scatter = self.scatters(names, mesh)
         excess = self._excess(names, mesh, scatter)
         if not names:
             return SHARE * (excess - EXCESS_OF_COMPLETE_MODEL)
