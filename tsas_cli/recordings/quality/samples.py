@@ -22,6 +22,7 @@ _NEIGHBOURS = 16  # samples on either side that the steepness is compared with
 _STEEPER = 10.0  # than those: a motion that reverses within a few samples has steep neighbours
 _COMMON = 0.02  # of all samples: more frequent deviations are the signal
 _FEWEST = 16  # samples for an estimate of the noise
+_FEWEST_CHANGES = 20
 
 
 class NoiseSpectrum(NamedTuple):
@@ -66,6 +67,12 @@ def alternates(values: Floats) -> bool:
 def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:
     """Return the number of rows from each change of a channel to the next."""
     return np.diff(np.flatnonzero(values[1:] != values[:-1]))
+
+
+def is_held(values: Floats) -> bool:
+    """Return whether a channel changes in every second row at most."""
+    rows = rows_between_changes(values)
+    return rows.size >= _FEWEST_CHANGES and bool(np.quantile(rows, 0.05) >= 2.0)
 
 
 def smallest_change(values: Floats) -> float:

@@ -145,6 +145,15 @@ class RunSignals:
         return {name: self.channels[name] for name in MECHANICAL if name in self.channels}
 
     @cached_property
+    def noisy(self) -> dict[str, Floats]:
+        """The displacements and tensions with noise of a sensor, and without a gap."""
+        return {
+            name: values
+            for name, values in self.mechanical.items()
+            if self.is_noisy(name) and np.isfinite(values).all()
+        }
+
+    @cached_property
     def sizes(self) -> Mapping[str, Size]:
         """The size of each channel over the whole run, by name."""
         return self.overall or {name: size_of(values) for name, values in self.channels.items()}
