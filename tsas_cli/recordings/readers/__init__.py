@@ -48,11 +48,10 @@ _FORMATS = (  # suffixes, reader, and what they are if its library crashes on da
     ((".db3",), "bags", "a bag of ROS 2"),
     ((".join",), "joined", ""),
 )
-_READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
-_WITHOUT_OFFERED = ("delimited", "parquet", "mdf")  # they have `read` and `names`
-_IN_PARTS = ("delimited", "parquet")
+READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
+_IN_PARTS = ("delimited", "parquet")  # they have `batches` and `names`, the others `offered`
 _WITH_TABLES = ("json_table", "matlab")
-SUFFIXES = (*_READERS, *converted.SUFFIXES)
+SUFFIXES = (*READERS, *converted.SUFFIXES)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -118,8 +117,8 @@ def _suffix(path: Path) -> str:
 
 def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    name, kind = f"{__name__}.{module}", _READERS[_suffix(path)][1]
-    if module not in _WITHOUT_OFFERED and function != "tables":
+    name, kind = f"{__name__}.{module}", READERS[_suffix(path)][1]
+    if module not in _IN_PARTS and function != "tables":
         name, rest = offered.__name__, (name, kind or "a table", *rest)
     if kind:
         return in_another_process(name, function, path, *rest, kind=kind)
@@ -137,13 +136,13 @@ def _checked(
     """
     file = path
     try:
-        while _suffix(file) not in (*_READERS, *but):
+        while _suffix(file) not in (*READERS, *but):
             if not is_known(file) and _suffix(file) != ".zip":
                 raise _unknown(file)
             _check(file)
-            file = converted.converted(file, options, frozenset(_READERS))
+            file = converted.converted(file, options)
         _check(file)
-        yield _READERS.get(_suffix(file), ("spreadsheet",))[0], file
+        yield READERS.get(_suffix(file), ("spreadsheet",))[0], file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))

@@ -97,12 +97,11 @@ _Topics = Iterator[tuple[list[Topic], dict[str, str]]]  # and advice where none 
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose type is defined in the file, or by ROS itself.
 
     InputError: there is none.
     """
-    del options
     with _TOPICS_OF[path.suffix.lower()](path) as (topics, advice):
         yield Offered(columns_of(topics, path, **advice))
 

@@ -37,8 +37,8 @@ def is_packed(path: Path) -> bool:
     return path.suffix.lower() in _PACKED
 
 
-def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
-    """Return the temporary file of a `known` format that `path` is converted to.
+def converted(path: Path, options: ReadOptions) -> Path:
+    """Return the temporary file of a known format that `path` is converted to.
 
     InputError: it is damaged, or holds no such file.
     OSError: a file cannot be read or written.
@@ -49,20 +49,20 @@ def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
             rmtree(_made.pop(next(iter(_made))).parent, ignore_errors=True)
         folder = Path(mkdtemp(dir=_root()))
         try:
-            _made[key] = _convert(path, folder, options, known)
+            _made[key] = _convert(path, folder, options)
         except BaseException:
             rmtree(folder, ignore_errors=True)
             raise
     return _made[key]
 
 
-def _convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+def _convert(path: Path, folder: Path, options: ReadOptions) -> Path:
     module = _CONVERTERS[path.suffix.lower()]
-    name, arguments = f"{__package__}.{module}", (folder, options, known)
+    name = f"{__package__}.{module}"
     if module in _ISOLATED:
-        made = in_another_process(name, "convert", path, *arguments, kind=_ISOLATED[module])
+        made = in_another_process(name, "convert", path, folder, options, kind=_ISOLATED[module])
     else:
-        made = import_module(name).convert(path, *arguments)
+        made = import_module(name).convert(path, folder, options)
     return Path(made)
 
 

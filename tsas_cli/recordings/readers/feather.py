@@ -14,9 +14,8 @@ from tsas_cli.recordings.readers.table import ReadOptions
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a Feather file; units from field metadata `unit`."""
-    del options
     with pa.OSFile(str(path)) as stream, pa.ipc.open_file(stream) as file:
         yield Offered(
             [

@@ -91,12 +91,11 @@ def _is_plain(value: Any) -> bool:
     return isinstance(value, str | int | float)
 
 
-def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
     """Write the lines as one JSON list into a folder; return its path.
 
     InputError: the file is not UTF-8.
     """
-    del options, known
     made = folder / "lines.json"
     before = "["
     try:

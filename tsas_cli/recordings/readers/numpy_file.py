@@ -13,9 +13,8 @@ from tsas_cli.recordings.readers.table import ReadOptions
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the vectors of a file by name; those of a matrix as in `columns_in`."""
-    del options
     content = np.load(path, allow_pickle=False)
     if isinstance(content, np.ndarray):
         yield Offered(columns_in("", content))

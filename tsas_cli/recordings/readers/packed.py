@@ -9,6 +9,7 @@ import zlib
 from pathlib import Path, PurePosixPath
 from typing import IO, Any
 
+from tsas_cli.recordings import readers
 from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.readers.table import ReadOptions
@@ -19,18 +20,17 @@ _OPEN: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
 _PART = 1 << 20  # bytes at a time
 
 
-def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
-    """Unpack the file of a `known` suffix inside `path` into a folder; return its path.
+def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
+    """Unpack the file of a known suffix inside `path` into a folder; return its path.
 
     InputError: it is damaged, encrypted, holds no or several known files, or unpacks to more than a
     recording can hold.
     """
-    del options
     packing = path.suffix.lower()
     try:
         if packing == ".zip":
             with zipfile.ZipFile(path) as archive:
-                name = _member(archive, path, known)
+                name = _member(archive, path)
                 with archive.open(name) as stream:
                     return _written(stream, folder, name, path)
         with _OPEN[packing](path, "rb") as stream:
@@ -44,8 +44,8 @@ def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str
         raise damaged(path, f"a {packing} file", error) from error
 
 
-def _member(archive: zipfile.ZipFile, path: Path, known: frozenset[str]) -> str:
-    names = [item.filename for item in archive.infolist() if _is_known(item.filename, known)]
+def _member(archive: zipfile.ZipFile, path: Path) -> str:
+    names = [item.filename for item in archive.infolist() if _is_known(item.filename)]
     if len(names) == 1:
         return names[0]
     if not names:
@@ -60,10 +60,10 @@ def _member(archive: zipfile.ZipFile, path: Path, known: frozenset[str]) -> str:
     )
 
 
-def _is_known(name: str, known: frozenset[str]) -> bool:
+def _is_known(name: str) -> bool:
     inside = PurePosixPath(name)
     hidden = any(part.startswith((".", "__MACOSX")) for part in inside.parts)
-    return inside.suffix.lower() in known and not hidden
+    return inside.suffix.lower() in readers.READERS and not hidden
 
 
 def _written(stream: IO[bytes], folder: Path, name: str, path: Path) -> Path:

@@ -19,16 +19,13 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.recordings.readers.timebase import Seconds
 
 
-def batches(
-    path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
-) -> Iterator[ColumnTable]:
+def batches(path: Path, _: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
     """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
     Dates become seconds since the first one in their column, durations become seconds.
 
     InputError: the file is damaged, or a column is missing or not numeric.
     """
-    del options
     with reading(path), open_parquet(path) as file:
         schema = file.schema_arrow
         at = resolve(wanted, schema.names, path)
@@ -60,8 +57,7 @@ def batches(
             yield ColumnTable({source: np.empty(0) for source in fields}, units)
 
 
-def names(path: Path, options: ReadOptions) -> Sequence[str]:
+def names(path: Path, _: ReadOptions) -> Sequence[str]:
     """Return the names of the columns."""
-    del options
     with reading(path), open_parquet(path) as file:
         return list(file.schema_arrow.names)

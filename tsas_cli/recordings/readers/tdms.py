@@ -15,12 +15,11 @@ from tsas_cli.support.errors import InputError
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the channels by name, as `group/name` if there are several groups.
 
     Where channels state their sample interval, `time` is their common clock.
     """
-    del options
     nptdms = optional("nptdms", extra="tdms")
     with nptdms.TdmsFile.open(path) as file:
         groups = [group for group in file.groups() if group.channels()]
