@@ -3,7 +3,6 @@
 Packed files and those of spreadsheets are first converted to a file of another known format.
 """
 
-import json
 import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -17,22 +16,21 @@ from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOpt
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
-_PANDAS = 'python -c "import pandas, sys; pandas.{}(sys.argv[1]).to_parquet(sys.argv[2])" {} {}'
-_ARCHIVES = {
-    ".tar": "mkdir -p {folder} && tar -xf {file} -C {folder}",
-    ".7z": "7z x {file} -o{folder}",
-    ".rar": "unrar x {file} {folder}/",
+_UNPACKED = "unpack it and ingest the folder {folder}: "
+_PANDAS = 'convert it{}: python -c "import pandas, sys; pandas.{}(sys.argv[1]).to_parquet('
+_PANDAS += 'sys.argv[2])" {{file}} {{parquet}}'
+_WAYS = {  # from a file that is not read to one that is, by its suffix
+    ".tar": f"{_UNPACKED}mkdir -p {{folder}} && tar -xf {{file}} -C {{folder}}",
+    ".7z": f"{_UNPACKED}7z x {{file}} -o{{folder}}",
+    ".rar": f"{_UNPACKED}unrar x {{file}} {{folder}}/",
+    ".orc": _PANDAS.format("", "read_orc"),
+    ".pkl": _PANDAS.format(" (only if you trust it: the file may run code)", "read_pickle"),
+    ".nc": "copy it: cp {file} {hdf5}",
+    ".log": "copy it: cp {file} {text}",
 }
-_PANDAS_READERS = {
-    ".orc": "read_orc",
-    ".pkl": "read_pickle",  # runs code of the file
-    ".pickle": "read_pickle",
-    ".sav": "read_spss",
-    ".dta": "read_stata",
-    ".sas7bdat": "read_sas",
-}
-_R = "write.csv(readRDS({file}), {made}, row.names = FALSE)"
-_COPIES = {".nc": ".h5", ".nc4": ".h5", ".log": ".txt", ".out": ".txt", ".prn": ".txt"}
+_SAME_WAY = {".tgz": ".tar", ".tbz": ".tar", ".txz": ".tar", ".pickle": ".pkl", ".nc4": ".nc"}
+_SAME_WAY |= dict.fromkeys((".out", ".prn"), ".log")
+_EXPORTED = "export it from the program that has written it, as CSV or Parquet"
 _FORMATS = (  # suffixes, reader, and what they are if its library crashes on damaged files
     ((".csv", ".tsv", ".txt", ".dat", ".asc"), "delimited", ""),
     ((".mat",), "matlab", "a MATLAB file"),
@@ -165,29 +163,16 @@ def _unknown(path: Path) -> InputError:
         f"unknown file format {suffix}{' inside' if packed else ''}",
         where=path,
         expected=f"one of {', '.join(SUFFIXES)}",
-        remedy=way_to_convert(path),
+        remedy=_way_to_convert(path),
     )
 
 
-def way_to_convert(path: Path) -> str:
+def _way_to_convert(path: Path) -> str:
     """Return the sentence with the command that makes a readable file, or which formats to use."""
     suffixes = [suffix.lower() for suffix in path.suffixes]
-    last = suffixes[-1] if suffixes else ""
+    last = ".tar" if ".tar" in suffixes else suffixes[-1] if suffixes else ""
     made = path.with_name(path.name.split(".")[0] or "data")
-    file, folder = shlex.quote(str(path)), shlex.quote(str(made))
-    if ".tar" in suffixes or last in (".tgz", ".tbz", ".txz"):
-        last = ".tar"
-    if last in _ARCHIVES:
-        command = _ARCHIVES[last].format(file=file, folder=folder)
-        return f"unpack it and ingest the folder {folder}: {command}"
-    if last in _PANDAS_READERS:
-        target = shlex.quote(f"{made}.parquet")
-        command = _PANDAS.format(_PANDAS_READERS[last], file, target)
-        trust = " (only if you trust it: the file may run code)" if "pickle" in command else ""
-        return f"convert it{trust}: {command}"
-    if last == ".rds":
-        said = _R.format(file=json.dumps(str(path)), made=json.dumps(f"{made}.csv"))
-        return f"convert it: Rscript -e {shlex.quote(said)}"
-    if last in _COPIES:
-        return f"copy it: cp {file} {shlex.quote(f'{made}{_COPIES[last]}')}"
-    return "export it from the program that has written it, as CSV or Parquet"
+    ends = {"folder": "", "parquet": ".parquet", "hdf5": ".h5", "text": ".txt"}
+    names = {key: shlex.quote(f"{made}{end}") for key, end in ends.items()}
+    way = _WAYS.get(_SAME_WAY.get(last, last), _EXPORTED)
+    return way.format(file=shlex.quote(str(path)), **names)
