@@ -16,8 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.guards.damaged import damaged
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, damaged
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Address, Location, NotThereError, check_inside
 from tsas_cli.support import limits

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.guards.damaged import EncryptedError
+from tsas_cli.recordings.guards import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables, text_of
 from tsas_cli.recordings.readers.layout import DoubtfulMarkError
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions

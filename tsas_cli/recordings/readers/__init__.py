@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.guards.process import in_another_process
+from tsas_cli.recordings.guards import in_another_process
 from tsas_cli.recordings.readers import converted, offered
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions, whole
 from tsas_cli.support import limits

@@ -8,7 +8,7 @@ from shutil import rmtree
 from tempfile import mkdtemp
 from typing import Any
 
-from tsas_cli.recordings.guards.process import in_another_process
+from tsas_cli.recordings.guards import in_another_process
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.files import state_of
 

@@ -13,8 +13,7 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
-from tsas_cli.recordings.guards.damaged import foreign
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ReadOptions, floats
 from tsas_cli.recordings.readers.timebase import TIME

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded
 from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ReadOptions, floats, optional
 from tsas_cli.support.errors import InputError

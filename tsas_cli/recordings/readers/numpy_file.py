@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded
 from tsas_cli.recordings.readers.offered import Column, Offered, columns_in
 from tsas_cli.recordings.readers.table import ReadOptions
 

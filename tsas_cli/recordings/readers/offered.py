@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.recordings.guards.damaged import foreign
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,

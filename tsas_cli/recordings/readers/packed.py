@@ -10,8 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Any
 
 from tsas_cli.recordings import readers
-from tsas_cli.recordings.guards.damaged import damaged
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, damaged
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.limits import out_of_memory

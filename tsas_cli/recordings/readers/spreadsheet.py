@@ -5,8 +5,7 @@ from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.guards.damaged import foreign
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.table import ReadOptions, optional
 from tsas_cli.support.errors import InputError, nearest
 
