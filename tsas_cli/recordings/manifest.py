@@ -22,24 +22,9 @@ from pydantic import (
 
 from tsas_cli.recordings.run_names import check_run_name, colliding_names
 from tsas_cli.recordings.storage import Address, Location, check_inside
-from tsas_cli.support import limits
+from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
-from tsas_cli.support.plausible import (
-    Bend,
-    Diameter,
-    FreeLength,
-    Friction,
-    FrictionRatio,
-    GearRatio,
-    Inertia,
-    Length,
-    Modulus,
-    Preload,
-    Radius,
-    Share,
-    Stiffness,
-)
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -89,18 +74,18 @@ class _ManifestTable(BaseModel):
 class RigSheet(_ManifestTable):
     """Data sheet of the rig; every key is optional and carries its unit."""
 
-    tendon_diameter_mm: Diameter | None = None
-    tendon_modulus_GPa: Modulus | None = None
-    friction_coefficient: Friction | None = None
-    load_stiffness_N_per_mm: Stiffness | None = None
-    turntable_radius_mm: Radius | None = None
-    gear_ratio: GearRatio | None = None
-    inertia_N_mm_s2: Inertia | None = None
-    proximal_length_mm: FreeLength | None = None
-    distal_length_mm: FreeLength | None = None
-    antagonist_preload_N: Preload | None = None
-    antagonist_friction_ratio: FrictionRatio | None = None
-    antagonist_f_in_share: Share | None = None
+    tendon_diameter_mm: plausible.Diameter | None = None
+    tendon_modulus_GPa: plausible.Modulus | None = None
+    friction_coefficient: plausible.Friction | None = None
+    load_stiffness_N_per_mm: plausible.Stiffness | None = None
+    turntable_radius_mm: plausible.Radius | None = None
+    gear_ratio: plausible.GearRatio | None = None
+    inertia_N_mm_s2: plausible.Inertia | None = None
+    proximal_length_mm: plausible.FreeLength | None = None
+    distal_length_mm: plausible.FreeLength | None = None
+    antagonist_preload_N: plausible.Preload | None = None
+    antagonist_friction_ratio: plausible.FrictionRatio | None = None
+    antagonist_f_in_share: plausible.Share | None = None
 
 
 class Run(_ManifestTable):
@@ -110,9 +95,9 @@ class Run(_ManifestTable):
     file: str
     sha256: str = Field(pattern=r"^[0-9a-fA-F]{64}$")
     started: Annotated[datetime, BeforeValidator(_as_date)] | None = None
-    sheath_length_mm: Length | None = None
-    total_bend_rad: Bend | None = None
-    preload_N: Preload | None = None
+    sheath_length_mm: plausible.Length | None = None
+    total_bend_rad: plausible.Bend | None = None
+    preload_N: plausible.Preload | None = None
     load: Load = "spring"
 
     @field_validator("file")

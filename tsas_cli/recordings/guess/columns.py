@@ -130,7 +130,7 @@ class FileColumn:
         matched = self.words.matched
         meanings = {}
         if "quantity" in matched:
-            meanings[matched["quantity"]] = _AN[self.words.quantity]
+            meanings[matched["quantity"]] = _meaning(self.words.quantity)
         if "end" in matched and self.end:
             more = meanings.pop(matched["end"], "")
             meanings[matched["end"]] = f"{more} at {_END[self.end]}" if more else _END[self.end]
@@ -146,18 +146,12 @@ class FileColumn:
         return finite.size > 1 and float(np.ptp(finite)) > 0.0
 
 
-_AN: dict[NamedQuantity | None, str] = {
-    "time": "a time",
-    "counter": "a count of samples",
-    "displacement": "a displacement",
-    "angle": "an angle",
-    "force": "a force",
-    "torque": "a torque",
-    "speed": "a speed",
-    "temperature": "a temperature",
-    "other": "no quantity of a channel",
-}
 _END: dict[End, str] = {"in": "the drive", "out": "the load", "motor": "the motor"}
+
+
+def _meaning(quantity: NamedQuantity | None) -> str:
+    said = {"counter": "a count of samples", "other": "no quantity of a channel"}
+    return said.get(str(quantity), "an angle" if quantity == "angle" else f"a {quantity}")
 
 
 def columns_of(opened: Opened) -> list[FileColumn]:
