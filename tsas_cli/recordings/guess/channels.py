@@ -42,7 +42,7 @@ def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
         turns = column.kind in ("angle", "label", None)
         if quantity == "temperature":
             found.setdefault("temperature_C", []).append(column)
-        elif quantity == "speed" and (motor or column.kind == "rotation"):
+        elif quantity == "speed" and (motor or column.kind == "speed"):
             found.setdefault("motor_speed_rpm", []).append(column)
         elif (
             motor

@@ -9,7 +9,6 @@ import numpy as np
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.guess.opening import Opened
 from tsas_cli.recordings.guess.words import (
-    QUANTITY_OF,
     WEAK,
     End,
     NamedQuantity,
@@ -103,11 +102,11 @@ class FileColumn:
     def quantity(self) -> NamedQuantity | None:
         """The measured quantity by the unit, else by the name; None if they disagree."""
         named = self.words.quantity
-        if self.kind in (None, "label"):
+        if self.kind is None or self.kind == "label":
             return named
         if self.disagrees:
             return None
-        return "other" if named == "other" else QUANTITY_OF[self.kind]
+        return "other" if named == "other" else self.kind
 
     @property
     def end(self) -> End | None:

@@ -133,41 +133,19 @@ def _split(part: str) -> list[str]:
     return [part]
 
 
-UnitKind = Literal[
-    "time", "length", "force", "angle", "torque", "rotation", "temperature", "label", "other"
-]
+UnitKind = NamedQuantity | Literal["label"]  # a label is of counts or volts
 
-# Kind, canonical unit, and the radius that converts an angle or a torque to it.
+# Quantity of a unit, canonical unit, and the radius that converts an angle or a torque to it.
 _TARGETS: tuple[tuple[UnitKind, str, float | None], ...] = (
     ("time", "s", None),
-    ("length", "mm", None),
+    ("displacement", "mm", None),
     ("force", "N", None),
     ("angle", "mm", 1.0),
     ("torque", "N", 1.0),
-    ("rotation", "rpm", None),
+    ("speed", "rpm", None),
     ("temperature", "°C", None),
 )
-QUANTITY_OF: dict[UnitKind, NamedQuantity] = {
-    "time": "time",
-    "length": "displacement",
-    "force": "force",
-    "angle": "angle",
-    "torque": "torque",
-    "rotation": "speed",
-    "temperature": "temperature",
-    "other": "other",
-}
-_FITTING: dict[NamedQuantity, tuple[UnitKind, ...]] = {
-    "time": ("time",),
-    "counter": ("label",),
-    "displacement": ("length", "angle", "label"),
-    "angle": ("angle", "length", "label"),
-    "force": ("force", "torque", "label"),
-    "torque": ("torque", "force", "label"),
-    "speed": ("rotation", "label"),
-    "temperature": ("temperature", "label"),
-    "other": (),
-}
+_RELATED = {"displacement": "angle", "angle": "displacement", "force": "torque", "torque": "force"}
 # After a name without brackets: time_ms, Force N. `in`, `m`, `g` and `A` are left out, because they
 # denote ends, masters and sensors as often as units.
 _SUFFIXES = (
@@ -178,7 +156,7 @@ _SUFFIX = re.compile(r"^(.+?)[_\s.,/-]+([A-Za-zµ°]+)$")
 
 
 def kind_of(unit: str) -> UnitKind | None:
-    """Return the kind of a unit; "other" for one of no channel, None for text that is no unit."""
+    """Return the quantity of a unit; "other" for one of no channel, None for text that is none."""
     if is_label(unit):
         return "label"
     for kind, to, radius in _TARGETS:
@@ -192,7 +170,9 @@ def kind_of(unit: str) -> UnitKind | None:
 
 def fits(quantity: NamedQuantity, kind: UnitKind) -> bool:
     """Return whether a quantity can have a unit of this kind."""
-    return kind in _FITTING[quantity]
+    if quantity == "other" or kind == "label":
+        return quantity not in ("other", "time")
+    return kind in (quantity, _RELATED.get(quantity))
 
 
 def unit_behind(name: str) -> tuple[str, str]:
