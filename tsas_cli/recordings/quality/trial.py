@@ -191,6 +191,11 @@ class RunSignals:
         """The channel that a driven load prescribes, whatever the drive does."""
         return {"force": "f_out_N", "displacement": "x_out_mm"}.get(self.recording.run.load)
 
+    @property
+    def on_spring(self) -> bool:
+        """Whether the load is a spring, so that the distal end follows the drive."""
+        return self.recording.run.load == "spring"
+
     @cached_property
     def repeats(self) -> Mask:
         """Which rows equal the row before them in every channel, shape (n,)."""

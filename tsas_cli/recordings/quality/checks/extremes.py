@@ -9,7 +9,6 @@ from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
 from tsas_cli.recordings.quality.trial import RunSignals, Stroke
-from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
 
 _ZERO = 0.15  # of the channel's span: the mean of the second half
@@ -211,7 +210,9 @@ def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
             continue
         if interior and noisy and np.ptp(motion) > 2.0 * trial.visible(other):
             return True
-        if _crosses_and_returns(motion, trial.sizes[other].span):
+        span = trial.sizes[other].span
+        strokes = np.abs(np.diff(motion[turning_points(motion, 0.2 * span)]))
+        if np.ptp(motion) > 0.6 * span and strokes.sum() > 1.5 * span:  # it crosses and returns
             return True
     return False
 
@@ -223,11 +224,6 @@ def _noisy(trial: RunSignals, name: str, long: list[slice]) -> bool:
         values[rows] = np.nan
     least = max(trial.sizes[name].step, _LEAST_NOISE * trial.sizes[name].span)
     return alternates(values) and noise_sd(values) > least
-
-
-def _crosses_and_returns(motion: Floats, span: float) -> bool:
-    strokes = np.abs(np.diff(motion[turning_points(motion, 0.2 * span)]))
-    return bool(np.ptp(motion) > 0.6 * span and strokes.sum() > 1.5 * span)
 
 
 _NOTE, _WARNING = 1 / 500, 1 / 50

@@ -19,35 +19,25 @@ def sign(trial: RunSignals) -> Remarks:
     stroke of the drive the distal displacement and, with a spring as load, both tensions rise with
     `x_in_mm`. If all other channels move opposite to the drive, the sign of the drive is wrong.
     """
-    pushing = [n for n in trial.mechanical if n.startswith("f_") and _pushes(trial, n)]
-    scores = {name: trial.follows(name) for name in _followers(trial)}
-    against = [name for name, score in scores.items() if score is not None and score < -_CLEAR_SIGN]
-    together = [name for name, score in scores.items() if score is not None and score > _CLEAR_SIGN]
+    tensions = [name for name in trial.mechanical if name.startswith("f_")]
+    pushing = [n for n in tensions if np.nanpercentile(trial.channels[n], 98.0) < -trial.visible(n)]
+    followers = ["x_out_mm"] if "x_out_mm" in trial.mechanical else []
+    followers += tensions if trial.on_spring else []  # with a driven load, tensions need not follow
+    scores = {name: trial.follows(name) or 0.0 for name in followers}
+    against = [name for name, score in scores.items() if score < -_CLEAR_SIGN]
+    together = [name for name, score in scores.items() if score > _CLEAR_SIGN]
     if against and not together and not pushing and against != ["x_out_mm"]:
         yield _wrong_sign("x_in_mm", f"moves opposite to {', '.join(against)} in each stroke")
         return
     for name in against:
         yield _wrong_sign(name, "moves opposite to x_in_mm in each stroke")
-    for name in pushing:
-        if name in against:
-            continue
+    for name in [n for n in pushing if n not in against]:
         share = 100.0 * float(np.mean(trial.channels[name] < 0.0))
         yield _wrong_sign(
             name, f"is negative in {share:.3g} % of the samples; a tendon cannot push"
         )
     if not against and not together and not pushing:
         yield CannotTell("no channel that follows x_in_mm moves visibly")
-
-
-def _followers(trial: RunSignals) -> list[str]:
-    """Return the channels that follow the drive; with a driven load, tensions need not."""
-    spring = trial.recording.run.load == "spring"
-    return [n for n in trial.mechanical if n == "x_out_mm" or (spring and n.startswith("f_"))]
-
-
-def _pushes(trial: RunSignals, name: str) -> bool:
-    values = trial.channels[name]
-    return bool(np.nanpercentile(values, 98.0) < -trial.visible(name))
 
 
 def _wrong_sign(column: str, what: str) -> Remark:
@@ -96,9 +86,8 @@ def exchanged(trial: RunSignals) -> Remarks:
     than during loosening. If it is lower, the proximal and the distal column are exchanged (or
     `x_in_mm` has the wrong sign, if no other channel shows its sign).
     """
-    spring = trial.recording.run.load == "spring"
-    against = [n for n in ("f_in_N", "f_out_N") if spring and (trial.follows(n) or 0.0) < 0.0]
-    if against:
+    against = [n for n in ("f_in_N", "f_out_N") if (trial.follows(n) or 0.0) < 0.0]
+    if against and trial.on_spring:
         yield CannotTell(f"the sign of {against[0]} against x_in_mm is in doubt")
         return
     if len({stroke.direction for stroke in trial.strokes}) < 2:
@@ -147,13 +136,8 @@ def interference(trial: RunSignals) -> Remarks:
     cable of a sensor, or a correction by the sign of the speed. Beside it f_in may jump too; that
     looks like friction of the drive.
     """
-    spring = trial.recording.run.load == "spring"
-    if (
-        not spring
-        or not trial.increases
-        or trial.batches is not None
-        or len(trial.strokes) <= _FEWEST_REVERSALS
-    ):
+    even = trial.increases and trial.batches is None
+    if not trial.on_spring or not even or len(trial.strokes) <= _FEWEST_REVERSALS:
         yield CannotTell(
             "the load is no spring, the times are uneven, or the drive has too few reversals"
         )

@@ -8,7 +8,6 @@ from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
 
 _ASIDE = 3  # neighbours on each side
@@ -192,11 +191,16 @@ def filtered(trial: RunSignals) -> Remarks:
     for name, values in trial.mechanical.items():
         whole = np.isfinite(values).all() and trial.moves(name) and not is_held(values)
         spectrum = noise_spectrum(trial.time_s, values, segment_s) if whole else None
-        end_Hz = None if spectrum is None else _end_of_noise(spectrum, _rounding(trial, name))
+        size = trial.sizes[name]
+        rounding = size.step**2 / 6.0 * trial.step_s  # its power per hertz [unit²/Hz]
+        end_Hz = None if spectrum is None else _end_of_noise(spectrum, rounding)
         if end_Hz is None or spectrum is None:
             continue
-        noise, size = _noise(spectrum, end_Hz), trial.sizes[name]
-        wrong = _change(trial.time_s, values, end_Hz)
+        below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
+        noise = float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
+        late_s = trial.time_s - 1.0 / (2.0 * np.pi * end_Hz)  # by a filter that ends there
+        change = np.interp(late_s, trial.time_s, values) - values
+        wrong = float(np.sqrt(np.mean(change**2)))
         if noise > max(_STEPS * size.step, _COMPUTED * size.span) and wrong > _MATTERS * noise:
             yield Remark(
                 "warning",
@@ -224,20 +228,3 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
         return None  # a computed recording: what is left of a smooth motion falls all the way
     level = float(np.median(spectrum.power[noisy]))
     return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())
-
-
-def _rounding(trial: RunSignals, name: str) -> float:
-    """Return the power per hertz of the rounding of a channel [unit²/Hz]."""
-    return trial.sizes[name].step ** 2 / 6.0 * trial.step_s
-
-
-def _noise(spectrum: NoiseSpectrum, end_Hz: float) -> float:
-    """Return the standard deviation of the noise up to a frequency."""
-    below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
-    return float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
-
-
-def _change(time_s: Floats, values: Floats, end_Hz: float) -> float:
-    """Return the RMS change of a channel by a delay of a filter that ends there."""
-    delay_s = 1.0 / (2.0 * np.pi * end_Hz)
-    return float(np.sqrt(np.mean((np.interp(time_s - delay_s, time_s, values) - values) ** 2)))

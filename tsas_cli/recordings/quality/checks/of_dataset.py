@@ -1,7 +1,6 @@
 """The checks of the manifest, and of all runs beside each other."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
@@ -27,36 +26,27 @@ def unknown_key(manifest: Manifest) -> Remarks:
             continue
         yield Remark(
             "warning" if misspelt else "note",
-            f"dataset.toml holds the unknown key {printable(key)} in {_listed(where)}",
+            f"dataset.toml holds the unknown key {printable(key)} in {where[0]}"
+            + (f" and {len(where) - 1} more" if len(where) > 1 else ""),
             hint if misspelt else "none, if it is a note for readers",
         )
 
 
-def _listed(places: list[str]) -> str:
-    more = f" and {len(places) - 1} more" if len(places) > 1 else ""
-    return places[0] + more
-
-
-class _Suspicion(NamedTuple):
-    key: str
-    implausible: Callable[[float], bool]
-    likely: str
-
-
-_Suspicions = tuple[_Suspicion, ...]
+# Key, whether a value is implausible, and its likely unit.
+_Suspicions = tuple[tuple[str, Callable[[float], bool], str], ...]
 _RUN: _Suspicions = (
-    _Suspicion("total_bend_rad", lambda v: v > 50 or (v > 6.5 and v % 5 == 0), "degree"),
-    _Suspicion("sheath_length_mm", lambda v: v < 5, "metre"),
-    _Suspicion("sheath_length_mm", lambda v: v > 5e4, "micrometre"),
+    ("total_bend_rad", lambda v: v > 50 or (v > 6.5 and v % 5 == 0), "degree"),
+    ("sheath_length_mm", lambda v: v < 5, "metre"),
+    ("sheath_length_mm", lambda v: v > 5e4, "micrometre"),
 )
 _RIG: _Suspicions = (
-    _Suspicion("tendon_diameter_mm", lambda v: v < 0.02, "metre"),
-    _Suspicion("tendon_diameter_mm", lambda v: v > 50, "micrometre"),
-    _Suspicion("tendon_modulus_GPa", lambda v: 1e3 < v < 1e6, "MPa"),
-    _Suspicion("tendon_modulus_GPa", lambda v: v >= 1e6, "Pa"),
-    _Suspicion("friction_coefficient", lambda v: v > 3, "percent"),
-    _Suspicion("proximal_length_mm", lambda v: 0 < v < 0.5, "metre"),
-    _Suspicion("distal_length_mm", lambda v: 0 < v < 0.5, "metre"),
+    ("tendon_diameter_mm", lambda v: v < 0.02, "metre"),
+    ("tendon_diameter_mm", lambda v: v > 50, "micrometre"),
+    ("tendon_modulus_GPa", lambda v: 1e3 < v < 1e6, "MPa"),
+    ("tendon_modulus_GPa", lambda v: v >= 1e6, "Pa"),
+    ("friction_coefficient", lambda v: v > 3, "percent"),
+    ("proximal_length_mm", lambda v: 0 < v < 0.5, "metre"),
+    ("distal_length_mm", lambda v: 0 < v < 0.5, "metre"),
 )
 
 

@@ -58,7 +58,11 @@ def unit(trial: RunSignals) -> Remarks:
     no scaled copy of the proximal one.
     """
     yield from _time(trial)
-    travel, tension, stiffness = _travel_ratio(trial), _tension_ratio(trial), _slope_ratio(trial)
+    tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
+    driven = trial.recording.run.load == "displacement"
+    travel = None
+    if trial.strokes and not driven and "x_out_mm" in trial.channels:
+        travel = _slope(trial, "x_in_mm", "x_out_mm")
     if travel is None and tension is None and stiffness is None:
         yield CannotTell("no two channels whose sizes must agree were recorded and move")
     yield from _suspect_unit(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
@@ -124,14 +128,6 @@ def _suspect_unit(
         )
 
 
-def _travel_ratio(trial: RunSignals) -> float | None:
-    """Return the travel of x_out over that of x_in, if one is a scaled copy of the other."""
-    driven = trial.recording.run.load == "displacement"
-    if driven or not trial.strokes or "x_out_mm" not in trial.channels:
-        return None
-    return _slope(trial, "x_in_mm", "x_out_mm")
-
-
 def _tension_ratio(trial: RunSignals) -> float | None:
     """Return the level of f_out over f_in, averaged geometrically over the two directions."""
     if not trial.strokes or not {"f_in_N", "f_out_N"} <= trial.channels.keys():
@@ -147,9 +143,8 @@ def _tension_ratio(trial: RunSignals) -> float | None:
 
 def _slope_ratio(trial: RunSignals) -> float | None:
     """Return the slope of f_out over x_out divided by the data sheet's load stiffness."""
-    nominal = trial.rig.load_stiffness_N_per_mm
-    spring = trial.recording.run.load == "spring"
-    if nominal is None or not spring or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
+    nominal = trial.rig.load_stiffness_N_per_mm if trial.on_spring else None
+    if nominal is None or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
         return None
     slope = _slope(trial, "x_out_mm", "f_out_N")
     return slope / nominal if slope is not None else None
@@ -196,9 +191,13 @@ def delay(trial: RunSignals) -> Remarks:
     the noise. Other pairs of channels lag by the physics of the sheath and are not judged. A damper
     or a mass at the load looks like a delay too.
     """
-    reason = _not_judged(trial)
-    if reason:
-        yield CannotTell(reason)
+    if not trial.on_spring:
+        yield CannotTell(
+            "the load is no spring, so the tension at the load need not follow the displacement"
+        )
+        return
+    if not trial.increases:
+        yield CannotTell("time does not increase")
         return
     strokes = zip(trial.strokes[::2], trial.strokes[1::2], strict=False)
     cycles = [slice(one.start, other.stop + 1) for one, other in strokes]
@@ -219,12 +218,6 @@ def delay(trial: RunSignals) -> Remarks:
         )
 
 
-def _not_judged(trial: RunSignals) -> str:
-    if trial.recording.run.load != "spring":
-        return "the load is no spring, so the tension at the load need not follow the displacement"
-    return "" if trial.increases else "time does not increase"
-
-
 def _smallest(trial: RunSignals) -> float:
     """Return the shortest delay that matters [s]."""
     force = trial.channels["f_out_N"]
@@ -243,7 +236,8 @@ def _delay(trial: RunSignals, rows: slice) -> float:
     width = max(int(valid.sum()) // _ROWS, 1)
     if valid.sum() < 2 * _ROWS or np.ptp(x[valid]) < 2.0 * trial.visible("x_out_mm"):
         return math.nan
-    x, y, time = (_smoothed(values[valid], width) for values in (x, y, time))
+    mean = np.ones(width) / width
+    x, y, time = (np.convolve(values[valid], mean, mode="valid") for values in (x, y, time))
     longest = 0.25 * float(time[-1] - time[0])
     delay = 0.0
     for _ in range(_ROUNDS):
@@ -277,10 +271,6 @@ def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
     if np.var(y - terms @ coefficients) > _SPRING * np.var(y):
         return math.nan
     return float(-coefficients[4] / coefficients[1])
-
-
-def _smoothed(values: Floats, width: int) -> Floats:
-    return np.convolve(values, np.ones(width) / width, mode="valid")
 
 
 def _half_interval(delays: Floats) -> float:

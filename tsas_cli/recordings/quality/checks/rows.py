@@ -274,7 +274,10 @@ def slow_channel(trial: RunSignals) -> Remarks:
     """
     fresh = ~trial.repeats
     for name, values in trial.mechanical.items():
-        if is_held(values[fresh]) and _moves_by_jumps(values):
+        if not is_held(values[fresh]):
+            continue
+        change = np.abs(np.diff(values))
+        if np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values):
             rows = rows_between_changes(values[fresh])
             yield Remark(
                 "warning",
@@ -282,9 +285,3 @@ def slow_channel(trial: RunSignals) -> Remarks:
                 "record the channel at its own rate, or correct for half an update of delay",
                 name,
             )
-
-
-def _moves_by_jumps(values: Floats) -> bool:
-    """Return whether most changes exceed one step."""
-    change = np.abs(np.diff(values))
-    return bool(np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values))

@@ -106,7 +106,12 @@ def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
         if part.start == 0:
             begin_s = float(time_s[0])
             channels = {name: _Channel() for name in part.columns if name != TIME}
-            dense = tuple(name for name in channels if _is_dense(part.columns[name]))
+            valid = {name: np.isfinite(part.columns[name]) for name in channels}
+            dense = tuple(  # they vary and have values in most rows
+                name
+                for name, there in valid.items()
+                if 2 * there.sum() > there.size and np.ptp(part.columns[name][there]) > 0.0
+            )
         for name, channel in channels.items():
             channel.add(part.columns[name])
         for length, samples in _stretches(part, dense):
@@ -160,12 +165,6 @@ class _Channel:
         noisy = 2 * sum(self.alternates) > len(self.alternates)
         noisy = noisy and noise > max(0.5 * step, SINGLE_PRECISION * largest)
         return Fineness(noise, step, largest, span, noisy)
-
-
-def _is_dense(values: Floats) -> bool:
-    """Return whether a channel varies and has values in most rows."""
-    valid = np.isfinite(values)
-    return bool(2 * valid.sum() > values.size and np.ptp(values[valid]) > 0.0)
 
 
 def _stretches(part: Piece, names: Sequence[str]) -> Iterator[tuple[int, RunSamples]]:
