@@ -1,9 +1,11 @@
 """The manifest `dataset.toml` of a dataset, format 1: its content and validation."""
 
+import os
 import re
 import tomllib
+import unicodedata
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import date, datetime
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal, Self, TypeVar
@@ -20,7 +22,6 @@ from pydantic import (
     model_validator,
 )
 
-from tsas_cli.recordings.run_names import check_run_name, colliding_names
 from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
@@ -32,6 +33,9 @@ T = TypeVar("T", bound=BaseModel)
 _MOST_ERRORS = 5  # listed of one file; further ones are counted
 _VALUE_LENGTH = 80  # characters of an invalid value in a message
 _PATH_LENGTH = 1000  # characters of a path in the dataset
+_SLASHES = "/\\"
+_ON_WINDOWS = '<>:"|?*'  # where a colon opens another stream of the same file
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 
 def _as_date(value: object) -> object:
@@ -45,12 +49,35 @@ def _as_date(value: object) -> object:
     raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
 
 
-def _can_name_a_file(name: str) -> str:
-    check_run_name(name)
+def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> str:
+    """Return an id; refuse one that is no valid file name.
+
+    ValueError: it is empty, not printable, too long, or a Windows device; it has a slash, or a
+    blank at either end.
+    """
+    bad = _SLASHES + (_ON_WINDOWS if on_windows else "")
+    unusable = name in {"", ".", ".."} or any(c in name for c in bad) or not name.isprintable()
+    if unusable or len(f"{name}.parquet".encode()) > 255 or name != name.strip():
+        raise ValueError(
+            "must be usable as a file name (no slash, no control character, no blank at its ends, "
+            "not too long)"
+        )
+    if name.partition(".")[0].lower() in _DEVICES:
+        raise ValueError("is a device on Windows, not a file name")
     return name
 
 
-RunId = Annotated[str, AfterValidator(_can_name_a_file)]
+def colliding_names(names: Iterable[str]) -> tuple[str, str] | None:
+    """Return two ids that name one file since only case or Unicode form differs; or None."""
+    known: dict[str, str] = {}
+    for name in names:
+        other = known.setdefault(unicodedata.normalize("NFC", name).casefold(), name)
+        if other != name:
+            return other, name
+    return None
+
+
+RunId = Annotated[str, AfterValidator(check_run_name)]
 
 
 class _ManifestTable(BaseModel):

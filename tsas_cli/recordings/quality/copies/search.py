@@ -23,9 +23,13 @@ from tsas_cli.recordings.quality.copies.agreement import (
     joined,
     stretches,
 )
-from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
+from tsas_cli.recordings.quality.copies.fingerprint import (
+    Fineness,
+    Fingerprint,
+    Reader,
+    side_by_side,
+)
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
-from tsas_cli.recordings.quality.copies.reader import Reader, side_by_side
 from tsas_cli.support.arrays import Floats, Indices
 
 SHIFT_TOLERANCE = 0.1  # of a sample interval, within which two shifts are one
