@@ -36,62 +36,31 @@ _BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*$")
 class Proposed:
     """The proposal for one channel of a map.
 
-    Attributes
-    ----------
-    name
-        The canonical column.
-    entry
-        The keys of its table; `QUESTION` for an open value.
-    certainty
-        "sure" if name, unit and motion agree or exclude all else, "likely" if only one of them is
-        evidence, "open" if none is or they contradict each other.
-    why
-        The evidence, one sentence each.
-    questions
-        The open questions, by key of the entry.
-    alternatives
-        Other possible values.
-    candidates
-        The columns in question, if the source is open.
+    It is "sure" if name, unit and motion agree or exclude all else, "likely" if only one of them is
+    evidence, "open" if none is or they contradict each other.
     """
 
-    name: str
-    entry: Raw
+    name: str  # of the canonical column
+    entry: Raw  # the keys of its table; `QUESTION` for an open value
     certainty: Certainty
-    why: tuple[str, ...] = ()
-    questions: dict[str, str] = field(default_factory=dict)
-    alternatives: tuple[str, ...] = ()
-    candidates: tuple[ColumnSource, ...] = ()
+    why: tuple[str, ...] = ()  # the evidence, one sentence each
+    questions: dict[str, str] = field(default_factory=dict)  # the open ones, by key of the entry
+    alternatives: tuple[str, ...] = ()  # other possible values
+    candidates: tuple[ColumnSource, ...] = ()  # the columns in question, if the source is open
 
 
 @dataclass(frozen=True)
 class FileColumn:
-    """A column of numbers.
+    """A column of numbers, with what its name and its unit mean."""
 
-    Attributes
-    ----------
-    source
-        Its identifier in a map: the name, or the number of a column without a name.
-    values
-        Shape (n,), in the file's unit; a gap is NaN.
-    words
-        The meaning of its name.
-    unit, kind
-        The unit stated by the file, empty without one, and its kind.
-    own_unit
-        Whether ingest finds this unit in the file.
-    where
-        Where the unit is stated ("in its name").
-    """
-
-    source: ColumnSource
+    source: ColumnSource  # in a map: the name, or the number of a column without a name
     name: str
-    values: Floats
+    values: Floats  # shape (n,), in the file's unit; a gap is NaN
     words: Words
-    unit: str
+    unit: str  # stated by the file, empty without one
     kind: UnitKind | None
-    own_unit: bool
-    where: str
+    own_unit: bool  # whether ingest finds this unit in the file
+    where: str  # the unit is stated: "in its name"
 
     @property
     def shown(self) -> str:

@@ -16,29 +16,14 @@ _PREAMBLE = 60  # lines above a table that are tried
 
 @dataclass(frozen=True)
 class Opened:
-    """The content of one file.
-
-    Attributes
-    ----------
-    read
-        The keys of `[read]` that the file requires, each with value and reason.
-    table
-        The numeric columns, all of one length, by their source in a map.
-    names
-        Their names; empty text for a column without one.
-    left_out
-        The other columns, and the reason for each.
-    asked
-        The keys of `read` that are open questions; the values are those that the file was opened
-        with.
-    """
+    """The content of one file; the values of `asked` keys are those that it was opened with."""
 
     path: Path
-    read: dict[str, tuple[Any, str]]
-    table: ColumnTable
-    names: dict[ColumnSource, str]
-    left_out: dict[str, str] = field(default_factory=dict)
-    asked: dict[str, str] = field(default_factory=dict)
+    read: dict[str, tuple[Any, str]]  # what the file requires under `[read]`: value and reason
+    table: ColumnTable  # the numeric columns, all of one length, by their source in a map
+    names: dict[ColumnSource, str]  # empty text for a column without one
+    left_out: dict[str, str] = field(default_factory=dict)  # the other columns, and why
+    asked: dict[str, str] = field(default_factory=dict)  # the keys of `read` that are questions
 
 
 def open_file(path: Path) -> Opened:

@@ -23,35 +23,17 @@ _SPRING = 0.95  # least correlation of tension and displacement at the load of a
 
 @dataclass(frozen=True)
 class MapProposal:
-    """A proposed map with its evidence.
-
-    Attributes
-    ----------
-    looked_at
-        The file that the proposal is based on.
-    matching, different
-        The other files: those with the same columns, and the reason for each other one.
-    read
-        The keys of `[read]`, with values and reasons.
-    channels
-        The tables of `[columns]`.
-    not_taken
-        The columns without a channel, and their evidence.
-    run
-        The keys of `[run]` that differ from their defaults, with values and reasons.
-    doubt
-        The reason why no column name is used; empty if names are used.
-    """
+    """A proposed map with its evidence."""
 
     name: str
-    looked_at: Opened
-    matching: tuple[Path, ...]
-    different: dict[Path, str]
-    read: dict[str, tuple[Any, str]]
-    channels: tuple[Proposed, ...]
-    not_taken: dict[ColumnSource, str]
-    run: dict[str, tuple[Any, str]]
-    doubt: str
+    looked_at: Opened  # the file that the proposal is based on
+    matching: tuple[Path, ...]  # other files with the same columns
+    different: dict[Path, str]  # the rest of them, and how each differs
+    read: dict[str, tuple[Any, str]]  # the keys of `[read]`, with values and reasons
+    channels: tuple[Proposed, ...]  # the tables of `[columns]`
+    not_taken: dict[ColumnSource, str]  # the columns without a channel, and their evidence
+    run: dict[str, tuple[Any, str]]  # the keys of `[run]` that differ from their defaults
+    doubt: str  # why no column name is used; empty if names are used
 
     @property
     def questions(self) -> dict[str, str]:

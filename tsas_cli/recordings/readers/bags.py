@@ -61,21 +61,11 @@ def decoder(kind: str, definition: str, *, ros1: bool) -> Decode:
 
 @dataclass(frozen=True)
 class Topic:
-    """One topic of a file.
+    """One topic of a file."""
 
-    Attributes
-    ----------
-    name
-        As in the file, `/joint_states`.
-    kind
-        Their type, `geometry_msgs/msg/WrenchStamped`; those of ROS have SI units.
-    messages
-        Yields its messages in order, each time from the first.
-    """
-
-    name: str
-    kind: str
-    messages: Callable[[], Iterator[Message]]
+    name: str  # as in the file, `/joint_states`
+    kind: str  # `geometry_msgs/msg/WrenchStamped`; those of ROS have SI units
+    messages: Callable[[], Iterator[Message]]  # in order, each time from the first
 
     @cached_property
     def first(self) -> Mapping[str, Any]:

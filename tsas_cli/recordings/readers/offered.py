@@ -29,27 +29,13 @@ _MOST_ITEMS = 64  # of a list, whose items become columns; longer ones are image
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a file.
+    """One column of a file, whose values and times are loaded when they are requested."""
 
-    Attributes
-    ----------
-    name
-        Empty text for a column without one.
-    values
-        Loads its values, shape (n,).
-    unit
-        The unit stated by the file, or empty.
-    times
-        Loads its own clock, shape (n,); None in a file whose columns are rows of one table.
-    clock
-        What its clock is, and in which unit.
-    """
-
-    name: str
-    values: Callable[[], Any]
-    unit: str = ""
-    times: Callable[[], Floats] | None = None
-    clock: str = f"{A_TIME_IN}s"
+    name: str  # empty text for a column without one
+    values: Callable[[], Any]  # shape (n,)
+    unit: str = ""  # stated by the file, or empty
+    times: Callable[[], Floats] | None = None  # its own clock, (n,); None in a file of one table
+    clock: str = f"{A_TIME_IN}s"  # what its clock is, and in which unit
 
 
 @dataclass(frozen=True)
