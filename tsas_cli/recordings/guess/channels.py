@@ -23,7 +23,9 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     assigned = {id(c) for found in others.values() for c in found}
     free = [c for c in moving if id(c) not in assigned and not c.words.is_reference]
     displacements = [c for c in free if c.quantity in LENGTHS]
-    tensions = [c for c in free if c.quantity in FORCES and not _of_motor(c)]
+    tensions = [c for c in free if c.quantity in FORCES]
+    # A torque of the motor is before a gear of unknown friction.
+    tensions = [c for c in tensions if (c.end, c.quantity) != ("motor", "torque")]
     ends = assign(displacements, tensions)
     found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
     found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
@@ -54,11 +56,6 @@ def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
         elif quantity == "force" and column.words.is_reference and column.end != "in":
             found.setdefault("f_out_ref_N", []).append(column)
     return found
-
-
-def _of_motor(column: FileColumn) -> bool:
-    """Return whether a torque is the motor's, before a gear of unknown friction."""
-    return column.end == "motor" and column.quantity == "torque"
 
 
 def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
@@ -184,7 +181,7 @@ def _asked(name: str, columns: Sequence[FileColumn], ends: Assignment) -> Propos
 def _open(
     name: str, columns: Sequence[FileColumn], why: tuple[str, ...], questions: dict[str, str]
 ) -> Proposed:
-    alternatives = tuple(_described(c) for c in columns)
+    alternatives = tuple(": ".join(filter(None, (c.shown, "; ".join(c.reasons)))) for c in columns)
     sources = tuple(c.source for c in columns)
     return Proposed(name, {"source": QUESTION}, "open", why, questions, alternatives, sources)
 
@@ -197,10 +194,6 @@ def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:
     ]
 
 
-def _described(column: FileColumn) -> str:
-    return f"{column.shown}: {'; '.join(column.reasons)}" if column.reasons else column.shown
-
-
 def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     """Return the sign of each assigned displacement and tension, with the reason.
 
@@ -210,7 +203,8 @@ def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     found: dict[str, Sign] = {}
     for name in ("f_in_N", "f_out_N"):
         if name in assigned:
-            found[name] = _tension(assigned[name])
+            side = sign_of(assigned[name].values)
+            found[name] = _SIGNS[side]
     if "x_in_mm" in assigned:
         found["x_in_mm"] = _drive(assigned, found)
     if "x_out_mm" in assigned:
@@ -218,11 +212,11 @@ def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     return found
 
 
-def _tension(column: FileColumn) -> Sign:
-    side = sign_of(column.values)
-    if side < 0:
-        return -1, "its values are negative, and a tendon cannot push"
-    return 1, "" if side else "its values are on both sides of zero: its sign is unknown"
+_SIGNS: dict[int, Sign] = {
+    -1: (-1, "its values are negative, and a tendon cannot push"),
+    0: (1, "its values are on both sides of zero: its sign is unknown"),
+    1: (1, ""),
+}
 
 
 def _drive(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sign:

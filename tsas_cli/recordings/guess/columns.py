@@ -95,10 +95,10 @@ class FileColumn:
     @property
     def reasons(self) -> list[str]:
         """The evidence of the name and the unit, one sentence each."""
-        matched = self.words.matched
+        matched, named = self.words.matched, str(self.words.quantity)
         meanings = {}
         if "quantity" in matched:
-            meanings[matched["quantity"]] = _meaning(self.words.quantity)
+            meanings[matched["quantity"]] = _QUANTITY.get(named, f"a {named}")
         if "end" in matched and self.end:
             more = meanings.pop(matched["end"], "")
             meanings[matched["end"]] = f"{more} at {_END[self.end]}" if more else _END[self.end]
@@ -114,18 +114,18 @@ class FileColumn:
         return finite.size > 1 and float(np.ptp(finite)) > 0.0
 
 
+_QUANTITY = {
+    "counter": "a count of samples",
+    "angle": "an angle",
+    "other": "no quantity of a channel",
+}
 _END: dict[End, str] = {"in": "the drive", "out": "the load", "motor": "the motor"}
-
-
-def _meaning(quantity: NamedQuantity | None) -> str:
-    said = {"counter": "a count of samples", "other": "no quantity of a channel"}
-    return said.get(str(quantity), "an angle" if quantity == "angle" else f"a {quantity}")
 
 
 def columns_of(opened: Opened) -> list[FileColumn]:
     """Return the columns of a file, in order."""
     return [
-        _column(source, opened.names[source], _finite(values), opened.table.units.get(source, ""))
+        _column(source, opened.names[source], values, opened.table.units.get(source, ""))
         for source, values in opened.table.columns.items()
     ]
 
@@ -143,12 +143,9 @@ def with_trusted_names(columns: list[FileColumn]) -> tuple[list[FileColumn], str
     return [replace(c, words=Words(None, None, is_reference=False)) for c in columns], sentence
 
 
-def _finite(values: Floats) -> Floats:
-    return np.where(np.isfinite(values), values, np.nan)
-
-
 def _column(source: ColumnSource, name: str, values: Floats, declared: str) -> FileColumn:
     """Return a column; `declared` is the unit that ingest finds in the file, if any."""
+    values = np.where(np.isfinite(values), values, np.nan)
     bracket = _BRACKETS.search(name)
     inside = bracket[1].strip() if bracket else ""
     stem, behind = unit_behind(name[: bracket.start()] if bracket else name)

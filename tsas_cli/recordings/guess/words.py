@@ -74,7 +74,8 @@ def words_of(name: str) -> Words:
     weak = next((p for p in parts if p in WEAK), None)
     if weak and not ends and (quantities or weak not in ("end", "dist")):
         ends["out"] = weak
-    end = _end(ends)
+    end: End | None = next(iter(ends)) if len(ends) == 1 else None
+    end = "motor" if "motor" in ends else end
     quantity = next((q for q in _PRIORITY if q in quantities), None)
     reference = next((p for p in parts if p in _REFERENCES.split()), None)
     matched = {"quantity": quantities[quantity]} if quantity else {}
@@ -87,12 +88,6 @@ def words_of(name: str) -> Words:
 _PRIORITY: tuple[NamedQuantity, ...] = (
     "other", "temperature", "speed", "torque", "force", "angle", "displacement", "counter", "time",
 )  # fmt: skip
-
-
-def _end(ends: dict[End, str]) -> End | None:
-    if "motor" in ends:
-        return "motor"
-    return next(iter(ends)) if len(ends) == 1 else None
 
 
 def _matches(parts: list[str], vocabulary: Mapping[Meaning, str]) -> dict[Meaning, str]:
