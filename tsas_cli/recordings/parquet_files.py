@@ -126,6 +126,12 @@ def is_number(kind: pa.DataType) -> bool:
     return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_null(kind))
 
 
+def unit_of(field: pa.Field) -> str:
+    """Return the unit in a field's metadata, or empty text."""
+    stated: bytes = (field.metadata or {}).get(b"unit", b"")
+    return stated.decode(errors="replace")
+
+
 def floats_from(column: pa.ChunkedArray) -> Floats:
     """Return a column of numbers as float64, shape (n,), null as NaN.
 

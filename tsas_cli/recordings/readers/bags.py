@@ -82,6 +82,14 @@ class Topic:
         sent = [_sent_ns(one) for one in fields]
         return (sent if sent and all(sent) else logged), fields
 
+    def values(self, field: str) -> list[Any]:
+        """Return a field of all messages, None where it is missing."""
+        return [message.get(field) for message in self.all[1]]
+
+    def times(self, zero_ns: int) -> Floats:
+        """Return when the messages were sent since a moment [s], shape (n,)."""
+        return np.array([time_ns - zero_ns for time_ns in self.all[0]]) * 1e-9
+
 
 _Topics = Iterator[tuple[list[Topic], dict[str, str]]]  # and advice where none can be decoded
 
@@ -117,9 +125,9 @@ def columns_of(topics: Sequence[Topic], path: Path, **advice: str) -> list[Colum
     return [
         Column(
             f"{topic.name}.{field}",
-            partial(_values, topic, field),
+            partial(topic.values, field),
             _unit(topic, field),
-            times=partial(_times, topic, zero_ns),
+            times=partial(topic.times, zero_ns),
         )
         for topic in used
         for field, value in topic.first.items()
@@ -138,16 +146,6 @@ def _sent_ns(fields: Mapping[str, Any]) -> int:
     """Return the stamp in a message's header [ns], 0 without one."""
     nanoseconds = fields.get(f"{_STAMP}nanosec", fields.get(f"{_STAMP}nsec", 0))
     return int(fields.get(f"{_STAMP}sec", 0)) * 10**9 + int(nanoseconds)
-
-
-def _values(topic: Topic, field: str) -> list[Any]:
-    _, messages = topic.all
-    return [message.get(field) for message in messages]
-
-
-def _times(topic: Topic, zero_ns: int) -> Floats:
-    times_ns, _ = topic.all
-    return np.array([time_ns - zero_ns for time_ns in times_ns]) * 1e-9
 
 
 @contextmanager

@@ -25,7 +25,9 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """
     above, content = _descend(read_json(path), options.table, path)
     names, column = _columns(content, above.get("columns"), path)
-    header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
+    header = tuple(
+        f"{key} = {value}" for key, value in above.items() if isinstance(value, str | int | float)
+    )
     yield Offered([Column(name, partial(column, i)) for i, name in enumerate(names)], header)
 
 
@@ -85,10 +87,6 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
 
 def _is_column(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
-
-
-def _is_plain(value: Any) -> bool:
-    return isinstance(value, str | int | float)
 
 
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:

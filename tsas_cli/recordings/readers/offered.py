@@ -185,7 +185,7 @@ def columns_in(
         return []
     if array.dtype.names:
         return [
-            Column(f"{name}.{field}" if name else field, partial(_field, whole, field), unit)
+            Column(f"{name}.{field}" if name else field, partial(lambda f: whole()[f], field), unit)
             for field in array.dtype.names
             if array.dtype[field].kind in "fiubmM" and array.ndim == 1
         ]
@@ -193,19 +193,12 @@ def columns_in(
         return []
     if 1 in array.shape or array.ndim == 1:
         return [Column(name, lambda: whole().ravel(), unit)]
-    across = array.shape[0] < array.shape[1]
-    named = [f"{name}(:,{j + 1})" if name else "" for j in range(min(array.shape))]
-    return [Column(n, partial(_column, whole, j, across), unit) for j, n in enumerate(named)]
-
-
-def _field(whole: Callable[[], npt.NDArray[Any]], field: str) -> npt.NDArray[Any]:
-    return whole()[field]
-
-
-def _column(
-    whole: Callable[[], npt.NDArray[Any]],
-    j: int,
-    across: bool,
-) -> npt.NDArray[Any]:
-    values = whole()
-    return values[j] if across else values[:, j]
+    axis = 0 if array.shape[0] < array.shape[1] else 1
+    return [
+        Column(
+            f"{name}(:,{j + 1})" if name else "",
+            partial(lambda j: np.take(whole(), j, axis), j),
+            unit,
+        )
+        for j in range(min(array.shape))
+    ]

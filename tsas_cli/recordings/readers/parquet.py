@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
+from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading, unit_of
 from tsas_cli.recordings.readers.feather import to_numpy
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
@@ -30,11 +30,7 @@ def batches(path: Path, _: ReadOptions, wanted: Sequence[ColumnSource]) -> Itera
         schema = file.schema_arrow
         at = resolve(wanted, schema.names, path)
         fields = {source: schema.field(i) for source, i in at.items()}
-        units = {
-            s: f.metadata[b"unit"].decode(errors="replace")
-            for s, f in fields.items()
-            if b"unit" in (f.metadata or {})
-        }
+        units = {s: unit for s, f in fields.items() if (unit := unit_of(f))}
         names = [field.name for field in fields.values()]
         check_size(file, path, names, whole=False)
         # A duplicate name is read twice: `order` is the number among columns of that name.

@@ -129,7 +129,9 @@ def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> 
             f"column {source} holds {values.dtype}", where=path, expected="real numbers"
         )
     try:
-        numbers = None if _has_text(values) else np.asarray(values, dtype=np.float64)
+        of_numbers = isinstance(values, np.ndarray) and values.dtype.kind in "fiub"
+        has_text = not of_numbers and any(isinstance(value, str | bytes) for value in values)
+        numbers = None if has_text else np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         numbers = None
     if numbers is None:
@@ -146,12 +148,6 @@ def not_a_number(found: object, source: ColumnSource, path: Path, row: int) -> I
         where=f"{path}, row {row}",
         expected="a number, or an empty cell for a gap",
     )
-
-
-def _has_text(values: Any) -> bool:
-    if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
-        return False
-    return any(isinstance(value, str | bytes) for value in values)
 
 
 def _number(value: Any, source: ColumnSource, path: Path, row: int) -> float:
