@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import UTC
 from glob import escape
 from pathlib import Path
 from typing import NamedTuple
@@ -125,9 +125,12 @@ def _manifest(connection: DuckDBPyConnection, folder: Path) -> Entry:
 def _run(
     folder: Path, run: Run, durations: Mapping[Path, float | None], problems: list[str]
 ) -> Entry:
+    started = run.started  # in UTC, without a zone, if it has one
+    if started is not None and started.tzinfo is not None:
+        started = started.astimezone(UTC).replace(tzinfo=None)
     entry: Entry = {
         "run": run.id,
-        "started": None if run.started is None else _utc(run.started),
+        "started": started,
         "load": run.load,
         "total_bend_rad": run.total_bend_rad,
         "sheath_length_mm": run.sheath_length_mm,
@@ -209,11 +212,6 @@ _KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
     MANIFEST: _manifest,
     DIAGNOSIS: _diagnosis,
 }
-
-
-def _utc(at: datetime) -> datetime:
-    """Return a time without zone: converted to UTC if it has one, else unchanged."""
-    return at if at.tzinfo is None else at.astimezone(UTC).replace(tzinfo=None)
 
 
 def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]:

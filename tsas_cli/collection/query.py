@@ -16,7 +16,7 @@ from tsas_cli.collection.index import Index
 from tsas_cli.support.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:
-    from duckdb import DuckDBPyConnection, DuckDBPyRelation
+    from duckdb import DuckDBPyConnection
 
 
 # Strings, quoted names and comments are not translated.
@@ -152,9 +152,14 @@ def run_query(
     problems = _opened(connection, index)
     runs = connection.table("runs")
     chosen = tuple(_known(name, runs.columns) for name in columns) or tuple(runs.columns)
-    order = ", ".join(_ordered(name, runs.columns) for name in (*sort, "folder", "run"))
+    order = ", ".join(
+        f'"{_known(key.removeprefix("-"), runs.columns)}" '
+        f"{'DESC' if key.startswith('-') else 'ASC'} NULLS LAST"
+        for key in (*sort, "folder", "run")
+    )
     picked = ", ".join(f'"{name}"' for name in (*chosen, "folder"))
-    translated = to_sql(query, lambda: _channels(runs))
+    names = runs.project("unnest(channels) AS name").distinct().order("name")
+    translated = to_sql(query, lambda: [str(name) for (name,) in names.fetchall()])
     try:
         fitting = runs.filter(translated.sql) if query.strip() else runs
         ordered = fitting.order(order)
@@ -194,20 +199,10 @@ def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
     return [*index.problems, *in_files]
 
 
-def _channels(runs: "DuckDBPyRelation") -> list[str]:
-    rows = runs.project("unnest(channels) AS name").distinct().order("name").fetchall()
-    return [str(name) for (name,) in rows]
-
-
 def _known(name: str, columns: Sequence[str]) -> str:
     if name not in columns:
         raise InputError(f"there is no column {name!r}", remedy=nearest(name, columns))
     return name
-
-
-def _ordered(name: str, columns: Sequence[str]) -> str:
-    down = name.startswith("-")
-    return f'"{_known(name[down:], columns)}" {"DESC" if down else "ASC"} NULLS LAST'
 
 
 def _query_error(

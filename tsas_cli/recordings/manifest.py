@@ -225,7 +225,12 @@ def parse(model: type[T], content: Raw, path: object) -> T:
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:
-        found = [e for e in error.errors(include_url=False) if not _follows(e)]
+        # A list is also reported as too short only because its items are invalid.
+        found = [
+            e
+            for e in error.errors(include_url=False)
+            if not (e["type"] == "too_short" and any(e["input"]))
+        ]
         listed = [_sentence(e, model) for e in found[:_MOST_ERRORS]]
         more = [f"and {len(found) - _MOST_ERRORS} more"] if len(found) > _MOST_ERRORS else []
         raise InputError("; ".join(listed + more), where=path) from error
@@ -266,18 +271,10 @@ def _sentence(error: Any, model: type[BaseModel]) -> str:
         return f"{place} is missing"
     message = error["msg"].removeprefix("Value error, ")
     message = message[0].lower() + message[1:]
-    got = "" if isinstance(error["input"], dict | list) else f", got {_shown(error['input'])}"
+    shown = repr(error["input"])
+    shown = shown if len(shown) <= _VALUE_LENGTH else f"{shown[:_VALUE_LENGTH]}…"
+    got = "" if isinstance(error["input"], dict | list) else f", got {shown}"
     return f"{place}: {message}{got}" if place else message
-
-
-def _follows(error: Any) -> bool:
-    """Return whether a list is reported as too short only because its items are invalid."""
-    return error["type"] == "too_short" and any(error["input"])
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= _VALUE_LENGTH else f"{text[:_VALUE_LENGTH]}…"
 
 
 def _known(model: Any, location: tuple[Any, ...]) -> list[str]:
