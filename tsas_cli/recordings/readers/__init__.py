@@ -6,6 +6,7 @@ Packed files and those of spreadsheets are first converted to a file of another 
 import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -46,10 +47,20 @@ _FORMATS = (  # suffixes, reader, and what they are if its library crashes on da
     ((".db3",), "bags", "a bag of ROS 2"),
     ((".join",), "joined", ""),
 )
+_SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
+_CONVERTED = (  # the same, of files that are converted to one of the above
+    (converted.PACKED, "converted", ""),
+    ((".jsonl", ".ndjson"), "json_table", ""),
+    ((".lvm",), "labview", ""),
+    (_SHEETS, "spreadsheet", "a spreadsheet"),
+)
 READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
+_CONVERTERS = {
+    suffix: (module, kind) for suffixes, module, kind in _CONVERTED for suffix in suffixes
+}
 _IN_PARTS = ("delimited", "parquet")  # they have `batches` and `names`, the others `offered`
-_WITH_TABLES = ("json_table", "matlab")
-SUFFIXES = (*READERS, *converted.SUFFIXES)
+_WITH_TABLES = ("json_table", "matlab", "spreadsheet")
+SUFFIXES = (*READERS, *_CONVERTERS)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -70,26 +81,23 @@ def batches(
     """
     with _checked(path, options) as (module, file):
         if module in _IN_PARTS:
-            reader = import_module(f"{__name__}.{module}")
-            yield from reader.batches(file, options, wanted)
+            yield from _call("batches", file, options, wanted)
         else:
-            yield _call(module, "read", file, options, wanted)
+            yield _call("read", file, options, wanted)
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
     """Return the names of a file's columns by number; empty text for a column without a name."""
-    with _checked(path, options) as (module, file):
-        found = tuple(_call(module, "names", file, options))
+    with _checked(path, options) as (_, file):
+        found = tuple(_call("names", file, options))
     limits.columns(found, path)
     return found
 
 
 def tables(path: Path) -> list[str]:
     """Return the valid values of `table` in a map: sheets, or tables in a JSON or MATLAB file."""
-    with _checked(path, ReadOptions(), but=converted.SHEETS) as (module, file):
-        if module == "spreadsheet":
-            return converted.tables(file)
-        return list(_call(module, "tables", file)) if module in _WITH_TABLES else []
+    with _checked(path, ReadOptions(), but=_SHEETS) as (module, file):
+        return list(_call("tables", file)) if module in _WITH_TABLES else []
 
 
 def text_of(path: Path, options: ReadOptions) -> Path | None:
@@ -113,10 +121,11 @@ def _suffix(path: Path) -> str:
     return path.suffix.lower()
 
 
-def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
+def _call(function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    name, kind = f"{__name__}.{module}", READERS[_suffix(path)][1]
-    if module not in _IN_PARTS and function != "tables":
+    module, kind = (READERS | _CONVERTERS)[_suffix(path)]
+    name = f"{__name__}.{module}"
+    if module not in _IN_PARTS and function in ("names", "read"):
         name, rest = offered.__name__, (name, kind or "a table", *rest)
     if kind:
         return in_another_process(name, function, path, *rest, kind=kind)
@@ -138,9 +147,9 @@ def _checked(
             if not is_known(file) and _suffix(file) != ".zip":
                 raise _unknown(file)
             _check(file)
-            file = converted.converted(file, options)
+            file = converted.converted(file, options, partial(_call, "convert"))
         _check(file)
-        yield READERS.get(_suffix(file), ("spreadsheet",))[0], file
+        yield (READERS | _CONVERTERS)[_suffix(file)][0], file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))

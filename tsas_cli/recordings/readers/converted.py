@@ -7,48 +7,33 @@ import lzma
 import shlex
 import zipfile
 import zlib
+from collections.abc import Callable
 from functools import cache
-from importlib import import_module
 from pathlib import Path, PurePosixPath
 from shutil import rmtree
 from tempfile import mkdtemp
 from typing import IO, Any
 
 from tsas_cli.recordings import readers
-from tsas_cli.recordings.guards import Expanded, damaged, in_another_process
+from tsas_cli.recordings.guards import Expanded, damaged
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import state_of
 from tsas_cli.support.limits import out_of_memory
 
-SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _OPEN: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
-_PACKED = (*_OPEN, ".zip")
-_CONVERTERS = dict.fromkeys(_PACKED, "converted") | {
-    ".jsonl": "json_table",
-    ".ndjson": "json_table",
-    ".lvm": "labview",
-    **dict.fromkeys(SHEETS, "spreadsheet"),
-}
-_ISOLATED = {"spreadsheet": "a spreadsheet"}
-SUFFIXES = tuple(_CONVERTERS)
+PACKED = (*_OPEN, ".zip")
 _KEPT = 3  # a file is asked for names and tables first, and may be converted twice
 _made: dict[Any, Path] = {}
 
 
-def tables(path: Path) -> list[str]:
-    """Return the sheets of numbers in a spreadsheet, the longest first."""
-    name = f"{__package__}.spreadsheet"
-    return list(in_another_process(name, "tables", path, kind=_ISOLATED["spreadsheet"]))
-
-
 def is_packed(path: Path) -> bool:
     """Return whether the name of a file says that it is packed."""
-    return path.suffix.lower() in _PACKED
+    return path.suffix.lower() in PACKED
 
 
-def converted(path: Path, options: ReadOptions) -> Path:
-    """Return the temporary file of a known format that `path` is converted to.
+def converted(path: Path, options: ReadOptions, convert: Callable[..., Path]) -> Path:
+    """Return the temporary file of a known format that `convert` makes of `path`.
 
     InputError: it is damaged, or holds no such file.
     OSError: a file cannot be read or written.
@@ -59,21 +44,11 @@ def converted(path: Path, options: ReadOptions) -> Path:
             rmtree(_made.pop(next(iter(_made))).parent, ignore_errors=True)
         folder = Path(mkdtemp(dir=_root()))
         try:
-            _made[key] = _convert(path, folder, options)
+            _made[key] = convert(path, folder, options)
         except BaseException:
             rmtree(folder, ignore_errors=True)
             raise
     return _made[key]
-
-
-def _convert(path: Path, folder: Path, options: ReadOptions) -> Path:
-    module = _CONVERTERS[path.suffix.lower()]
-    name = f"{__package__}.{module}"
-    if module in _ISOLATED:
-        made = in_another_process(name, "convert", path, folder, options, kind=_ISOLATED[module])
-    else:
-        made = import_module(name).convert(path, folder, options)
-    return Path(made)
 
 
 @cache
