@@ -116,11 +116,10 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
         if other in found and len(candidates) == 1:
             continue
         shown = ", ".join(c.shown for c in candidates)
-        questions = {"source": f"which column is this, if any: {shown}?"}
+        question = f"which column is this, if any: {shown}?"
         if len(candidates) == 1:
-            questions = {"source": f"is {shown} this? If it is at the load, rename the table."}
-        why = (ends.reason, *_orders(candidates, ends))
-        found[name] = _open(name, candidates, why, questions)
+            question = f"is {shown} this? If it is at the load, rename the table."
+        found[name] = _open(name, (ends.reason, *_orders(candidates, ends)), question, candidates)
     return found
 
 
@@ -147,9 +146,15 @@ def _missing(
             candidates = [c for c in candidates if c.quantity or c.end]
         if name == "x_in_mm":
             candidates += [c for c in motor if c.kind != "label"]
-        if candidates:
-            asked[name] = candidates
-    return {name: _asked(name, candidates, ends) for name, candidates in asked.items()}
+        if not candidates:
+            continue
+        orders = _orders(candidates, assign((), candidates) if len(candidates) > 1 else ends)
+        why = ("neither names nor units say which column this is", *orders)
+        question = f"which column is this, if any: {', '.join(c.shown for c in candidates)}?"
+        if name == "x_in_mm" and any(c.end == "motor" for c in candidates):
+            question += " An angle needs pulley_radius_mm beside it."
+        asked[name] = _open(name, why, question, candidates)
+    return asked
 
 
 def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
@@ -161,29 +166,15 @@ def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
         "delete this table."
     )
     why = ("no column is left that it could be",)
-    return {
-        name: Proposed(name, {"source": QUESTION}, "open", why, {"source": question})
-        for name in wanted
-        if found and name not in found
-    }
-
-
-def _asked(name: str, columns: Sequence[FileColumn], ends: Assignment) -> Proposed:
-    shown = ", ".join(c.shown for c in columns)
-    free = assign((), columns) if len(columns) > 1 else ends
-    why = ("neither names nor units say which column this is", *_orders(columns, free))
-    questions = {"source": f"which column is this, if any: {shown}?"}
-    if name == "x_in_mm" and any(c.end == "motor" for c in columns):
-        questions["source"] += " An angle needs pulley_radius_mm beside it."
-    return _open(name, columns, why, questions)
+    return {name: _open(name, why, question) for name in wanted if found and name not in found}
 
 
 def _open(
-    name: str, columns: Sequence[FileColumn], why: tuple[str, ...], questions: dict[str, str]
+    name: str, why: tuple[str, ...], question: str, columns: Sequence[FileColumn] = ()
 ) -> Proposed:
     alternatives = tuple(": ".join(filter(None, (c.shown, "; ".join(c.reasons)))) for c in columns)
-    sources = tuple(c.source for c in columns)
-    return Proposed(name, {"source": QUESTION}, "open", why, questions, alternatives, sources)
+    asked, sources = {"source": question}, tuple(c.source for c in columns)
+    return Proposed(name, {"source": QUESTION}, "open", why, asked, alternatives, sources)
 
 
 def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:

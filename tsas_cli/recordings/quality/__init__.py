@@ -37,8 +37,8 @@ from tsas_cli.recordings.quality.finding import (
     QualityCheck,
     Remark,
 )
-from tsas_cli.recordings.quality.samples import span_of, step_of
-from tsas_cli.recordings.quality.trial import RunSignals, Size
+from tsas_cli.recordings.quality.samples import Size, span_of, step_of
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import RunColumns, read_recording
 from tsas_cli.support.arrays import Floats

@@ -8,11 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.manifest import RigSheet
-from tsas_cli.recordings.quality.samples import alternates, outlying, span_of, step_of
+from tsas_cli.recordings.quality.samples import Size, alternates, outlying, size_of
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
@@ -65,26 +64,6 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class Size:
-    """Noise (standard deviation), quantisation step, span and ends of one channel, in its unit.
-
-    The step is 0 without quantisation; the span leaves out the outermost thousandth at either end.
-    """
-
-    noise: float
-    step: float
-    span: float
-    lowest: float
-    highest: float
-
-
-def size_of(values: Floats) -> Size:
-    """Return the size of a channel, shape (n,)."""
-    ends = float(np.nanmin(values)), float(np.nanmax(values))
-    return Size(noise_sd(values), step_of(values), span_of(values), *ends)
-
-
-@dataclass(frozen=True)
 class RunSignals:
     """A recording, and the data sheet of the rig.
 
@@ -124,14 +103,7 @@ class RunSignals:
         """Which samples of each channel are outliers (`outlying`), shape (n,) each."""
         sizes = self.overall or {name: size_of(values) for name, values in self._recorded.items()}
         return {
-            name: outlying(
-                self.time_s,
-                values,
-                most=largest(name),
-                noise=sizes[name].noise,
-                step=sizes[name].step,
-                span=sizes[name].span,
-            )
+            name: outlying(self.time_s, values, sizes[name], most=largest(name))
             for name, values in self._recorded.items()
         }
 
