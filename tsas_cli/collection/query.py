@@ -42,10 +42,7 @@ class SqlQuery:
 def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     """Return a query as SQL, with `2026-01` as a time and `f_out in channels` with the full name.
 
-    Raises
-    ------
-    InputError
-        No run has such a channel.
+    InputError: no run has such a channel.
 
     >>> to_sql("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
     "started >= TIMESTAMP '2026-01-01' and 'f_out_N' in channels"

@@ -1,9 +1,9 @@
 """A file opened without a map: its numeric columns, and the options required to read it."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tsas_cli.recordings.guards import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables, text_of
@@ -11,6 +11,7 @@ from tsas_cli.recordings.readers.layout import DoubtfulMarkError
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
+T = TypeVar("T")
 _PREAMBLE = 60  # lines above a table that are tried
 
 
@@ -105,8 +106,9 @@ def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
 
 def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
     """Return the lines to skip above a text table, if columns are without names with them."""
-    best, skipped = _named(path, required), 0
-    if best > 0.5 or (best == 0.0 and _reads(path, _options(required))):
+    best, skipped, options = _named(path, required), 0, _options(required)
+    numbers = list(range(1, len(names(path, options)) + 1)) if best == 0.0 else []
+    if best > 0.5 or (numbers and _tried(read, path, options, numbers) is not None):
         return {}  # a table without names is one, too
     for skip in range(1, _PREAMBLE):
         found = _named(path, required | {"skip_lines": (skip, "")})
@@ -121,23 +123,18 @@ def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
 
     A title with delimiters behind it, "Bench 42;;;", names few columns.
     """
-    try:
-        found = names(path, _options(required))
-    except DoubtfulMarkError:
-        raise
-    except InputError:
-        return -1.0
+    found = _tried(names, path, _options(required)) or ()
     return sum(map(bool, found)) / len(found) if len(found) > 1 else -1.0
 
 
-def _reads(path: Path, options: ReadOptions) -> bool:
+def _tried(reader: Callable[..., T], *arguments: Any) -> T | None:
+    """Return the result of a reader; None if it refuses the file, unless for a doubtful mark."""
     try:
-        read(path, options, list(range(1, len(names(path, options)) + 1)))
+        return reader(*arguments)
     except DoubtfulMarkError:
         raise
     except InputError:
-        return False
-    return True
+        return None
 
 
 def _all_or_each(
@@ -147,30 +144,28 @@ def _all_or_each(
 
     None if every column is readable by itself but not all of them together.
     """
+    if (every := _tried(read, path, options, sources)) is not None:
+        return every, {}
+    readable: set[ColumnSource] = set()
+    left_out: dict[str, str] = {}
+    for source in sources:
+        try:
+            read(path, options, [source])
+            readable.add(source)
+        except DoubtfulMarkError:
+            raise
+        except EncryptedError as error:
+            raise InputError(
+                f"column {source} is encrypted",
+                where=path,
+                expected="columns that can be read",
+                remedy="decrypt it, or write a map by hand without it (docs/ingest.md)",
+            ) from error
+        except InputError as error:
+            if source != "time":
+                left_out[str(source)] = error.what
     try:
-        return read(path, options, sources), {}
-    except DoubtfulMarkError:
-        raise
-    except InputError:
-        tables: dict[ColumnSource, ColumnTable] = {}
-        left_out: dict[str, str] = {}
-        for source in sources:
-            try:
-                tables[source] = read(path, options, [source])
-            except DoubtfulMarkError:
-                raise
-            except EncryptedError as error:
-                raise InputError(
-                    f"column {source} is encrypted",
-                    where=path,
-                    expected="columns that can be read",
-                    remedy="decrypt it, or write a map by hand without it (docs/ingest.md)",
-                ) from error
-            except InputError as error:
-                if source != "time":
-                    left_out[str(source)] = error.what
-    try:
-        together = [s for s in sources if s in tables or (s == "time" and tables)]
+        together = [s for s in sources if s in readable or (s == "time" and readable)]
         return read(path, options, together), left_out
     except InputError:
         if each:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -34,12 +34,6 @@ _DOWN_3 = {b"HD": (0,), b"DG": (0, 1), b"CG": (0, 1), b"CN": (0,)}
 _MOST_LINKS = 1 << 16
 _KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master's `cn_sync_type`
 _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
-
-
-class _Block(NamedTuple):
-    kind: bytes
-    down: tuple[int, ...]
-    unpacked: int
 
 
 @contextmanager
@@ -135,14 +129,15 @@ def check_blocks(path: Path) -> None:
                     remedy="it may be damaged: export it again",
                 )
             seen.add(at)
-            block = read(stream, at)
-            expanded.add(block.unpacked, what="unpacked")
-            ahead += block.down
+            stream.seek(at)
+            down, unpacked = read(stream)
+            expanded.add(unpacked, what="unpacked")
+            ahead += down
     expanded.fits()
 
 
-def _block_4(stream: BinaryIO, at: int) -> _Block:
-    stream.seek(at)
+def _block_4(stream: BinaryIO) -> tuple[list[int], int]:
+    """Return the places that a block leads down to, and its unpacked size [bytes]."""
     head = stream.read(24).ljust(24, b"\0")
     kind, _, count = struct.unpack("<4s4xQQ", head)
     wanted = range(min(count, _MOST_LINKS)) if kind in _LISTS else _DOWN_4.get(kind, ())
@@ -150,17 +145,15 @@ def _block_4(stream: BinaryIO, at: int) -> _Block:
     unpacked = 0
     if kind == b"##DZ":
         unpacked = struct.unpack("<8xQ8x", stream.read(24).ljust(24, b"\0"))[0]
-    return _Block(kind, tuple(links[i] for i in wanted if i < len(links) and links[i]), unpacked)
+    return [links[i] for i in wanted if i < len(links) and links[i]], unpacked
 
 
-def _block_3(stream: BinaryIO, at: int) -> _Block:
-    stream.seek(at)
+def _block_3(stream: BinaryIO) -> tuple[list[int], int]:
     kind = stream.read(4)[:2]
     links = _links(stream.read(8), "I")
-    return _Block(kind, tuple(links[i] for i in _DOWN_3.get(kind, ()) if links[i : i + 1] > [0]), 0)
+    return [links[i] for i in _DOWN_3.get(kind, ()) if links[i : i + 1] > [0]], 0
 
 
 def _links(content: bytes, one: str) -> list[int]:
-    size = struct.calcsize(one)
-    whole = len(content) // size
-    return list(struct.unpack(f"<{whole}{one}", content[: whole * size]))
+    whole = len(content) - len(content) % struct.calcsize(one)
+    return [link for (link,) in struct.iter_unpack(f"<{one}", content[:whole])]
