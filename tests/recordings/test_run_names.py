@@ -1,6 +1,6 @@
 import pytest
 
-from tsas_cli.recordings.run_names import check_run_name, colliding_names
+from tsas_cli.recordings.manifest import check_run_name, colliding_names
 
 
 @pytest.mark.parametrize(

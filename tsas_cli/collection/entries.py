@@ -1,8 +1,9 @@
 """The entry of one manifest or one diagnosis in the index."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from datetime import UTC, datetime
+import stat
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC
 from glob import escape
 from pathlib import Path
 from typing import NamedTuple
@@ -13,6 +14,7 @@ import pyarrow.parquet as pq
 from duckdb import DuckDBPyConnection
 
 from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import RigSheet, Run, parse, read_manifest
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.support import limits
@@ -125,13 +127,13 @@ def _manifest(connection: DuckDBPyConnection, folder: Path) -> Entry:
 def _run(
     folder: Path, run: Run, durations: Mapping[Path, float | None], problems: list[str]
 ) -> Entry:
+    started = run.started
+    if started is not None and started.tzinfo is not None:
+        started = started.astimezone(UTC).replace(tzinfo=None)
     entry: Entry = {
+        **run.model_dump(include={"load", *CONDITIONS}),
         "run": run.id,
-        "started": None if run.started is None else _utc(run.started),
-        "load": run.load,
-        "total_bend_rad": run.total_bend_rad,
-        "sheath_length_mm": run.sheath_length_mm,
-        "preload_N": run.preload_N,
+        "started": started,  # in UTC, without a zone, if it has one
         "tags": {key: str(value) for key, value in (run.model_extra or {}).items()},
     }
     try:
@@ -211,11 +213,6 @@ _KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
 }
 
 
-def _utc(at: datetime) -> datetime:
-    """Return a time without zone: converted to UTC if it has one, else unchanged."""
-    return at if at.tzinfo is None else at.astimezone(UTC).replace(tzinfo=None)
-
-
 def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]:
     """Return the manifests and diagnoses below folders, and the folders that cannot be read.
 
@@ -223,38 +220,33 @@ def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]
     """
     found: dict[FileKey, Stamp] = {}
     problems: list[str] = []
+
+    def unreadable(error: OSError) -> None:
+        problems.append(f"{error.filename}: cannot be read ({error.strerror})")
+
     for number, root in enumerate(roots):
         if not is_text(root):
             problems.append(f"{root}: its name is not UTF-8; rename it")
             continue
-        pending = [""]
-        while pending:
-            folder = pending.pop()
-            try:
-                pending += _scanned(root, number, folder, found, problems)
-            except OSError as error:
-                problems.append(f"{root / folder}: cannot be read ({error.strerror})")
-    return found, problems
-
-
-def _scanned(
-    root: Path, number: int, folder: str, found: dict[FileKey, Stamp], problems: list[str]
-) -> Iterator[str]:
-    """Add the files of one folder to `found`; return its subfolders."""
-    here = f"{folder}/" if folder else ""
-    inner = []
-    with os.scandir(f"{root}/{folder}") as entries:
-        for entry in entries:
-            name = entry.name
-            if name in (MANIFEST, DIAGNOSIS):
-                if entry.is_file():
-                    state = entry.stat()
+        for place, folders, files in os.walk(root, onerror=unreadable):
+            folder = place[len(str(root)) :].replace(os.sep, "/").strip("/")
+            for name in {MANIFEST, DIAGNOSIS}.intersection(files):
+                try:
+                    state = os.stat(f"{place}/{name}")  # noqa: PTH116 - Path is slower
+                except FileNotFoundError:  # a link to nothing
+                    continue
+                except OSError as error:
+                    unreadable(error)
+                    continue
+                if stat.S_ISREG(state.st_mode):
                     changed_ns = max(-_MOST, min(state.st_mtime_ns, _MOST))
                     found[FileKey(number, folder, name)] = Stamp(changed_ns, state.st_size)
-            elif not name.startswith(".") and entry.is_dir(follow_symlinks=False):
-                if name.isprintable():
-                    inner.append(name)
-                else:
-                    problems.append(f"{root / folder / name}: a name with control characters")
-    dataset = FileKey(number, folder, MANIFEST) in found
-    return (f"{here}{name}" for name in inner if not (dataset and name == "runs"))
+            shown = [name for name in folders if not name.startswith(".")]
+            problems += [
+                f"{place}/{name}: a name with control characters"
+                for name in shown
+                if not name.isprintable()
+            ]
+            skipped = "runs" if FileKey(number, folder, MANIFEST) in found else ""
+            folders[:] = [name for name in shown if name.isprintable() and name != skipped]
+    return found, problems

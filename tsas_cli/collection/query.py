@@ -16,7 +16,7 @@ from tsas_cli.collection.index import Index
 from tsas_cli.support.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:
-    from duckdb import DuckDBPyConnection, DuckDBPyRelation
+    from duckdb import DuckDBPyConnection
 
 
 # Strings, quoted names and comments are not translated.
@@ -42,10 +42,7 @@ class SqlQuery:
 def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     """Return a query as SQL, with `2026-01` as a time and `f_out in channels` with the full name.
 
-    Raises
-    ------
-    InputError
-        No run has such a channel.
+    InputError: no run has such a channel.
 
     >>> to_sql("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
     "started >= TIMESTAMP '2026-01-01' and 'f_out_N' in channels"
@@ -152,9 +149,14 @@ def run_query(
     problems = _opened(connection, index)
     runs = connection.table("runs")
     chosen = tuple(_known(name, runs.columns) for name in columns) or tuple(runs.columns)
-    order = ", ".join(_ordered(name, runs.columns) for name in (*sort, "folder", "run"))
+    order = ", ".join(
+        f'"{_known(key.removeprefix("-"), runs.columns)}" '
+        f"{'DESC' if key.startswith('-') else 'ASC'} NULLS LAST"
+        for key in (*sort, "folder", "run")
+    )
     picked = ", ".join(f'"{name}"' for name in (*chosen, "folder"))
-    translated = to_sql(query, lambda: _channels(runs))
+    names = runs.project("unnest(channels) AS name").distinct().order("name")
+    translated = to_sql(query, lambda: [str(name) for (name,) in names.fetchall()])
     try:
         fitting = runs.filter(translated.sql) if query.strip() else runs
         ordered = fitting.order(order)
@@ -194,20 +196,10 @@ def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
     return [*index.problems, *in_files]
 
 
-def _channels(runs: "DuckDBPyRelation") -> list[str]:
-    rows = runs.project("unnest(channels) AS name").distinct().order("name").fetchall()
-    return [str(name) for (name,) in rows]
-
-
 def _known(name: str, columns: Sequence[str]) -> str:
     if name not in columns:
         raise InputError(f"there is no column {name!r}", remedy=nearest(name, columns))
     return name
-
-
-def _ordered(name: str, columns: Sequence[str]) -> str:
-    down = name.startswith("-")
-    return f'"{_known(name[down:], columns)}" {"DESC" if down else "ASC"} NULLS LAST'
 
 
 def _query_error(

@@ -58,7 +58,7 @@ def core_packages() -> Iterator[Package]:
     fits = asked.contains(python, prereleases=True)
     yield Package("Python", str(asked), python, "" if fits else "wrong version")
     for requirement in _requirements():
-        if _always(requirement):
+        if _holds(requirement):
             package = _package(requirement)
             yield package if package.problem else _imported(package)
 
@@ -67,7 +67,7 @@ def extras() -> list[Extra]:
     """Return the extras; their packages are looked up, not imported."""
     found = []
     for name in metadata(PROJECT).get_all("Provides-Extra") or []:
-        only = [r for r in _requirements() if not _always(r) and _holds(r, name)]
+        only = [r for r in _requirements() if not _holds(r) and _holds(r, name)]
         own = tuple(_package(requirement) for requirement in only)
         found.append(Extra(name, PURPOSES.get(name, ""), own))
     return found
@@ -77,11 +77,7 @@ def _requirements() -> list[Requirement]:
     return [Requirement(text) for text in metadata(PROJECT).get_all("Requires-Dist") or []]
 
 
-def _always(requirement: Requirement) -> bool:
-    return _holds(requirement, "")
-
-
-def _holds(requirement: Requirement, extra: str) -> bool:
+def _holds(requirement: Requirement, extra: str = "") -> bool:
     return requirement.marker is None or requirement.marker.evaluate({"extra": extra})
 
 

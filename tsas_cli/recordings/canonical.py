@@ -87,7 +87,12 @@ def _converted(
     name: str, column: ColumnMap, table: ColumnTable, rows: int, where: str, *, first: int
 ) -> Floats:
     """Return a column in its canonical unit; `first` is the number of its first row, from 0."""
-    values, unit = _raw(column, table, rows, first)
+    values: Floats
+    if column.rate_Hz is not None:
+        values, unit = np.arange(first, first + rows) / column.rate_Hz, "s"
+    else:
+        values = table.columns[column.source]
+        unit = column.unit or table.units.get(column.source, "")
     if not unit:
         raise InputError(
             f"the file states no unit for {column.source}",
@@ -109,13 +114,6 @@ def _converted(
         where=where,
     )
     return values * (column.sign * slope) + column.sign * intercept
-
-
-def _raw(column: ColumnMap, table: ColumnTable, rows: int, first: int) -> tuple[Floats, str | None]:
-    """Return the values in the unit of the file, and that unit."""
-    if column.rate_Hz is not None:
-        return np.arange(first, first + rows) / column.rate_Hz, "s"
-    return table.columns[column.source], column.unit or table.units.get(column.source)
 
 
 def _differs_from_row_before(columns: Mapping[str, Floats], last: Mapping[str, float]) -> Mask:

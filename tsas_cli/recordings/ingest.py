@@ -84,8 +84,11 @@ def ingest_files(
     ingested: dict[str, Ingested] = {}
     step.ahead(2 * len(files))
     states = {path: state_of(path) for path in files}
+    time = mapping.columns[TIME]
     for path in files:
-        parts = _parts(path, mapping)
+        parts = batches(path, mapping.read, mapping.sources())
+        if (how := mapping.read.repeated_times) and time.rate_Hz is None:
+            parts = merged(parts, time.source, how)
         first = next(parts)
         step()
         run = _run(path, first, mapping)
@@ -106,7 +109,11 @@ def ingest_files(
         **mapping.dataset.model_dump(exclude_none=True),
         "rig": mapping.rig,
         "run": runs,
-        "ingest": _origin(list(ingested.values()), map_path, folder),
+        "ingest": {
+            "version": __version__,
+            "map": read_from(map_path, folder),
+            "sources": {one.run: read_from(one.source, folder) for one in ingested.values()},
+        },
     }
     for path, state in states.items():
         check_unchanged(path, state)
@@ -128,13 +135,6 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     return [path for path in files if path not in joined]
 
 
-def _parts(path: Path, mapping: IngestMap) -> Iterator[ColumnTable]:
-    """Return the columns of a file in parts, with rows of one time merged if the map says so."""
-    parts = batches(path, mapping.read, mapping.sources())
-    how, time = mapping.read.repeated_times, mapping.columns[TIME]
-    return merged(parts, time.source, how) if how and time.rate_Hz is None else parts
-
-
 def _run(path: Path, table: ColumnTable, mapping: IngestMap) -> Run:
     conditions = run_conditions(path, table.header, mapping.run, mapping.read.decimal)
     written = {
@@ -142,15 +142,6 @@ def _run(path: Path, table: ColumnTable, mapping: IngestMap) -> Run:
         "sha256": "0" * 64,  # known once the file is written
     }
     return parse(Run, conditions | written, path)
-
-
-def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[str, object]:
-    """Return the record of the input files, with checksums."""
-    return {
-        "version": __version__,
-        "map": read_from(map_path, folder),
-        "sources": {one.run: read_from(one.source, folder) for one in ingested},
-    }
 
 
 def _ingest(
@@ -189,19 +180,18 @@ def merged(parts: Iterable[ColumnTable], time: ColumnSource, how: How) -> Iterat
     """
     held: ColumnTable | None = None  # the rows of the last time
     for part in parts:
-        whole = part if held is None else _joined(held, part)
+        if held is None:
+            whole = part
+        else:
+            columns = {s: np.concatenate([held.columns[s], v]) for s, v in part.columns.items()}
+            numbers = np.concatenate([held.row_numbers, part.row_numbers])
+            whole = replace(part, columns=columns, numbers=numbers)
         begins = np.flatnonzero(np.diff(whole.columns[time], prepend=np.nan) != 0.0)
         if begins.size > 1:
             yield _one_each(_rows(whole, slice(0, int(begins[-1]))), begins[:-1], how)
         held = _rows(whole, slice(int(begins[-1]) if begins.size else 0, None))
     if held is not None:
         yield _one_each(held, np.zeros(1, dtype=np.intp), how)
-
-
-def _joined(one: ColumnTable, other: ColumnTable) -> ColumnTable:
-    columns = {s: np.concatenate([one.columns[s], v]) for s, v in other.columns.items()}
-    numbers = np.concatenate([one.row_numbers, other.row_numbers])
-    return replace(other, columns=columns, numbers=numbers)
 
 
 def _rows(table: ColumnTable, rows: slice) -> ColumnTable:

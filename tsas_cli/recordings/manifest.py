@@ -1,9 +1,11 @@
 """The manifest `dataset.toml` of a dataset, format 1: its content and validation."""
 
+import os
 import re
 import tomllib
+import unicodedata
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import date, datetime
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal, Self, TypeVar
@@ -20,26 +22,10 @@ from pydantic import (
     model_validator,
 )
 
-from tsas_cli.recordings.run_names import check_run_name, colliding_names
 from tsas_cli.recordings.storage import Address, Location, check_inside
-from tsas_cli.support import limits
+from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
-from tsas_cli.support.plausible import (
-    Bend,
-    Diameter,
-    FreeLength,
-    Friction,
-    FrictionRatio,
-    GearRatio,
-    Inertia,
-    Length,
-    Modulus,
-    Preload,
-    Radius,
-    Share,
-    Stiffness,
-)
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -47,6 +33,9 @@ T = TypeVar("T", bound=BaseModel)
 _MOST_ERRORS = 5  # listed of one file; further ones are counted
 _VALUE_LENGTH = 80  # characters of an invalid value in a message
 _PATH_LENGTH = 1000  # characters of a path in the dataset
+_SLASHES = "/\\"
+_ON_WINDOWS = '<>:"|?*'  # where a colon opens another stream of the same file
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 
 def _as_date(value: object) -> object:
@@ -60,12 +49,35 @@ def _as_date(value: object) -> object:
     raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
 
 
-def _can_name_a_file(name: str) -> str:
-    check_run_name(name)
+def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> str:
+    """Return an id; refuse one that is no valid file name.
+
+    ValueError: it is empty, not printable, too long, or a Windows device; it has a slash, or a
+    blank at either end.
+    """
+    bad = _SLASHES + (_ON_WINDOWS if on_windows else "")
+    unusable = name in {"", ".", ".."} or any(c in name for c in bad) or not name.isprintable()
+    if unusable or len(f"{name}.parquet".encode()) > 255 or name != name.strip():
+        raise ValueError(
+            "must be usable as a file name (no slash, no control character, no blank at its ends, "
+            "not too long)"
+        )
+    if name.partition(".")[0].lower() in _DEVICES:
+        raise ValueError("is a device on Windows, not a file name")
     return name
 
 
-RunId = Annotated[str, AfterValidator(_can_name_a_file)]
+def colliding_names(names: Iterable[str]) -> tuple[str, str] | None:
+    """Return two ids that name one file since only case or Unicode form differs; or None."""
+    known: dict[str, str] = {}
+    for name in names:
+        other = known.setdefault(unicodedata.normalize("NFC", name).casefold(), name)
+        if other != name:
+            return other, name
+    return None
+
+
+RunId = Annotated[str, AfterValidator(check_run_name)]
 
 
 class _ManifestTable(BaseModel):
@@ -89,18 +101,18 @@ class _ManifestTable(BaseModel):
 class RigSheet(_ManifestTable):
     """Data sheet of the rig; every key is optional and carries its unit."""
 
-    tendon_diameter_mm: Diameter | None = None
-    tendon_modulus_GPa: Modulus | None = None
-    friction_coefficient: Friction | None = None
-    load_stiffness_N_per_mm: Stiffness | None = None
-    turntable_radius_mm: Radius | None = None
-    gear_ratio: GearRatio | None = None
-    inertia_N_mm_s2: Inertia | None = None
-    proximal_length_mm: FreeLength | None = None
-    distal_length_mm: FreeLength | None = None
-    antagonist_preload_N: Preload | None = None
-    antagonist_friction_ratio: FrictionRatio | None = None
-    antagonist_f_in_share: Share | None = None
+    tendon_diameter_mm: plausible.Diameter | None = None
+    tendon_modulus_GPa: plausible.Modulus | None = None
+    friction_coefficient: plausible.Friction | None = None
+    load_stiffness_N_per_mm: plausible.Stiffness | None = None
+    turntable_radius_mm: plausible.Radius | None = None
+    gear_ratio: plausible.GearRatio | None = None
+    inertia_N_mm_s2: plausible.Inertia | None = None
+    proximal_length_mm: plausible.FreeLength | None = None
+    distal_length_mm: plausible.FreeLength | None = None
+    antagonist_preload_N: plausible.Preload | None = None
+    antagonist_friction_ratio: plausible.FrictionRatio | None = None
+    antagonist_f_in_share: plausible.Share | None = None
 
 
 class Run(_ManifestTable):
@@ -110,9 +122,9 @@ class Run(_ManifestTable):
     file: str
     sha256: str = Field(pattern=r"^[0-9a-fA-F]{64}$")
     started: Annotated[datetime, BeforeValidator(_as_date)] | None = None
-    sheath_length_mm: Length | None = None
-    total_bend_rad: Bend | None = None
-    preload_N: Preload | None = None
+    sheath_length_mm: plausible.Length | None = None
+    total_bend_rad: plausible.Bend | None = None
+    preload_N: plausible.Preload | None = None
     load: Load = "spring"
 
     @field_validator("file")
@@ -213,7 +225,12 @@ def parse(model: type[T], content: Raw, path: object) -> T:
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:
-        found = [e for e in error.errors(include_url=False) if not _follows(e)]
+        # A list is also reported as too short only because its items are invalid.
+        found = [
+            e
+            for e in error.errors(include_url=False)
+            if not (e["type"] == "too_short" and any(e["input"]))
+        ]
         listed = [_sentence(e, model) for e in found[:_MOST_ERRORS]]
         more = [f"and {len(found) - _MOST_ERRORS} more"] if len(found) > _MOST_ERRORS else []
         raise InputError("; ".join(listed + more), where=path) from error
@@ -254,18 +271,10 @@ def _sentence(error: Any, model: type[BaseModel]) -> str:
         return f"{place} is missing"
     message = error["msg"].removeprefix("Value error, ")
     message = message[0].lower() + message[1:]
-    got = "" if isinstance(error["input"], dict | list) else f", got {_shown(error['input'])}"
+    shown = repr(error["input"])
+    shown = shown if len(shown) <= _VALUE_LENGTH else f"{shown[:_VALUE_LENGTH]}…"
+    got = "" if isinstance(error["input"], dict | list) else f", got {shown}"
     return f"{place}: {message}{got}" if place else message
-
-
-def _follows(error: Any) -> bool:
-    """Return whether a list is reported as too short only because its items are invalid."""
-    return error["type"] == "too_short" and any(error["input"])
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= _VALUE_LENGTH else f"{text[:_VALUE_LENGTH]}…"
 
 
 def _known(model: Any, location: tuple[Any, ...]) -> list[str]:

@@ -16,8 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.guards.damaged import damaged
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, damaged
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Address, Location, NotThereError, check_inside
 from tsas_cli.support import limits
@@ -125,6 +124,12 @@ def check_size(
 def is_number(kind: pa.DataType) -> bool:
     """Return whether a column's type is numeric, or null throughout."""
     return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_null(kind))
+
+
+def unit_of(field: pa.Field) -> str:
+    """Return the unit in a field's metadata, or empty text."""
+    stated: bytes = (field.metadata or {}).get(b"unit", b"")
+    return stated.decode(errors="replace")
 
 
 def floats_from(column: pa.ChunkedArray) -> Floats:

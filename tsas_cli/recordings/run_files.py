@@ -25,6 +25,7 @@ from tsas_cli.recordings.parquet_files import (
     open_parquet,
     reading,
     size_of,
+    unit_of,
 )
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location
@@ -152,7 +153,7 @@ def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
             raise InputError(
                 f"column {field.name} holds {str(field.type)[:80]}", where=path, expected="float64"
             )
-        unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
+        unit = unit_of(field)
         expected = BY_NAME[field.name].unit
         if unit.strip() and not _is_same(unit, expected):
             raise InputError(

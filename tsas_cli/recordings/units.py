@@ -38,23 +38,7 @@ _SPELLINGS = {
 }
 _AS_FORCE = {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "g": "gf", "oz": "ozf", "kp": "kgf"}
 _AS_TEMPERATURE = {"C": "degC", "F": "degF"}
-_LABELS = {
-    "count",
-    "counts",
-    "cts",
-    "pulse",
-    "pulses",
-    "tick",
-    "ticks",
-    "inc",
-    "px",
-    "pixel",
-    "pixels",
-    "v",
-    "mv",
-    "volt",
-    "volts",
-}
+_LABEL = re.compile(r"counts?|cts|pulses?|ticks?|inc|px|pixels?|m?v|volts?")
 _TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
 _CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
 _UNIT_LENGTH = 100  # characters of a unit
@@ -130,7 +114,7 @@ def conversion(
 
 def is_label(unit: str) -> bool:
     """Return whether a unit is one of counts or volts, which need a factor."""
-    return unit.strip().lower() in _LABELS
+    return _LABEL.fullmatch(unit.strip().lower()) is not None
 
 
 def is_unit(text: str) -> bool:

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
+from tsas_cli.recordings.manifest import Manifest, Run, check_run_name, write_manifest
 from tsas_cli.recordings.parquet_files import (
     check_size,
     column_of,
@@ -19,7 +19,6 @@ from tsas_cli.recordings.parquet_files import (
 )
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
-from tsas_cli.recordings.run_names import check_run_name
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of

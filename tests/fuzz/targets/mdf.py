@@ -7,13 +7,13 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from asammdf import MDF, Signal
 
-from tests.fuzz.foreign import whole_file
-from tsas_cli.recordings.readers import mdf
+from tests.fuzz.foreign import Offering, whole_file
+from tsas_cli.recordings.readers import mdf as _reader  # noqa: F401 # instrumented
 
 MOST_BYTES = 6000
 SHARE = 0.1
 WORDS = (b"##DT", b"##DZ", b"##CN", b"##CG", b"##DG", b"##CC", b"##TX", b"##SD", b"##HL", b"##DL")
-one = whole_file(mdf, "a.mf4")
+one = whole_file(Offering("mdf"), "a.mf4")
 
 
 def seeds():

@@ -7,7 +7,7 @@ import lzma
 import zipfile
 
 from tests.fuzz.rules import Scratch, chosen, read_all
-from tsas_cli.recordings.readers import json_table, packed  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import converted, json_table  # noqa: F401 # instrumented
 
 SUFFIXES = (".csv.gz", ".csv.bz2", ".csv.xz", ".zip", ".jsonl")
 SHARE = 2

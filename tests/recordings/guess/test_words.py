@@ -51,11 +51,11 @@ def test_a_unit_behind_a_name_has_to_fit_it(name, stem, unit):
     ("unit", "kind"),
     [
         ("ms", "time"),
-        ("in", "length"),
+        ("in", "displacement"),
         ("kgf", "force"),
         ("Grad", "angle"),
         ("N-m", "torque"),
-        ("U/min", "rotation"),
+        ("U/min", "speed"),
         ("°C", "temperature"),
         ("counts", "label"),
         ("mm/s", "other"),

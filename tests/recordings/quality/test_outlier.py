@@ -5,8 +5,7 @@ import pytest
 
 from tests.recordings.quality.bench import Bench, columns
 from tests.recordings.quality.test_faults import GOOD, found
-from tsas_cli.numerics.noise import noise_sd
-from tsas_cli.recordings.quality.samples import outlying, span_of, step_of
+from tsas_cli.recordings.quality.samples import outlying, size_of
 
 N = GOOD["time_s"].size
 TIME = np.arange(2000) / 500.0
@@ -14,8 +13,7 @@ TIME = np.arange(2000) / 500.0
 
 def standing_out(values, time_s=TIME):
     """Return the rows that stand out of a channel."""
-    sizes = {"noise": noise_sd(values), "step": step_of(values), "span": span_of(values)}
-    return np.flatnonzero(outlying(time_s, values, most=1e6, **sizes)).tolist()
+    return np.flatnonzero(outlying(time_s, values, size_of(values), most=1e6)).tolist()
 
 
 def with_wild(name, rows, value):

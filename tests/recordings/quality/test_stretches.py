@@ -10,8 +10,7 @@ from tests.recordings.quality.bench import LOAD, Bench, columns
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
-from tsas_cli.recordings.quality import RUN_CHECKS, check_dataset
-from tsas_cli.recordings.quality.stretches import OVERLAP
+from tsas_cli.recordings.quality import OVERLAP, RUN_CHECKS, check_dataset
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
 

@@ -5,7 +5,7 @@ import pytest
 from asammdf import MDF, Signal
 
 import tsas_cli as tsas
-from tsas_cli.recordings.readers import mdf
+from tsas_cli.recordings.readers import mdf, offered
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
@@ -36,7 +36,7 @@ def save(path, *groups):
 
 
 def ask(path, *wanted, **options):
-    table = mdf.read(path, ReadOptions(**options), wanted)
+    table = offered.read(path, mdf.__name__, "MDF", ReadOptions(**options), wanted)
     return {source: values.tolist() for source, values in table.columns.items()}, table
 
 

@@ -23,7 +23,9 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     assigned = {id(c) for found in others.values() for c in found}
     free = [c for c in moving if id(c) not in assigned and not c.words.is_reference]
     displacements = [c for c in free if c.quantity in LENGTHS]
-    tensions = [c for c in free if c.quantity in FORCES and not _of_motor(c)]
+    tensions = [c for c in free if c.quantity in FORCES]
+    # A torque of the motor is before a gear of unknown friction.
+    tensions = [c for c in tensions if (c.end, c.quantity) != ("motor", "torque")]
     ends = assign(displacements, tensions)
     found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
     found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
@@ -42,7 +44,7 @@ def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
         turns = column.kind in ("angle", "label", None)
         if quantity == "temperature":
             found.setdefault("temperature_C", []).append(column)
-        elif quantity == "speed" and (motor or column.kind == "rotation"):
+        elif quantity == "speed" and (motor or column.kind == "speed"):
             found.setdefault("motor_speed_rpm", []).append(column)
         elif (
             motor
@@ -54,11 +56,6 @@ def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
         elif quantity == "force" and column.words.is_reference and column.end != "in":
             found.setdefault("f_out_ref_N", []).append(column)
     return found
-
-
-def _of_motor(column: FileColumn) -> bool:
-    """Return whether a torque is the motor's, before a gear of unknown friction."""
-    return column.end == "motor" and column.quantity == "torque"
 
 
 def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
@@ -119,11 +116,10 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
         if other in found and len(candidates) == 1:
             continue
         shown = ", ".join(c.shown for c in candidates)
-        questions = {"source": f"which column is this, if any: {shown}?"}
+        question = f"which column is this, if any: {shown}?"
         if len(candidates) == 1:
-            questions = {"source": f"is {shown} this? If it is at the load, rename the table."}
-        why = (ends.reason, *_orders(candidates, ends))
-        found[name] = _open(name, candidates, why, questions)
+            question = f"is {shown} this? If it is at the load, rename the table."
+        found[name] = _open(name, (ends.reason, *_orders(candidates, ends)), question, candidates)
     return found
 
 
@@ -150,9 +146,15 @@ def _missing(
             candidates = [c for c in candidates if c.quantity or c.end]
         if name == "x_in_mm":
             candidates += [c for c in motor if c.kind != "label"]
-        if candidates:
-            asked[name] = candidates
-    return {name: _asked(name, candidates, ends) for name, candidates in asked.items()}
+        if not candidates:
+            continue
+        orders = _orders(candidates, assign((), candidates) if len(candidates) > 1 else ends)
+        why = ("neither names nor units say which column this is", *orders)
+        question = f"which column is this, if any: {', '.join(c.shown for c in candidates)}?"
+        if name == "x_in_mm" and any(c.end == "motor" for c in candidates):
+            question += " An angle needs pulley_radius_mm beside it."
+        asked[name] = _open(name, why, question, candidates)
+    return asked
 
 
 def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
@@ -164,29 +166,15 @@ def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
         "delete this table."
     )
     why = ("no column is left that it could be",)
-    return {
-        name: Proposed(name, {"source": QUESTION}, "open", why, {"source": question})
-        for name in wanted
-        if found and name not in found
-    }
-
-
-def _asked(name: str, columns: Sequence[FileColumn], ends: Assignment) -> Proposed:
-    shown = ", ".join(c.shown for c in columns)
-    free = assign((), columns) if len(columns) > 1 else ends
-    why = ("neither names nor units say which column this is", *_orders(columns, free))
-    questions = {"source": f"which column is this, if any: {shown}?"}
-    if name == "x_in_mm" and any(c.end == "motor" for c in columns):
-        questions["source"] += " An angle needs pulley_radius_mm beside it."
-    return _open(name, columns, why, questions)
+    return {name: _open(name, why, question) for name in wanted if found and name not in found}
 
 
 def _open(
-    name: str, columns: Sequence[FileColumn], why: tuple[str, ...], questions: dict[str, str]
+    name: str, why: tuple[str, ...], question: str, columns: Sequence[FileColumn] = ()
 ) -> Proposed:
-    alternatives = tuple(_described(c) for c in columns)
-    sources = tuple(c.source for c in columns)
-    return Proposed(name, {"source": QUESTION}, "open", why, questions, alternatives, sources)
+    alternatives = tuple(": ".join(filter(None, (c.shown, "; ".join(c.reasons)))) for c in columns)
+    asked, sources = {"source": question}, tuple(c.source for c in columns)
+    return Proposed(name, {"source": QUESTION}, "open", why, asked, alternatives, sources)
 
 
 def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:
@@ -195,10 +183,6 @@ def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:
         for column in columns
         if (behind := [b.shown for a, b in ends.ahead if a is column])
     ]
-
-
-def _described(column: FileColumn) -> str:
-    return f"{column.shown}: {'; '.join(column.reasons)}" if column.reasons else column.shown
 
 
 def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
@@ -210,7 +194,8 @@ def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     found: dict[str, Sign] = {}
     for name in ("f_in_N", "f_out_N"):
         if name in assigned:
-            found[name] = _tension(assigned[name])
+            side = sign_of(assigned[name].values)
+            found[name] = _SIGNS[side]
     if "x_in_mm" in assigned:
         found["x_in_mm"] = _drive(assigned, found)
     if "x_out_mm" in assigned:
@@ -218,11 +203,11 @@ def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     return found
 
 
-def _tension(column: FileColumn) -> Sign:
-    side = sign_of(column.values)
-    if side < 0:
-        return -1, "its values are negative, and a tendon cannot push"
-    return 1, "" if side else "its values are on both sides of zero: its sign is unknown"
+_SIGNS: dict[int, Sign] = {
+    -1: (-1, "its values are negative, and a tendon cannot push"),
+    0: (1, "its values are on both sides of zero: its sign is unknown"),
+    1: (1, ""),
+}
 
 
 def _drive(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sign:

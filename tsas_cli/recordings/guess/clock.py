@@ -107,13 +107,15 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
     step = interval(column)
     if column.kind == "time":
         seconds = _seconds(step, column.unit)
-        if not _implausible(seconds, rows):
+        slow = seconds >= _USUAL_S[1] and seconds * rows > _STROKE_S[1]
+        if seconds >= _FASTEST_S and seconds * rows >= _STROKE_S[0] and not slow:
             return "" if column.own_unit else column.unit, "", ()
         stated = f"its stated unit {column.unit} means {_rate(seconds)} and "
         stated += f"{seconds * column.values.size:.3g} s in total"
         return QUESTION, f"{stated}; {_listed(step)}", ()
     likely = [unit for unit in _UNITS if (_USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1])]
-    since_1970 = [unit for unit in _UNITS if _is_date(float(column.values[0]), unit)]
+    first = float(column.values[0])
+    since_1970 = [u for u in _UNITS if _EPOCH_S[0] <= _seconds(first, u) <= _EPOCH_S[1]]
     likely = [unit for unit in likely if unit in since_1970] or likely
     counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
     if len(likely) != 1 or counts:
@@ -122,15 +124,6 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
     (unit,) = likely
     others = [f"{u}: {_rate(_seconds(step, u))}" for u in (*_UNITS, "min") if u != unit]
     return unit, f"no unit is stated; {unit} means {_rate(_seconds(step, unit))}", tuple(others)
-
-
-def _implausible(interval_s: float, rows: float) -> bool:
-    slow = interval_s >= _USUAL_S[1] and interval_s * rows > _STROKE_S[1]
-    return interval_s < _FASTEST_S or interval_s * rows < _STROKE_S[0] or slow
-
-
-def _is_date(value: float, unit: str) -> bool:
-    return _EPOCH_S[0] <= _seconds(value, unit) <= _EPOCH_S[1]
 
 
 def _seconds(step: float, unit: str) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.guess.opening import Opened
 from tsas_cli.recordings.guess.words import (
-    QUANTITY_OF,
     WEAK,
     End,
     NamedQuantity,
@@ -37,62 +36,31 @@ _BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*$")
 class Proposed:
     """The proposal for one channel of a map.
 
-    Attributes
-    ----------
-    name
-        The canonical column.
-    entry
-        The keys of its table; `QUESTION` for an open value.
-    certainty
-        "sure" if name, unit and motion agree or exclude all else, "likely" if only one of them is
-        evidence, "open" if none is or they contradict each other.
-    why
-        The evidence, one sentence each.
-    questions
-        The open questions, by key of the entry.
-    alternatives
-        Other possible values.
-    candidates
-        The columns in question, if the source is open.
+    It is "sure" if name, unit and motion agree or exclude all else, "likely" if only one of them is
+    evidence, "open" if none is or they contradict each other.
     """
 
-    name: str
-    entry: Raw
+    name: str  # of the canonical column
+    entry: Raw  # the keys of its table; `QUESTION` for an open value
     certainty: Certainty
-    why: tuple[str, ...] = ()
-    questions: dict[str, str] = field(default_factory=dict)
-    alternatives: tuple[str, ...] = ()
-    candidates: tuple[ColumnSource, ...] = ()
+    why: tuple[str, ...] = ()  # the evidence, one sentence each
+    questions: dict[str, str] = field(default_factory=dict)  # the open ones, by key of the entry
+    alternatives: tuple[str, ...] = ()  # other possible values
+    candidates: tuple[ColumnSource, ...] = ()  # the columns in question, if the source is open
 
 
 @dataclass(frozen=True)
 class FileColumn:
-    """A column of numbers.
+    """A column of numbers, with what its name and its unit mean."""
 
-    Attributes
-    ----------
-    source
-        Its identifier in a map: the name, or the number of a column without a name.
-    values
-        Shape (n,), in the file's unit; a gap is NaN.
-    words
-        The meaning of its name.
-    unit, kind
-        The unit stated by the file, empty without one, and its kind.
-    own_unit
-        Whether ingest finds this unit in the file.
-    where
-        Where the unit is stated ("in its name").
-    """
-
-    source: ColumnSource
+    source: ColumnSource  # in a map: the name, or the number of a column without a name
     name: str
-    values: Floats
+    values: Floats  # shape (n,), in the file's unit; a gap is NaN
     words: Words
-    unit: str
+    unit: str  # stated by the file, empty without one
     kind: UnitKind | None
-    own_unit: bool
-    where: str
+    own_unit: bool  # whether ingest finds this unit in the file
+    where: str  # the unit is stated: "in its name"
 
     @property
     def shown(self) -> str:
@@ -103,11 +71,11 @@ class FileColumn:
     def quantity(self) -> NamedQuantity | None:
         """The measured quantity by the unit, else by the name; None if they disagree."""
         named = self.words.quantity
-        if self.kind in (None, "label"):
+        if self.kind is None or self.kind == "label":
             return named
         if self.disagrees:
             return None
-        return "other" if named == "other" else QUANTITY_OF[self.kind]
+        return "other" if named == "other" else self.kind
 
     @property
     def end(self) -> End | None:
@@ -127,10 +95,10 @@ class FileColumn:
     @property
     def reasons(self) -> list[str]:
         """The evidence of the name and the unit, one sentence each."""
-        matched = self.words.matched
+        matched, named = self.words.matched, str(self.words.quantity)
         meanings = {}
         if "quantity" in matched:
-            meanings[matched["quantity"]] = _AN[self.words.quantity]
+            meanings[matched["quantity"]] = _QUANTITY.get(named, f"a {named}")
         if "end" in matched and self.end:
             more = meanings.pop(matched["end"], "")
             meanings[matched["end"]] = f"{more} at {_END[self.end]}" if more else _END[self.end]
@@ -146,15 +114,9 @@ class FileColumn:
         return finite.size > 1 and float(np.ptp(finite)) > 0.0
 
 
-_AN: dict[NamedQuantity | None, str] = {
-    "time": "a time",
+_QUANTITY = {
     "counter": "a count of samples",
-    "displacement": "a displacement",
     "angle": "an angle",
-    "force": "a force",
-    "torque": "a torque",
-    "speed": "a speed",
-    "temperature": "a temperature",
     "other": "no quantity of a channel",
 }
 _END: dict[End, str] = {"in": "the drive", "out": "the load", "motor": "the motor"}
@@ -163,7 +125,7 @@ _END: dict[End, str] = {"in": "the drive", "out": "the load", "motor": "the moto
 def columns_of(opened: Opened) -> list[FileColumn]:
     """Return the columns of a file, in order."""
     return [
-        _column(source, opened.names[source], _finite(values), opened.table.units.get(source, ""))
+        _column(source, opened.names[source], values, opened.table.units.get(source, ""))
         for source, values in opened.table.columns.items()
     ]
 
@@ -181,12 +143,9 @@ def with_trusted_names(columns: list[FileColumn]) -> tuple[list[FileColumn], str
     return [replace(c, words=Words(None, None, is_reference=False)) for c in columns], sentence
 
 
-def _finite(values: Floats) -> Floats:
-    return np.where(np.isfinite(values), values, np.nan)
-
-
 def _column(source: ColumnSource, name: str, values: Floats, declared: str) -> FileColumn:
     """Return a column; `declared` is the unit that ingest finds in the file, if any."""
+    values = np.where(np.isfinite(values), values, np.nan)
     bracket = _BRACKETS.search(name)
     inside = bracket[1].strip() if bracket else ""
     stem, behind = unit_behind(name[: bracket.start()] if bracket else name)

@@ -51,10 +51,8 @@ def assign(displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]) 
     by_name = [one for one in candidates if _fits_names(one, (*displacements, *tensions))]
     consistent = [one for one in by_name if _fits_motion(one, motion)]
     ahead = motion.pairs((*displacements, *tensions))
-    if not by_name:
-        return _names_inconsistent(displacements, tensions, ahead)
     if not consistent:
-        return _motion_inconsistent(displacements, tensions, ahead)
+        return _inconsistent(displacements, tensions, ahead, by_names=not by_name)
     assigned: dict[str, FileColumn] = {}
     undecided = {}
     for name in (*_X, *_F):
@@ -73,37 +71,28 @@ def _with_end(columns: Sequence[FileColumn]) -> list[FileColumn]:
     return [c for c in columns if c.end is not None] or list(columns)
 
 
-def _names_inconsistent(
+def _inconsistent(
     displacements: Sequence[FileColumn],
     tensions: Sequence[FileColumn],
     ahead: tuple[tuple[FileColumn, FileColumn], ...],
+    *,
+    by_names: bool,
 ) -> Assignment:
-    """Return the assignment if no candidate fits the names; one kind may still be well named."""
-    reason = "the names do not assign one column to each end"
-    if displacements and tensions:
-        x, f = assign(displacements, ()), assign((), tensions)
-        if bool(x.assigned) != bool(f.assigned):
-            good, bad = (x, f) if x.assigned else (f, x)
-            return Assignment(good.assigned, {**good.open, **bad.open}, reason, ahead)
-    return Assignment({}, _every(displacements, tensions), reason, ahead)
+    """Return the assignment if no candidate is consistent with the names, or with the motion too.
 
-
-def _motion_inconsistent(
-    displacements: Sequence[FileColumn],
-    tensions: Sequence[FileColumn],
-    ahead: tuple[tuple[FileColumn, FileColumn], ...],
-) -> Assignment:
-    """Return the assignment if names and motion disagree.
-
-    Open is one kind, if units distinguish the kinds and both agree on the other; else all.
+    One kind may still be well named; or, if units distinguish the kinds, be consistent by itself.
     """
-    reason = "names and motion disagree on the ends"
+    reason = (
+        "the names do not assign one column to each end"
+        if by_names
+        else "names and motion disagree on the ends"
+    )
     units_known = all(c.kind not in (None, "label") for c in (*displacements, *tensions))
-    if displacements and tensions and units_known:
+    if displacements and tensions and (by_names or units_known):
         x, f = assign(displacements, ()), assign((), tensions)
         for good, bad in ((x, f), (f, x)):
-            if not bad.assigned and good.ahead and not good.open:
-                return Assignment(good.assigned, bad.open, reason, ahead)
+            if not bad.assigned and (good.assigned if by_names else good.ahead and not good.open):
+                return Assignment(good.assigned, {**good.open, **bad.open}, reason, ahead)
     return Assignment({}, _every(displacements, tensions), reason, ahead)
 
 

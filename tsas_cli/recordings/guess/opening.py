@@ -1,44 +1,30 @@
 """A file opened without a map: its numeric columns, and the options required to read it."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from tsas_cli.recordings.guards.damaged import EncryptedError
+from tsas_cli.recordings.guards import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables, text_of
 from tsas_cli.recordings.readers.layout import DoubtfulMarkError
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
+T = TypeVar("T")
 _PREAMBLE = 60  # lines above a table that are tried
 
 
 @dataclass(frozen=True)
 class Opened:
-    """The content of one file.
-
-    Attributes
-    ----------
-    read
-        The keys of `[read]` that the file requires, each with value and reason.
-    table
-        The numeric columns, all of one length, by their source in a map.
-    names
-        Their names; empty text for a column without one.
-    left_out
-        The other columns, and the reason for each.
-    asked
-        The keys of `read` that are open questions; the values are those that the file was opened
-        with.
-    """
+    """The content of one file; the values of `asked` keys are those that it was opened with."""
 
     path: Path
-    read: dict[str, tuple[Any, str]]
-    table: ColumnTable
-    names: dict[ColumnSource, str]
-    left_out: dict[str, str] = field(default_factory=dict)
-    asked: dict[str, str] = field(default_factory=dict)
+    read: dict[str, tuple[Any, str]]  # what the file requires under `[read]`: value and reason
+    table: ColumnTable  # the numeric columns, all of one length, by their source in a map
+    names: dict[ColumnSource, str]  # empty text for a column without one
+    left_out: dict[str, str] = field(default_factory=dict)  # the other columns, and why
+    asked: dict[str, str] = field(default_factory=dict)  # the keys of `read` that are questions
 
 
 def open_file(path: Path) -> Opened:
@@ -120,8 +106,9 @@ def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
 
 def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
     """Return the lines to skip above a text table, if columns are without names with them."""
-    best, skipped = _named(path, required), 0
-    if best > 0.5 or (best == 0.0 and _reads(path, _options(required))):
+    best, skipped, options = _named(path, required), 0, _options(required)
+    numbers = list(range(1, len(names(path, options)) + 1)) if best == 0.0 else []
+    if best > 0.5 or (numbers and _tried(read, path, options, numbers) is not None):
         return {}  # a table without names is one, too
     for skip in range(1, _PREAMBLE):
         found = _named(path, required | {"skip_lines": (skip, "")})
@@ -136,23 +123,18 @@ def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
 
     A title with delimiters behind it, "Bench 42;;;", names few columns.
     """
-    try:
-        found = names(path, _options(required))
-    except DoubtfulMarkError:
-        raise
-    except InputError:
-        return -1.0
+    found = _tried(names, path, _options(required)) or ()
     return sum(map(bool, found)) / len(found) if len(found) > 1 else -1.0
 
 
-def _reads(path: Path, options: ReadOptions) -> bool:
+def _tried(reader: Callable[..., T], *arguments: Any) -> T | None:
+    """Return the result of a reader; None if it refuses the file, unless for a doubtful mark."""
     try:
-        read(path, options, list(range(1, len(names(path, options)) + 1)))
+        return reader(*arguments)
     except DoubtfulMarkError:
         raise
     except InputError:
-        return False
-    return True
+        return None
 
 
 def _all_or_each(
@@ -162,30 +144,28 @@ def _all_or_each(
 
     None if every column is readable by itself but not all of them together.
     """
+    if (every := _tried(read, path, options, sources)) is not None:
+        return every, {}
+    readable: set[ColumnSource] = set()
+    left_out: dict[str, str] = {}
+    for source in sources:
+        try:
+            read(path, options, [source])
+            readable.add(source)
+        except DoubtfulMarkError:
+            raise
+        except EncryptedError as error:
+            raise InputError(
+                f"column {source} is encrypted",
+                where=path,
+                expected="columns that can be read",
+                remedy="decrypt it, or write a map by hand without it (docs/ingest.md)",
+            ) from error
+        except InputError as error:
+            if source != "time":
+                left_out[str(source)] = error.what
     try:
-        return read(path, options, sources), {}
-    except DoubtfulMarkError:
-        raise
-    except InputError:
-        tables: dict[ColumnSource, ColumnTable] = {}
-        left_out: dict[str, str] = {}
-        for source in sources:
-            try:
-                tables[source] = read(path, options, [source])
-            except DoubtfulMarkError:
-                raise
-            except EncryptedError as error:
-                raise InputError(
-                    f"column {source} is encrypted",
-                    where=path,
-                    expected="columns that can be read",
-                    remedy="decrypt it, or write a map by hand without it (docs/ingest.md)",
-                ) from error
-            except InputError as error:
-                if source != "time":
-                    left_out[str(source)] = error.what
-    try:
-        together = [s for s in sources if s in tables or (s == "time" and tables)]
+        together = [s for s in sources if s in readable or (s == "time" and readable)]
         return read(path, options, together), left_out
     except InputError:
         if each:

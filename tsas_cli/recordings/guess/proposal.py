@@ -23,35 +23,17 @@ _SPRING = 0.95  # least correlation of tension and displacement at the load of a
 
 @dataclass(frozen=True)
 class MapProposal:
-    """A proposed map with its evidence.
-
-    Attributes
-    ----------
-    looked_at
-        The file that the proposal is based on.
-    matching, different
-        The other files: those with the same columns, and the reason for each other one.
-    read
-        The keys of `[read]`, with values and reasons.
-    channels
-        The tables of `[columns]`.
-    not_taken
-        The columns without a channel, and their evidence.
-    run
-        The keys of `[run]` that differ from their defaults, with values and reasons.
-    doubt
-        The reason why no column name is used; empty if names are used.
-    """
+    """A proposed map with its evidence."""
 
     name: str
-    looked_at: Opened
-    matching: tuple[Path, ...]
-    different: dict[Path, str]
-    read: dict[str, tuple[Any, str]]
-    channels: tuple[Proposed, ...]
-    not_taken: dict[ColumnSource, str]
-    run: dict[str, tuple[Any, str]]
-    doubt: str
+    looked_at: Opened  # the file that the proposal is based on
+    matching: tuple[Path, ...]  # other files with the same columns
+    different: dict[Path, str]  # the rest of them, and how each differs
+    read: dict[str, tuple[Any, str]]  # the keys of `[read]`, with values and reasons
+    channels: tuple[Proposed, ...]  # the tables of `[columns]`
+    not_taken: dict[ColumnSource, str]  # the columns without a channel, and their evidence
+    run: dict[str, tuple[Any, str]]  # the keys of `[run]` that differ from their defaults
+    doubt: str  # why no column name is used; empty if names are used
 
     @property
     def questions(self) -> dict[str, str]:
@@ -93,8 +75,11 @@ def propose(files: Sequence[Path]) -> MapProposal:
     if time.entry.get("source") == QUESTION:
         rest = [c for c in rest if not like_a_clock(c)]
     found = (time, *channels(rest))
+    used = {channel.entry.get("source") for channel in found}
+    used |= {source for channel in found for source in channel.candidates}
     return MapProposal(
-        _name(opened.path),
+        re.sub(r"[^\w-]+", "-", opened.path.absolute().parent.name or opened.path.stem).strip("-")
+        or "rig",
         opened,
         tuple(matching),
         different,
@@ -103,7 +88,7 @@ def propose(files: Sequence[Path]) -> MapProposal:
         | _repeated(columns, time)
         | _pattern([opened.path, *matching], different),
         found,
-        _not_taken(columns, found),
+        {c.source: _why_not(c) for c in columns if c.source not in used},
         _load(columns, found) | _id([opened.path, *matching]),
         doubt,
     )
@@ -152,10 +137,6 @@ def _pattern(good: Sequence[Path], different: dict[Path, str]) -> dict[str, tupl
     return {"files": (f"*{suffixes.pop()}", "the other files hold no such table")}
 
 
-def _name(path: Path) -> str:
-    return re.sub(r"[^\w-]+", "-", path.absolute().parent.name or path.stem).strip("-") or "rig"
-
-
 def _id(paths: Sequence[Path]) -> dict[str, tuple[Any, str]]:
     counted = Counter(stem(path) for path in paths)
     duplicates = [name for name, count in counted.items() if count > 1]
@@ -179,12 +160,6 @@ def _load(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[str,
         '"displacement" where x_out_mm is'
     )
     return {"load": (QUESTION, why)}
-
-
-def _not_taken(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[ColumnSource, str]:
-    used = {channel.entry.get("source") for channel in found}
-    used |= {source for channel in found for source in channel.candidates}
-    return {c.source: _why_not(c) for c in columns if c.source not in used}
 
 
 def _why_not(column: FileColumn) -> str:

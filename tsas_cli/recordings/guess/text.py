@@ -1,7 +1,7 @@
 """A proposed map as commented TOML, as JSON and as printed tables."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -18,21 +18,39 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
 
 _WIDTH = 96
+# Meaning of a condition; its group, the words before its number in a file name, and likely unit.
 _CONDITIONS = {
-    "sheath_length_mm": "the length of the sheath",
-    "total_bend_rad": "its total bend, 3.1416 for half a turn",
-    "preload_N": "the tension at rest",
+    "sheath_length_mm": (
+        "the length of the sheath",
+        ("length", r"length|len|laenge|sheath|l", "mm"),
+    ),
+    "total_bend_rad": (
+        "its total bend, 3.1416 for half a turn",
+        ("bend", r"bend|bending|theta|wrap|biegung|winkel|angle", "deg"),
+    ),
+    "preload_N": (
+        "the tension at rest",
+        ("preload", r"preload|pretension|vorspannung|vorlast|f0", "N"),
+    ),
 }
+_NUMBER = r"\d+(?:\.\d+)?"
 MAP_MARK = b"# A map for `tsas ingest`"  # beginning of a proposed map
 
 
 def map_text(proposal: MapProposal) -> str:
     """Return the text of the map; a comment above each key states its evidence."""
     document = tomlkit.document()
-    for line in _head(proposal):
-        document.add(tomlkit.comment(line))
-    document.add("dataset", _dataset(proposal))
-    document.add("rig", _rig())
+    for sentence in _head(proposal):
+        _comment(document, sentence)
+    dataset, rig = tomlkit.table(), tomlkit.table()
+    dataset.add("name", proposal.name)
+    dataset["name"].comment("the folder's name")
+    dataset.add(tomlkit.comment('description = "…"'))
+    document.add("dataset", dataset)
+    _comment(rig, "The data sheet of the rig; each line is optional:")
+    for key in list(RigSheet.model_fields)[:4]:
+        rig.add(tomlkit.comment(f"{key} ="))
+    document.add("rig", rig)
     if proposal.read or proposal.not_taken or proposal.looked_at.left_out:
         document.add("read", _read(proposal))
     columns = tomlkit.table(is_super_table=True)
@@ -43,62 +61,43 @@ def map_text(proposal: MapProposal) -> str:
     return tomlkit.dumps(document).rstrip("\n") + "\n"
 
 
-def _head(proposal: MapProposal) -> Iterable[str]:
+def _head(proposal: MapProposal) -> Iterator[str]:
     opened = proposal.looked_at
     rows = next(iter(opened.table.columns.values())).size
-    yield from _wrapped(
+    yield (
         f"A map for `tsas ingest`, proposed after a look at {opened.path.name} ({rows} rows). "
         "Check every line: each is a guess, and the comment above it states its evidence and "
         "certainty."
     )
-    if proposal.matching:
-        more = len(proposal.matching)
-        have = "more file has" if more == 1 else "more files have"
-        yield from _wrapped(f"{more} {have} the same columns.")
+    if more := len(proposal.matching):
+        yield f"{more} more {'file has' if more == 1 else 'files have'} the same columns."
     if proposal.doubt:
-        yield from _wrapped(proposal.doubt)
+        yield proposal.doubt
     for path, reason in proposal.different.items():
-        yield from _wrapped(f"{path.name} does not match: {reason}.")
+        yield f"{path.name} does not match: {reason}."
     if proposal.different:
-        yield from _wrapped(
+        yield (
             "A file of another device that belongs to the same run is joined by a list (.join, "
             "docs/ingest.md)."
         )
-    asked = len(proposal.questions)
-    if asked:
-        yield from _wrapped(
+    if asked := len(proposal.questions):
+        yield (
             f"{asked} question{'s are' if asked > 1 else ' is'} open: ingest stops until each "
             f'"{QUESTION}" is replaced.'
         )
     elif proposal.is_a_recording:
         yield "No question is open: the map is ready for ingest."
     if not proposal.is_a_recording:
-        yield from _wrapped(
+        yield (
             f"Ingest needs one of {', '.join(INPUTS)}, and another of {', '.join(OUTPUTS)}: no "
             "such columns were found."
         )
 
 
-def _dataset(proposal: MapProposal) -> Table:
-    table = tomlkit.table()
-    table.add("name", proposal.name)
-    table["name"].comment("the folder's name")
-    table.add(tomlkit.comment('description = "…"'))
-    return table
-
-
-def _rig() -> Table:
-    table = tomlkit.table()
-    _comment(table, "The data sheet of the rig; each line is optional:")
-    for key in list(RigSheet.model_fields)[:4]:
-        table.add(tomlkit.comment(f"{key} ="))
-    return table
-
-
 def _read(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     for key, (value, why) in proposal.read.items():
-        _add(table, key, value, _asked(why) if value == QUESTION else why)
+        _add(table, key, value, why)
     if proposal.not_taken:
         _comment(table, "These columns have no channel; extra would keep them unchanged:")
         for source, reason in proposal.not_taken.items():
@@ -119,20 +118,16 @@ def _channel(channel: Proposed) -> Table:
     for other in channel.alternatives:
         _comment(table, f"- alternative: {other}", indent="  ")
     for key, value in channel.entry.items():
-        _add(table, key, value, _asked(channel.questions.get(key, "")))
+        _add(table, key, value, channel.questions.get(key, ""))
     return table
-
-
-def _asked(question: str) -> str:
-    return f"QUESTION: {question}" if question else ""
 
 
 def _run(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     for key, (value, why) in proposal.run.items():
-        _add(table, key, value, _asked(why) if value == QUESTION else why)
+        _add(table, key, value, why)
     pattern, groups = conditions_in(proposal.looked_at.path)
-    for condition, meaning in _CONDITIONS.items():
+    for condition, (meaning, _) in _CONDITIONS.items():
         if condition not in groups:
             _comment(table, f"{condition} =   # for all runs: {meaning}")
     if groups:
@@ -152,33 +147,21 @@ def _run(proposal: MapProposal) -> Table:
 
 def _add(table: Table, key: str, value: Any, why: str) -> None:
     if why:
-        sentence = why[0].upper() + why[1:]
+        sentence = f"QUESTION: {why}" if value == QUESTION else f"{why[0].upper()}{why[1:]}"
         _comment(table, sentence if sentence.endswith(("?", ".")) else f"{sentence}.")
     table.add(key, value)
 
 
-def _comment(table: Table, text: str, *, indent: str = "") -> None:
-    for line in _wrapped(text, indent):
-        table.add(tomlkit.comment(line))
-
-
-def _wrapped(text: str, indent: str = "") -> list[str]:
-    return wrap(
+def _comment(table: Table | tomlkit.TOMLDocument, text: str, *, indent: str = "") -> None:
+    lines = wrap(
         printable(text),
         _WIDTH,
         subsequent_indent=indent,
         break_long_words=False,
         break_on_hyphens=False,
     )
-
-
-# Group, words before the number, and likely unit.
-_BEFORE = {
-    "total_bend_rad": ("bend", r"bend|bending|theta|wrap|biegung|winkel|angle", "deg"),
-    "sheath_length_mm": ("length", r"length|len|laenge|sheath|l", "mm"),
-    "preload_N": ("preload", r"preload|pretension|vorspannung|vorlast|f0", "N"),
-}
-_NUMBER = r"\d+(?:\.\d+)?"
+    for line in lines:
+        table.add(tomlkit.comment(line))
 
 
 def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
@@ -188,7 +171,7 @@ def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
     """
     found: list[tuple[int, str, str]] = []
     groups: dict[str, tuple[str, str]] = {}
-    for condition, (group, words, unit) in _BEFORE.items():
+    for condition, (_, (group, words, unit)) in sorted(_CONDITIONS.items(), key=lambda c: c[1][1]):
         match = re.search(rf"(?i)(?<![a-z])({words})([_=-]?){_NUMBER}", path.stem)
         if match:
             text = f"{re.escape(match[1] + match[2])}(?P<{group}>{_NUMBER})"

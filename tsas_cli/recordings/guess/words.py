@@ -74,7 +74,8 @@ def words_of(name: str) -> Words:
     weak = next((p for p in parts if p in WEAK), None)
     if weak and not ends and (quantities or weak not in ("end", "dist")):
         ends["out"] = weak
-    end = _end(ends)
+    end: End | None = next(iter(ends)) if len(ends) == 1 else None
+    end = "motor" if "motor" in ends else end
     quantity = next((q for q in _PRIORITY if q in quantities), None)
     reference = next((p for p in parts if p in _REFERENCES.split()), None)
     matched = {"quantity": quantities[quantity]} if quantity else {}
@@ -87,12 +88,6 @@ def words_of(name: str) -> Words:
 _PRIORITY: tuple[NamedQuantity, ...] = (
     "other", "temperature", "speed", "torque", "force", "angle", "displacement", "counter", "time",
 )  # fmt: skip
-
-
-def _end(ends: dict[End, str]) -> End | None:
-    if "motor" in ends:
-        return "motor"
-    return next(iter(ends)) if len(ends) == 1 else None
 
 
 def _matches(parts: list[str], vocabulary: Mapping[Meaning, str]) -> dict[Meaning, str]:
@@ -133,41 +128,19 @@ def _split(part: str) -> list[str]:
     return [part]
 
 
-UnitKind = Literal[
-    "time", "length", "force", "angle", "torque", "rotation", "temperature", "label", "other"
-]
+UnitKind = NamedQuantity | Literal["label"]  # a label is of counts or volts
 
-# Kind, canonical unit, and the radius that converts an angle or a torque to it.
+# Quantity of a unit, canonical unit, and the radius that converts an angle or a torque to it.
 _TARGETS: tuple[tuple[UnitKind, str, float | None], ...] = (
     ("time", "s", None),
-    ("length", "mm", None),
+    ("displacement", "mm", None),
     ("force", "N", None),
     ("angle", "mm", 1.0),
     ("torque", "N", 1.0),
-    ("rotation", "rpm", None),
+    ("speed", "rpm", None),
     ("temperature", "°C", None),
 )
-QUANTITY_OF: dict[UnitKind, NamedQuantity] = {
-    "time": "time",
-    "length": "displacement",
-    "force": "force",
-    "angle": "angle",
-    "torque": "torque",
-    "rotation": "speed",
-    "temperature": "temperature",
-    "other": "other",
-}
-_FITTING: dict[NamedQuantity, tuple[UnitKind, ...]] = {
-    "time": ("time",),
-    "counter": ("label",),
-    "displacement": ("length", "angle", "label"),
-    "angle": ("angle", "length", "label"),
-    "force": ("force", "torque", "label"),
-    "torque": ("torque", "force", "label"),
-    "speed": ("rotation", "label"),
-    "temperature": ("temperature", "label"),
-    "other": (),
-}
+_RELATED = {"displacement": "angle", "angle": "displacement", "force": "torque", "torque": "force"}
 # After a name without brackets: time_ms, Force N. `in`, `m`, `g` and `A` are left out, because they
 # denote ends, masters and sensors as often as units.
 _SUFFIXES = (
@@ -178,7 +151,7 @@ _SUFFIX = re.compile(r"^(.+?)[_\s.,/-]+([A-Za-zµ°]+)$")
 
 
 def kind_of(unit: str) -> UnitKind | None:
-    """Return the kind of a unit; "other" for one of no channel, None for text that is no unit."""
+    """Return the quantity of a unit; "other" for one of no channel, None for text that is none."""
     if is_label(unit):
         return "label"
     for kind, to, radius in _TARGETS:
@@ -192,7 +165,9 @@ def kind_of(unit: str) -> UnitKind | None:
 
 def fits(quantity: NamedQuantity, kind: UnitKind) -> bool:
     """Return whether a quantity can have a unit of this kind."""
-    return kind in _FITTING[quantity]
+    if quantity == "other" or kind == "label":
+        return quantity not in ("other", "time")
+    return kind in (quantity, _RELATED.get(quantity))
 
 
 def unit_behind(name: str) -> tuple[str, str]:

@@ -1,42 +1,34 @@
-"""Checks of recordings for faults, before a model is fitted."""
+"""Checks of recordings for faults, before a model is fitted.
 
+A recording that is too long for memory is checked stretch by stretch. Noise, quantisation, span and
+extremes are those of the whole run. A stretch is checked with all its rows; a finding states the
+number of stretches with it. Properties of the motion (signs, units, exchanged sensors, steady
+motion) are checked on the run decimated to the rows of one stretch, as long as a decimated stroke
+of the drive has more rows than a stretch has strokes.
+"""
+
+import math
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
+from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.recordings import pieces as reading
+from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.pieces import long_run
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
+from tsas_cli.recordings.pieces import known_columns, long_run, pieces
 from tsas_cli.recordings.quality.checks import (
-    ac_coupled,
-    bursts,
-    clipped,
-    copies,
-    delay,
-    exchanged,
-    few_reversals,
-    filtered,
-    gap,
-    hum,
-    interference,
-    lost_samples,
-    manifest_unit,
-    negative_tension,
-    no_steady_motion,
-    outlier,
-    quantised,
-    repeated_buffer,
-    repeated_rows,
-    repeated_values,
-    sign,
-    slow_channel,
-    stuck,
-    time_batches,
-    time_jitter,
-    time_order,
-    unit,
-    unknown_key,
-    unsteady_sampling,
+    clock,
+    extremes,
+    motion,
+    noise,
+    of_dataset,
+    pairs,
+    rows,
 )
 from tsas_cli.recordings.quality.finding import (
     CannotTell,
@@ -45,42 +37,47 @@ from tsas_cli.recordings.quality.finding import (
     QualityCheck,
     Remark,
 )
-from tsas_cli.recordings.quality.stretches import look, look_by_stretches
+from tsas_cli.recordings.quality.samples import Size, span_of, step_of
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.run_files import RunColumns, read_recording
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
-RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
-    time_order.CHECK,
-    time_batches.CHECK,
-    time_jitter.CHECK,
-    unsteady_sampling.CHECK,
-    gap.CHECK,
-    lost_samples.CHECK,
-    outlier.CHECK,
-    bursts.CHECK,
-    hum.CHECK,
-    repeated_rows.CHECK,
-    repeated_buffer.CHECK,
-    repeated_values.CHECK,
-    slow_channel.CHECK,
-    filtered.CHECK,
-    ac_coupled.CHECK,
-    clipped.CHECK,
-    stuck.CHECK,
-    quantised.CHECK,
-    sign.CHECK,
-    negative_tension.CHECK,
-    exchanged.CHECK,
-    interference.CHECK,
-    unit.CHECK,
-    delay.CHECK,
-    few_reversals.CHECK,
-    no_steady_motion.CHECK,
+MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (
+    QualityCheck(of_dataset.unknown_key),
+    QualityCheck(of_dataset.manifest_unit),
 )
-DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (copies.CHECK,)
+RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
+    QualityCheck(clock.time_order),
+    QualityCheck(clock.time_batches),
+    QualityCheck(clock.time_jitter),
+    QualityCheck(clock.unsteady_sampling),
+    QualityCheck(clock.gap),
+    QualityCheck(rows.lost_samples, needs=("x_in_mm",)),
+    QualityCheck(noise.outlier),
+    QualityCheck(noise.bursts),
+    QualityCheck(noise.hum),
+    QualityCheck(rows.repeated_rows),
+    QualityCheck(rows.repeated_buffer),
+    QualityCheck(rows.repeated_values),
+    QualityCheck(rows.slow_channel),
+    QualityCheck(noise.filtered),
+    QualityCheck(extremes.ac_coupled, needs=("x_in_mm",)),
+    QualityCheck(extremes.clipped),
+    QualityCheck(extremes.stuck),
+    QualityCheck(extremes.quantised, of_long="decimated"),
+    QualityCheck(motion.sign, needs=("x_in_mm",), of_long="strokes"),
+    QualityCheck(motion.negative_tension, of_long="strokes"),
+    QualityCheck(motion.exchanged, needs=("x_in_mm", "f_in_N", "f_out_N"), of_long="strokes"),
+    QualityCheck(motion.interference, needs=("x_in_mm",)),
+    QualityCheck(pairs.unit, of_long="strokes"),
+    QualityCheck(pairs.delay, needs=("x_out_mm", "f_out_N")),
+    QualityCheck(motion.few_reversals, needs=("x_in_mm",), of_long="decimated"),
+    QualityCheck(motion.no_steady_motion, needs=("x_in_mm",), of_long="strokes"),
+)
+DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (QualityCheck(of_dataset.copies),)
 CHECKS: tuple[QualityCheck[Any], ...] = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
 CODES = tuple(check.code for check in CHECKS)
 
@@ -158,3 +155,101 @@ def _attributed(result: Remark | CannotTell, code: str, run: str | None) -> Find
     return Finding(
         code, result.severity, run, result.column, result.sentence, result.remedy, result.first_s
     )
+
+
+Results = list[Remark | CannotTell]
+
+_NUMBER = r"-?\d[\d.,e+-]*( \w+)?"
+OVERLAP = 16  # consecutive stretches share one in so many of their rows
+
+
+def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
+    """Return the results of a check on a trial; a missing column is a reason not to apply."""
+    missing = [name for name in check.needs if name not in trial.channels]
+    if missing:
+        return [CannotTell(f"{' and '.join(missing)} not recorded")]
+    with np.errstate(all="ignore"):  # a stray 1e300 may overflow
+        return list(check.find(trial))
+
+
+def look_by_stretches(
+    checks: Sequence[QualityCheck[RunSignals]], run: RunColumns, rig: RigSheet
+) -> dict[str, Results]:
+    """Return the results of the checks on a long run, by code."""
+    overall, decimated = _overview(run)
+    whole = RunSignals(Recording(run.run, decimated), rig, overall)
+    # A decimated stroke has to have more rows than a stretch has strokes.
+    shown = len(whole.strokes) ** 2 <= whole.time_s.size * run.rows / reading.MOST_ROWS
+    decimatable = {"decimated", "strokes"} if shown else {"decimated"}
+    results: dict[str, list[tuple[str, Results]]] = {
+        check.code: [] for check in checks if check.of_long not in decimatable
+    }
+    overlap = reading.MOST_ROWS // OVERLAP
+    for piece in pieces(run, known_columns(run), overlap=overlap, strict=False):
+        trial = RunSignals(Recording(run.run, piece.columns), rig, overall, piece.start)
+        there = f"rows {piece.start} to {piece.stop - 1}"
+        for check in checks:
+            if check.code in results:
+                results[check.code].append((there, look(check, trial)))
+    return {
+        check.code: _merged(results[check.code]) if check.code in results else look(check, whole)
+        for check in checks
+    }
+
+
+def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
+    """Return the results of a check on a run, from those on its stretches.
+
+    Of remarks that differ in numbers only, the first one stays, with the number of stretches.
+    """
+    found: dict[str, list[tuple[str, Remark]]] = {}
+    for where, results in stretches:
+        for one in results:
+            if isinstance(one, Remark):
+                same = f"{one.column} {re.sub(_NUMBER, '', one.sentence)}"
+                found.setdefault(same, []).append((where, one))
+    if not found:  # a check that applies to one stretch applies
+        reasons = [results for _, results in stretches]
+        return list(reasons[0]) if all(reasons) else []
+    count = len(stretches)
+    return [
+        replace(
+            first,
+            sentence=f"{first.sentence} ({where}; in {len(dict(same))} of {count} stretches of the "
+            "run)",
+        )
+        for same in found.values()
+        for where, first in same[:1]
+    ]
+
+
+def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:
+    """Return the properties of the whole run, and its columns decimated to the rows of a piece."""
+    names = known_columns(run)
+    every = -(-run.rows // reading.MOST_ROWS)
+    decimated: dict[str, list[Floats]] = {name: [] for name in names}
+    valid: dict[str, list[Floats]] = {name: [] for name in names}
+    noise: dict[str, list[float]] = {name: [] for name in names}
+    ends: dict[str, list[float]] = {name: [] for name in names}
+    for piece in pieces(run, names, strict=False):
+        for name, values in piece.columns.items():
+            decimated[name].append(values[-piece.start % every :: every].copy())
+            finite = values[np.isfinite(values)]
+            valid[name].append(finite[::every].copy())
+            if finite.size:
+                noise[name] += [sd for sd in [noise_sd(finite)] if not math.isnan(sd)]
+                ends[name] += [float(finite.min()), float(finite.max())]
+    seen = {
+        name: np.concatenate(parts) for name, parts in valid.items() if name != TIME and ends[name]
+    }
+    overall = {
+        name: Size(
+            float(np.median(noise[name])) if noise[name] else math.nan,
+            step_of(each),
+            span_of(each),
+            min(ends[name]),
+            max(ends[name]),
+        )
+        for name, each in seen.items()
+    }
+    return overall, {name: np.concatenate(parts) for name, parts in decimated.items()}

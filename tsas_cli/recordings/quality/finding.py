@@ -32,18 +32,26 @@ class CannotTell:
     run: str | None = None
 
 
+Remarks = Iterator[Remark | CannotTell]
+
+
 @dataclass(frozen=True)
 class QualityCheck(Generic[Subject]):
-    """One check, whose function yields a remark for each fault, or why it does not apply.
+    """One check: a function that yields a remark for each fault, or why it does not apply.
 
+    Its docstring says what one sees, how the check decides, and what it can be mistaken for.
     `of_long` is what of a run that is too long for memory is checked: its stretches one by one, or
     the run decimated; for `strokes` the run decimated, if that still shows them, else stretches.
     """
 
-    code: str  # the name of the check's module, with hyphens
-    find: Callable[[Subject], Iterator[Remark | CannotTell]]
+    find: Callable[[Subject], Remarks]
     needs: tuple[str, ...] = ()  # columns without which it does not apply
     of_long: Literal["stretches", "decimated", "strokes"] = "stretches"
+
+    @property
+    def code(self) -> str:
+        """The name of the function, with hyphens."""
+        return self.find.__name__.replace("_", "-")
 
 
 @dataclass(frozen=True)

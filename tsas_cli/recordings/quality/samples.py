@@ -1,11 +1,12 @@
 """Properties of the samples of one channel: quantisation, noise, spectrum, outliers, plateaus."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.numerics.noise import quantisation_step
+from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.support.arrays import Floats, Mask
 
 _DEGREE = 4  # of the polynomial that is taken out of a segment
@@ -22,6 +23,7 @@ _NEIGHBOURS = 16  # samples on either side that the steepness is compared with
 _STEEPER = 10.0  # than those: a motion that reverses within a few samples has steep neighbours
 _COMMON = 0.02  # of all samples: more frequent deviations are the signal
 _FEWEST = 16  # samples for an estimate of the noise
+_FEWEST_CHANGES = 20
 
 
 class NoiseSpectrum(NamedTuple):
@@ -36,6 +38,26 @@ class NoiseSpectrum(NamedTuple):
     power: Floats
     is_noise: Mask
     is_steady: Mask
+
+
+@dataclass(frozen=True)
+class Size:
+    """Noise (standard deviation), quantisation step, span and ends of one channel, in its unit.
+
+    The step is 0 without quantisation; the span leaves out the outermost thousandth at either end.
+    """
+
+    noise: float
+    step: float
+    span: float
+    lowest: float
+    highest: float
+
+
+def size_of(values: Floats) -> Size:
+    """Return the size of a channel, shape (n,)."""
+    ends = float(np.nanmin(values)), float(np.nanmax(values))
+    return Size(noise_sd(values), step_of(values), span_of(values), *ends)
 
 
 def step_of(values: Floats) -> float:
@@ -68,6 +90,12 @@ def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:
     return np.diff(np.flatnonzero(values[1:] != values[:-1]))
 
 
+def is_held(values: Floats) -> bool:
+    """Return whether a channel changes in every second row at most."""
+    rows = rows_between_changes(values)
+    return rows.size >= _FEWEST_CHANGES and bool(np.quantile(rows, 0.05) >= 2.0)
+
+
 def smallest_change(values: Floats) -> float:
     """Return the smallest change from row to row beyond rounding; infinite without a change."""
     change = np.abs(np.diff(values))
@@ -86,9 +114,7 @@ def plateaus(values: Floats, shortest: int) -> list[slice]:
     return [slice(int(edges[i]), int(edges[i + 1])) for i in long]
 
 
-def outlying(
-    time_s: Floats, values: Floats, *, most: float, noise: float, step: float, span: float
-) -> Mask:
+def outlying(time_s: Floats, values: Floats, size: Size, *, most: float) -> Mask:
     """Return which samples are outliers, shape (n,).
 
     An outlier is an implausible value, or one of up to three consecutive samples that deviate from
@@ -97,17 +123,17 @@ def outlying(
     neighbour only, so they have to deviate by more than the span.
 
     Times and values have the shape (n,), gaps are NaN; `most` is the largest plausible magnitude.
-    Noise (NaN if it is unknown), step and span are those of the whole channel, in its unit.
+    The size is that of the whole channel; its noise is NaN if it is unknown.
     """
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         found = np.abs(values) > most
-        if not span > 0.0:  # a single other value in a constant channel may be its step
+        if not size.span > 0.0:  # a single other value in a constant channel may be its step
             return found
         valid = np.flatnonzero(np.isfinite(values) & ~found)
         # With an outlier of 1e9, all other levels count as one and the step is the outlier.
-        steps = _STEPS * step if step <= span else 0.0
-        least = max(_SPAN * span, steps, _NOISE * np.nan_to_num(noise))
-        found[valid[_deviating(time_s[valid], values[valid], least, span)]] = True
+        steps = _STEPS * size.step if size.step <= size.span else 0.0
+        least = max(_SPAN * size.span, steps, _NOISE * np.nan_to_num(size.noise))
+        found[valid[_deviating(time_s[valid], values[valid], least, size.span)]] = True
     return found
 
 

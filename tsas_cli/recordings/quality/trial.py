@@ -8,11 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.manifest import RigSheet
-from tsas_cli.recordings.quality.samples import alternates, outlying, span_of, step_of
+from tsas_cli.recordings.quality.samples import Size, alternates, outlying, size_of
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
@@ -65,26 +64,6 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class Size:
-    """Noise (standard deviation), quantisation step, span and ends of one channel, in its unit.
-
-    The step is 0 without quantisation; the span leaves out the outermost thousandth at either end.
-    """
-
-    noise: float
-    step: float
-    span: float
-    lowest: float
-    highest: float
-
-
-def size_of(values: Floats) -> Size:
-    """Return the size of a channel, shape (n,)."""
-    ends = float(np.nanmin(values)), float(np.nanmax(values))
-    return Size(noise_sd(values), step_of(values), span_of(values), *ends)
-
-
-@dataclass(frozen=True)
 class RunSignals:
     """A recording, and the data sheet of the rig.
 
@@ -124,14 +103,7 @@ class RunSignals:
         """Which samples of each channel are outliers (`outlying`), shape (n,) each."""
         sizes = self.overall or {name: size_of(values) for name, values in self._recorded.items()}
         return {
-            name: outlying(
-                self.time_s,
-                values,
-                most=largest(name),
-                noise=sizes[name].noise,
-                step=sizes[name].step,
-                span=sizes[name].span,
-            )
+            name: outlying(self.time_s, values, sizes[name], most=largest(name))
             for name, values in self._recorded.items()
         }
 
@@ -143,6 +115,15 @@ class RunSignals:
     def mechanical(self) -> dict[str, Floats]:
         """The displacements and tensions among the channels."""
         return {name: self.channels[name] for name in MECHANICAL if name in self.channels}
+
+    @cached_property
+    def noisy(self) -> dict[str, Floats]:
+        """The displacements and tensions with noise of a sensor, and without a gap."""
+        return {
+            name: values
+            for name, values in self.mechanical.items()
+            if self.is_noisy(name) and np.isfinite(values).all()
+        }
 
     @cached_property
     def sizes(self) -> Mapping[str, Size]:
@@ -181,6 +162,11 @@ class RunSignals:
     def prescribed(self) -> str | None:
         """The channel that a driven load prescribes, whatever the drive does."""
         return {"force": "f_out_N", "displacement": "x_out_mm"}.get(self.recording.run.load)
+
+    @property
+    def on_spring(self) -> bool:
+        """Whether the load is a spring, so that the distal end follows the drive."""
+        return self.recording.run.load == "spring"
 
     @cached_property
     def repeats(self) -> Mask:

@@ -3,36 +3,35 @@
 Packed files and those of spreadsheets are first converted to a file of another known format.
 """
 
-import json
 import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.guards.process import in_another_process
+from tsas_cli.recordings.guards import in_another_process
 from tsas_cli.recordings.readers import converted, offered
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions, whole
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
-_PANDAS = 'python -c "import pandas, sys; pandas.{}(sys.argv[1]).to_parquet(sys.argv[2])" {} {}'
-_ARCHIVES = {
-    ".tar": "mkdir -p {folder} && tar -xf {file} -C {folder}",
-    ".7z": "7z x {file} -o{folder}",
-    ".rar": "unrar x {file} {folder}/",
+_UNPACKED = "unpack it and ingest the folder {folder}: "
+_PANDAS = 'convert it{}: python -c "import pandas, sys; pandas.{}(sys.argv[1]).to_parquet('
+_PANDAS += 'sys.argv[2])" {{file}} {{parquet}}'
+_WAYS = {  # from a file that is not read to one that is, by its suffix
+    ".tar": f"{_UNPACKED}mkdir -p {{folder}} && tar -xf {{file}} -C {{folder}}",
+    ".7z": f"{_UNPACKED}7z x {{file}} -o{{folder}}",
+    ".rar": f"{_UNPACKED}unrar x {{file}} {{folder}}/",
+    ".orc": _PANDAS.format("", "read_orc"),
+    ".pkl": _PANDAS.format(" (only if you trust it: the file may run code)", "read_pickle"),
+    ".nc": "copy it: cp {file} {hdf5}",
+    ".log": "copy it: cp {file} {text}",
 }
-_PANDAS_READERS = {
-    ".orc": "read_orc",
-    ".pkl": "read_pickle",  # runs code of the file
-    ".pickle": "read_pickle",
-    ".sav": "read_spss",
-    ".dta": "read_stata",
-    ".sas7bdat": "read_sas",
-}
-_R = "write.csv(readRDS({file}), {made}, row.names = FALSE)"
-_COPIES = {".nc": ".h5", ".nc4": ".h5", ".log": ".txt", ".out": ".txt", ".prn": ".txt"}
+_SAME_WAY = {".tgz": ".tar", ".tbz": ".tar", ".txz": ".tar", ".pickle": ".pkl", ".nc4": ".nc"}
+_SAME_WAY |= dict.fromkeys((".out", ".prn"), ".log")
+_EXPORTED = "export it from the program that has written it, as CSV or Parquet"
 _FORMATS = (  # suffixes, reader, and what they are if its library crashes on damaged files
     ((".csv", ".tsv", ".txt", ".dat", ".asc"), "delimited", ""),
     ((".mat",), "matlab", "a MATLAB file"),
@@ -48,11 +47,20 @@ _FORMATS = (  # suffixes, reader, and what they are if its library crashes on da
     ((".db3",), "bags", "a bag of ROS 2"),
     ((".join",), "joined", ""),
 )
-_READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
-_WITHOUT_OFFERED = ("delimited", "parquet", "mdf")  # they have `read` and `names`
-_IN_PARTS = ("delimited", "parquet")
-_WITH_TABLES = ("json_table", "matlab")
-SUFFIXES = (*_READERS, *converted.SUFFIXES)
+_SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
+_CONVERTED = (  # the same, of files that are converted to one of the above
+    (converted.PACKED, "converted", ""),
+    ((".jsonl", ".ndjson"), "json_table", ""),
+    ((".lvm",), "labview", ""),
+    (_SHEETS, "spreadsheet", "a spreadsheet"),
+)
+READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
+_CONVERTERS = {
+    suffix: (module, kind) for suffixes, module, kind in _CONVERTED for suffix in suffixes
+}
+_IN_PARTS = ("delimited", "parquet")  # they have `batches` and `names`, the others `offered`
+_WITH_TABLES = ("json_table", "matlab", "spreadsheet")
+SUFFIXES = (*READERS, *_CONVERTERS)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -73,26 +81,23 @@ def batches(
     """
     with _checked(path, options) as (module, file):
         if module in _IN_PARTS:
-            reader = import_module(f"{__name__}.{module}")
-            yield from reader.batches(file, options, wanted)
+            yield from _call("batches", file, options, wanted)
         else:
-            yield _call(module, "read", file, options, wanted)
+            yield _call("read", file, options, wanted)
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
     """Return the names of a file's columns by number; empty text for a column without a name."""
-    with _checked(path, options) as (module, file):
-        found = tuple(_call(module, "names", file, options))
+    with _checked(path, options) as (_, file):
+        found = tuple(_call("names", file, options))
     limits.columns(found, path)
     return found
 
 
 def tables(path: Path) -> list[str]:
     """Return the valid values of `table` in a map: sheets, or tables in a JSON or MATLAB file."""
-    with _checked(path, ReadOptions(), but=converted.SHEETS) as (module, file):
-        if module == "spreadsheet":
-            return converted.tables(file)
-        return list(_call(module, "tables", file)) if module in _WITH_TABLES else []
+    with _checked(path, ReadOptions(), but=_SHEETS) as (module, file):
+        return list(_call("tables", file)) if module in _WITH_TABLES else []
 
 
 def text_of(path: Path, options: ReadOptions) -> Path | None:
@@ -116,10 +121,11 @@ def _suffix(path: Path) -> str:
     return path.suffix.lower()
 
 
-def _call(module: str, function: str, path: Path, *rest: Any) -> Any:
+def _call(function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    name, kind = f"{__name__}.{module}", _READERS[_suffix(path)][1]
-    if module not in _WITHOUT_OFFERED and function != "tables":
+    module, kind = (READERS | _CONVERTERS)[_suffix(path)]
+    name = f"{__name__}.{module}"
+    if module not in _IN_PARTS and function in ("names", "read"):
         name, rest = offered.__name__, (name, kind or "a table", *rest)
     if kind:
         return in_another_process(name, function, path, *rest, kind=kind)
@@ -137,13 +143,13 @@ def _checked(
     """
     file = path
     try:
-        while _suffix(file) not in (*_READERS, *but):
+        while _suffix(file) not in (*READERS, *but):
             if not is_known(file) and _suffix(file) != ".zip":
                 raise _unknown(file)
             _check(file)
-            file = converted.converted(file, options, frozenset(_READERS))
+            file = converted.converted(file, options, partial(_call, "convert"))
         _check(file)
-        yield _READERS.get(_suffix(file), ("spreadsheet",))[0], file
+        yield (READERS | _CONVERTERS)[_suffix(file)][0], file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))
@@ -166,29 +172,16 @@ def _unknown(path: Path) -> InputError:
         f"unknown file format {suffix}{' inside' if packed else ''}",
         where=path,
         expected=f"one of {', '.join(SUFFIXES)}",
-        remedy=way_to_convert(path),
+        remedy=_way_to_convert(path),
     )
 
 
-def way_to_convert(path: Path) -> str:
+def _way_to_convert(path: Path) -> str:
     """Return the sentence with the command that makes a readable file, or which formats to use."""
     suffixes = [suffix.lower() for suffix in path.suffixes]
-    last = suffixes[-1] if suffixes else ""
+    last = ".tar" if ".tar" in suffixes else suffixes[-1] if suffixes else ""
     made = path.with_name(path.name.split(".")[0] or "data")
-    file, folder = shlex.quote(str(path)), shlex.quote(str(made))
-    if ".tar" in suffixes or last in (".tgz", ".tbz", ".txz"):
-        last = ".tar"
-    if last in _ARCHIVES:
-        command = _ARCHIVES[last].format(file=file, folder=folder)
-        return f"unpack it and ingest the folder {folder}: {command}"
-    if last in _PANDAS_READERS:
-        target = shlex.quote(f"{made}.parquet")
-        command = _PANDAS.format(_PANDAS_READERS[last], file, target)
-        trust = " (only if you trust it: the file may run code)" if "pickle" in command else ""
-        return f"convert it{trust}: {command}"
-    if last == ".rds":
-        said = _R.format(file=json.dumps(str(path)), made=json.dumps(f"{made}.csv"))
-        return f"convert it: Rscript -e {shlex.quote(said)}"
-    if last in _COPIES:
-        return f"copy it: cp {file} {shlex.quote(f'{made}{_COPIES[last]}')}"
-    return "export it from the program that has written it, as CSV or Parquet"
+    ends = {"folder": "", "parquet": ".parquet", "hdf5": ".h5", "text": ".txt"}
+    names = {key: shlex.quote(f"{made}{end}") for key, end in ends.items()}
+    way = _WAYS.get(_SAME_WAY.get(last, last), _EXPORTED)
+    return way.format(file=shlex.quote(str(path)), **names)

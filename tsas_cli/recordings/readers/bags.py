@@ -61,21 +61,11 @@ def decoder(kind: str, definition: str, *, ros1: bool) -> Decode:
 
 @dataclass(frozen=True)
 class Topic:
-    """One topic of a file.
+    """One topic of a file."""
 
-    Attributes
-    ----------
-    name
-        As in the file, `/joint_states`.
-    kind
-        Their type, `geometry_msgs/msg/WrenchStamped`; those of ROS have SI units.
-    messages
-        Yields its messages in order, each time from the first.
-    """
-
-    name: str
-    kind: str
-    messages: Callable[[], Iterator[Message]]
+    name: str  # as in the file, `/joint_states`
+    kind: str  # `geometry_msgs/msg/WrenchStamped`; those of ROS have SI units
+    messages: Callable[[], Iterator[Message]]  # in order, each time from the first
 
     @cached_property
     def first(self) -> Mapping[str, Any]:
@@ -92,17 +82,24 @@ class Topic:
         sent = [_sent_ns(one) for one in fields]
         return (sent if sent and all(sent) else logged), fields
 
+    def values(self, field: str) -> list[Any]:
+        """Return a field of all messages, None where it is missing."""
+        return [message.get(field) for message in self.all[1]]
+
+    def times(self, zero_ns: int) -> Floats:
+        """Return when the messages were sent since a moment [s], shape (n,)."""
+        return np.array([time_ns - zero_ns for time_ns in self.all[0]]) * 1e-9
+
 
 _Topics = Iterator[tuple[list[Topic], dict[str, str]]]  # and advice where none can be decoded
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose type is defined in the file, or by ROS itself.
 
     InputError: there is none.
     """
-    del options
     with _TOPICS_OF[path.suffix.lower()](path) as (topics, advice):
         yield Offered(columns_of(topics, path, **advice))
 
@@ -128,9 +125,9 @@ def columns_of(topics: Sequence[Topic], path: Path, **advice: str) -> list[Colum
     return [
         Column(
             f"{topic.name}.{field}",
-            partial(_values, topic, field),
+            partial(topic.values, field),
             _unit(topic, field),
-            times=partial(_times, topic, zero_ns),
+            times=partial(topic.times, zero_ns),
         )
         for topic in used
         for field, value in topic.first.items()
@@ -149,16 +146,6 @@ def _sent_ns(fields: Mapping[str, Any]) -> int:
     """Return the stamp in a message's header [ns], 0 without one."""
     nanoseconds = fields.get(f"{_STAMP}nanosec", fields.get(f"{_STAMP}nsec", 0))
     return int(fields.get(f"{_STAMP}sec", 0)) * 10**9 + int(nanoseconds)
-
-
-def _values(topic: Topic, field: str) -> list[Any]:
-    _, messages = topic.all
-    return [message.get(field) for message in messages]
-
-
-def _times(topic: Topic, zero_ns: int) -> Floats:
-    times_ns, _ = topic.all
-    return np.array([time_ns - zero_ns for time_ns in times_ns]) * 1e-9
 
 
 @contextmanager

@@ -1,44 +1,39 @@
-"""Files that are converted to a file of another format before they are read, once each."""
+"""Files that are converted to another format before they are read; packed files."""
 
 import atexit
+import bz2
+import gzip
+import lzma
+import shlex
+import zipfile
+import zlib
+from collections.abc import Callable
 from functools import cache
-from importlib import import_module
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from shutil import rmtree
 from tempfile import mkdtemp
-from typing import Any
+from typing import IO, Any
 
-from tsas_cli.recordings.guards.process import in_another_process
+from tsas_cli.recordings import readers
+from tsas_cli.recordings.guards import Expanded, damaged
 from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import state_of
+from tsas_cli.support.limits import out_of_memory
 
-SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
-_PACKED = (".gz", ".bz2", ".xz", ".zip")
-_CONVERTERS = dict.fromkeys(_PACKED, "packed") | {
-    ".jsonl": "json_table",
-    ".ndjson": "json_table",
-    ".lvm": "labview",
-    **dict.fromkeys(SHEETS, "spreadsheet"),
-}
-_ISOLATED = {"spreadsheet": "a spreadsheet"}
-SUFFIXES = tuple(_CONVERTERS)
+_OPEN: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
+PACKED = (*_OPEN, ".zip")
 _KEPT = 3  # a file is asked for names and tables first, and may be converted twice
 _made: dict[Any, Path] = {}
 
 
-def tables(path: Path) -> list[str]:
-    """Return the sheets of numbers in a spreadsheet, the longest first."""
-    name = f"{__package__}.spreadsheet"
-    return list(in_another_process(name, "tables", path, kind=_ISOLATED["spreadsheet"]))
-
-
 def is_packed(path: Path) -> bool:
     """Return whether the name of a file says that it is packed."""
-    return path.suffix.lower() in _PACKED
+    return path.suffix.lower() in PACKED
 
 
-def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
-    """Return the temporary file of a `known` format that `path` is converted to.
+def converted(path: Path, options: ReadOptions, convert: Callable[..., Path]) -> Path:
+    """Return the temporary file of a known format that `convert` makes of `path`.
 
     InputError: it is damaged, or holds no such file.
     OSError: a file cannot be read or written.
@@ -49,21 +44,11 @@ def converted(path: Path, options: ReadOptions, known: frozenset[str]) -> Path:
             rmtree(_made.pop(next(iter(_made))).parent, ignore_errors=True)
         folder = Path(mkdtemp(dir=_root()))
         try:
-            _made[key] = _convert(path, folder, options, known)
+            _made[key] = convert(path, folder, options)
         except BaseException:
             rmtree(folder, ignore_errors=True)
             raise
     return _made[key]
-
-
-def _convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
-    module = _CONVERTERS[path.suffix.lower()]
-    name, arguments = f"{__package__}.{module}", (folder, options, known)
-    if module in _ISOLATED:
-        made = in_another_process(name, "convert", path, *arguments, kind=_ISOLATED[module])
-    else:
-        made = import_module(name).convert(path, *arguments)
-    return Path(made)
 
 
 @cache
@@ -72,3 +57,62 @@ def _root() -> Path:
     root = Path(mkdtemp(prefix="tsas-"))
     atexit.register(rmtree, root, ignore_errors=True)
     return root
+
+
+_PART = 1 << 20  # bytes at a time
+
+
+def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
+    """Unpack the file of a known suffix inside `path` into a folder; return its path.
+
+    InputError: it is damaged, encrypted, holds no or several known files, or unpacks to more than a
+    recording can hold.
+    """
+    packing = path.suffix.lower()
+    try:
+        if packing == ".zip":
+            with zipfile.ZipFile(path) as archive:
+                name = _member(archive, path)
+                with archive.open(name) as stream:
+                    return _written(stream, folder, name, path)
+        with _OPEN[packing](path, "rb") as stream:
+            return _written(stream, folder, path.stem, path)
+    except MemoryError as error:
+        raise out_of_memory(path) from error
+    except (OSError, EOFError, ValueError, RuntimeError, NotImplementedError, zipfile.BadZipFile,
+            lzma.LZMAError, zlib.error) as error:  # fmt: skip
+        if isinstance(error, OSError) and error.errno is not None:  # not of the content
+            raise
+        raise damaged(path, f"a {packing} file", error) from error
+
+
+def _member(archive: zipfile.ZipFile, path: Path) -> str:
+    names = [item.filename for item in archive.infolist() if _is_known(item.filename)]
+    if len(names) == 1:
+        return names[0]
+    if not names:
+        raise InputError("holds no file that can be read", where=path, expected="one")
+    made = path.with_suffix("")
+    raise InputError(
+        f"holds {len(names)} files that can be read",
+        where=path,
+        expected="one",
+        remedy="unpack it and ingest the folder: "
+        f"unzip {shlex.quote(str(path))} -d {shlex.quote(str(made))}",
+    )
+
+
+def _is_known(name: str) -> bool:
+    inside = PurePosixPath(name)
+    hidden = any(part.startswith((".", "__MACOSX")) for part in inside.parts)
+    return inside.suffix.lower() in readers.READERS and not hidden
+
+
+def _written(stream: IO[bytes], folder: Path, name: str, path: Path) -> Path:
+    expanded = Expanded.of(path)
+    target = folder / f"unpacked{PurePosixPath(name).suffix.lower()}"  # no other part of the name
+    with target.open("wb") as file:
+        while part := stream.read(_PART):
+            expanded.grow(len(part), what="unpacked")
+            file.write(part)
+    return target

@@ -9,18 +9,18 @@ from typing import Any
 import numpy.typing as npt
 import pyarrow as pa
 
+from tsas_cli.recordings.parquet_files import unit_of
 from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ReadOptions
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a Feather file; units from field metadata `unit`."""
-    del options
     with pa.OSFile(str(path)) as stream, pa.ipc.open_file(stream) as file:
         yield Offered(
             [
-                Column(field.name, partial(_values, file, i), _unit(field))
+                Column(field.name, partial(_values, file, i), unit_of(field))
                 for i, field in enumerate(file.schema)
             ]
         )
@@ -34,11 +34,6 @@ def _values(file: pa.ipc.RecordBatchFileReader, number: int) -> npt.NDArray[Any]
         pa.chunked_array([batch.column(number) for batch in batches], file.schema.types[number])
     )
     return values
-
-
-def _unit(field: pa.Field) -> str:
-    stated: bytes = (field.metadata or {}).get(b"unit", b"")
-    return stated.decode(errors="replace")
 
 
 def to_numpy(column: pa.ChunkedArray) -> npt.NDArray[Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded
 from tsas_cli.recordings.readers.offered import Column, Offered, columns_in
 from tsas_cli.recordings.readers.table import ReadOptions, optional
 from tsas_cli.support import limits
@@ -16,12 +16,11 @@ from tsas_cli.support.errors import InputError
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the datasets of numbers by their paths, `group/name`; units from attributes.
 
     Links are not followed, but hard ones.
     """
-    del options
     h5py = optional("h5py", extra="hdf5")
     with h5py.File(path, "r") as file:
         columns: list[Column] = []

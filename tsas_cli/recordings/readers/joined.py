@@ -40,13 +40,12 @@ def joined_by(path: Path) -> list[Path]:
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of numbers of all files as `part.column`, with the clock of their file.
 
     InputError: the list or a file is wrong, a file is not in the list's folder, or its clock states
     no unit or counts from its own first date and the list no offset.
     """
-    del options
     parts = {
         name: parse(JoinedFile, one, f"{path}, {name}") for name, one in read_toml(path).items()
     }

@@ -25,7 +25,9 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """
     above, content = _descend(read_json(path), options.table, path)
     names, column = _columns(content, above.get("columns"), path)
-    header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
+    header = tuple(
+        f"{key} = {value}" for key, value in above.items() if isinstance(value, str | int | float)
+    )
     yield Offered([Column(name, partial(column, i)) for i, name in enumerate(names)], header)
 
 
@@ -87,16 +89,11 @@ def _is_column(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
 
 
-def _is_plain(value: Any) -> bool:
-    return isinstance(value, str | int | float)
-
-
-def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
     """Write the lines as one JSON list into a folder; return its path.
 
     InputError: the file is not UTF-8.
     """
-    del options, known
     made = folder / "lines.json"
     before = "["
     try:

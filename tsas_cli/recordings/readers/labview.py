@@ -12,12 +12,11 @@ _END = "***End_of_Header***"
 _SEPARATORS = {"Tab": "\t", "Comma": ","}
 
 
-def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+def convert(path: Path, folder: Path, options: ReadOptions) -> Path:
     """Write the samples with names and units as text with tabs into a folder; return its path.
 
     InputError: it is no such file, or its segments have different channels.
     """
-    del known
     made = folder / "samples.tsv"
     with (
         path.open(encoding=_encoding(path), errors="replace") as lines,

@@ -67,14 +67,16 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     comments, lines = _head(path, options)
     if not lines:
         raise InputError("holds no table", where=path, expected="rows of numbers")
-    delimiter = options.delimiter or _delimiter([text for _, text in lines])
+    shared = (d for d in "\t;, " if all(d in text.strip(" ") for _, text in lines))
+    delimiter = options.delimiter or next(shared, ",")
     rows = [fields(text, delimiter) for _, text in lines]
     limits.column_count(len(rows[0]), path)
     decimal = options.decimal or _decimal(rows, delimiter, path, options)
     names, units = [], []
     if not _has_number(rows[0], decimal):
         names = rows.pop(0)
-        if rows and _is_units_row(rows[0], decimal, options):
+        of_units = bool(rows) and any(rows[0]) and not _has_number(rows[0], decimal)
+        if rows and (of_units if options.units_row is None else options.units_row):
             units = rows.pop(0)
     elif comments and len(last := fields(comments[-1], delimiter)) == len(rows[0]):
         names = last
@@ -82,7 +84,9 @@ def detect(path: Path, options: ReadOptions) -> Layout:
         raise InputError("holds no row of numbers", where=path)
     first_line = lines[len(lines) - len(rows)][0]
     names = _fitted(names, rows[0], path, first_line)
-    units = [cell.strip("[]()") for cell in units] or [_unit_in(name) for name in names]
+    units = [cell.strip("[]()") for cell in units] or [
+        found[1].strip() if (found := _UNIT_IN_NAME.search(name)) else "" for name in names
+    ]
     units += [""] * (len(names) - len(units))
     stamps = frozenset(i for i, cell in enumerate(rows[0]) if is_stamp(cell))
     units = ["s" if i in stamps else unit for i, unit in enumerate(units)]
@@ -166,13 +170,6 @@ def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:
         ) from error
 
 
-def _delimiter(lines: Sequence[str]) -> str:
-    for candidate in ("\t", ";", ",", " "):
-        if all(candidate in line.strip(" ") for line in lines):
-            return candidate
-    return ","
-
-
 def _decimal(
     rows: Sequence[Sequence[str]], delimiter: str, path: Path, options: ReadOptions
 ) -> str:
@@ -210,12 +207,6 @@ def _has_number(row: Sequence[str], decimal: str) -> bool:
     return False
 
 
-def _is_units_row(row: Sequence[str], decimal: str, options: ReadOptions) -> bool:
-    if options.units_row is not None:
-        return options.units_row
-    return any(row) and not _has_number(row, decimal)
-
-
 def _fitted(names: list[str], row: list[str], path: Path, line: int) -> list[str]:
     if not names:
         return [""] * len(row)
@@ -229,8 +220,3 @@ def _fitted(names: list[str], row: list[str], path: Path, line: int) -> list[str
             remedy="set delimiter, decimal or skip_lines under [read] of the map",
         )
     return names
-
-
-def _unit_in(name: str) -> str:
-    found = _UNIT_IN_NAME.search(name)
-    return found[1].strip() if found else ""

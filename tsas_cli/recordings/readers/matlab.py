@@ -13,8 +13,7 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
-from tsas_cli.recordings.guards.damaged import foreign
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ReadOptions, floats
 from tsas_cli.recordings.readers.timebase import TIME
@@ -190,7 +189,7 @@ def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
             str(channel.get("Name", "")).strip('"'),
             partial(np.ravel, channel["Data"]),
             str(channel.get("Unit", "")),
-            partial(_clock, channel, clocks, path),
+            partial(_clock, channel.get("XIndex", 1), clocks),
         )
         for channel in _records(capture["Y"])
     ]
@@ -210,13 +209,7 @@ def _records(value: Any) -> list[Any]:
     return list(value) if isinstance(value, list | np.ndarray) else [value]
 
 
-def _clock(channel: Mapping[str, Any], clocks: list[Floats], path: Path) -> Floats:
-    size = np.size(channel["Data"])
-    number = channel.get("XIndex", 1)  # number of the clock, from 1
-    clock = clocks[int(number) - 1] if np.ndim(number) == 0 and 1 <= number <= len(clocks) else None
-    if clock is None or clock.size != size:
-        raise InputError(
-            f"channel {channel.get('Name', '')} has {size} samples and no clock of that length",
-            where=path,
-        )
-    return clock
+def _clock(number: Any, clocks: list[Floats]) -> Floats:
+    """Return the clock of a number, from 1; an empty one if there is none."""
+    known = np.ndim(number) == 0 and 1 <= number <= len(clocks)
+    return clocks[int(number) - 1] if known else np.empty(0)

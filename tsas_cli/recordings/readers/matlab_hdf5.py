@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded
 from tsas_cli.recordings.readers.table import optional
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError

@@ -7,15 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded
 from tsas_cli.recordings.readers.offered import Column, Offered, columns_in
 from tsas_cli.recordings.readers.table import ReadOptions
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the vectors of a file by name; those of a matrix as in `columns_in`."""
-    del options
     content = np.load(path, allow_pickle=False)
     if isinstance(content, np.ndarray):
         yield Offered(columns_in("", content))

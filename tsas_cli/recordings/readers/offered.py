@@ -1,6 +1,6 @@
 """What most readers give: the columns that a file offers, each loaded when it is requested."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, is_dataclass
 from functools import partial
@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.recordings.guards.damaged import foreign
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
@@ -24,29 +23,19 @@ from tsas_cli.recordings.readers.timebase import TIME, Seconds, is_stamp, on_one
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
+A_TIME_IN = "a time in "
 _MOST_ITEMS = 64  # of a list, whose items become columns; longer ones are images or scans
 
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a file.
+    """One column of a file, whose values and times are loaded when they are requested."""
 
-    Attributes
-    ----------
-    name
-        Empty text for a column without one.
-    values
-        Loads its values, shape (n,).
-    unit
-        The unit stated by the file, or empty.
-    times
-        Loads its own clock [s], shape (n,); None in a file whose columns are rows of one table.
-    """
-
-    name: str
-    values: Callable[[], Any]
-    unit: str = ""
-    times: Callable[[], Floats] | None = None
+    name: str  # empty text for a column without one
+    values: Callable[[], Any]  # shape (n,)
+    unit: str = ""  # stated by the file, or empty
+    times: Callable[[], Floats] | None = None  # its own clock, (n,); None in a file of one table
+    clock: str = f"{A_TIME_IN}s"  # what its clock is, and in which unit
 
 
 @dataclass(frozen=True)
@@ -80,7 +69,7 @@ def read(
     Dates become seconds since the first one of their column, durations become seconds.
 
     InputError: as from `names`; or a column is missing or not numeric, the columns hold more than a
-    file of this size can, or their clocks differ and `resample` is not set.
+    file of this size can, their clocks differ and `resample` is not set, or a clock is no time.
     """
     with _opened(path, module, kind, options) as offered:
         at = resolve(wanted, offered.names, path)
@@ -88,6 +77,8 @@ def read(
         columns, times = dict[ColumnSource, Floats](), dict[ColumnSource, Floats]()
         typed: set[ColumnSource] = set()
         found = {s: offered.columns[i] for s, i in at.items() if i < len(offered.columns)}
+        clocks = [source for source, i in at.items() if i == len(offered.columns)]
+        clock_unit = _clock_unit(found.values(), path, is_requested=bool(clocks))
         for source, column in found.items():
             values = column.values()
             expanded.add(8 * len(values), what=f"{len(values)} rows")
@@ -95,13 +86,25 @@ def read(
             typed |= {source} if is_time else set()
             if column.times is not None:
                 times[source] = column.times()
-        clocks = [source for source, i in at.items() if i == len(offered.columns)]
         if times or clocks:
             series = {s: (_clock_of(s, times, columns, path), columns[s]) for s in columns}
             columns = on_one_clock(series, path, clock_sources=clocks, resample=options.resample)
         units = {s: column.unit for s, column in found.items() if column.unit}
-        units |= dict.fromkeys([*typed, *clocks], "s")
+        units |= dict.fromkeys(typed, "s") | dict.fromkeys(clocks, clock_unit)
         return ColumnTable(columns, units, offered.header, typed=frozenset(typed))
+
+
+def _clock_unit(columns: Iterable[Column], path: Path, *, is_requested: bool) -> str:
+    """Return the unit of the columns' clocks, which have to be times if one is requested."""
+    clocks = list(dict.fromkeys(column.clock for column in columns)) or [Column.clock]
+    if len(clocks) > 1 or (is_requested and not clocks[0].startswith(A_TIME_IN)):
+        raise InputError(
+            f"the clock of the channels is {', '.join(clocks)}",
+            where=path,
+            expected="a time, in one unit",
+            remedy="map channels of one group; one without a time needs rate_Hz in the map",
+        )
+    return clocks[0].removeprefix(A_TIME_IN)
 
 
 def _clock_of(
@@ -182,7 +185,7 @@ def columns_in(
         return []
     if array.dtype.names:
         return [
-            Column(f"{name}.{field}" if name else field, partial(_field, whole, field), unit)
+            Column(f"{name}.{field}" if name else field, partial(lambda f: whole()[f], field), unit)
             for field in array.dtype.names
             if array.dtype[field].kind in "fiubmM" and array.ndim == 1
         ]
@@ -190,19 +193,12 @@ def columns_in(
         return []
     if 1 in array.shape or array.ndim == 1:
         return [Column(name, lambda: whole().ravel(), unit)]
-    across = array.shape[0] < array.shape[1]
-    named = [f"{name}(:,{j + 1})" if name else "" for j in range(min(array.shape))]
-    return [Column(n, partial(_column, whole, j, across), unit) for j, n in enumerate(named)]
-
-
-def _field(whole: Callable[[], npt.NDArray[Any]], field: str) -> npt.NDArray[Any]:
-    return whole()[field]
-
-
-def _column(
-    whole: Callable[[], npt.NDArray[Any]],
-    j: int,
-    across: bool,
-) -> npt.NDArray[Any]:
-    values = whole()
-    return values[j] if across else values[:, j]
+    axis = 0 if array.shape[0] < array.shape[1] else 1
+    return [
+        Column(
+            f"{name}(:,{j + 1})" if name else "",
+            partial(lambda j: np.take(whole(), j, axis), j),
+            unit,
+        )
+        for j in range(min(array.shape))
+    ]

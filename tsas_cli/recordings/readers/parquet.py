@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
+from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading, unit_of
 from tsas_cli.recordings.readers.feather import to_numpy
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
@@ -19,25 +19,18 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.recordings.readers.timebase import Seconds
 
 
-def batches(
-    path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
-) -> Iterator[ColumnTable]:
+def batches(path: Path, _: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
     """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
     Dates become seconds since the first one in their column, durations become seconds.
 
     InputError: the file is damaged, or a column is missing or not numeric.
     """
-    del options
     with reading(path), open_parquet(path) as file:
         schema = file.schema_arrow
         at = resolve(wanted, schema.names, path)
         fields = {source: schema.field(i) for source, i in at.items()}
-        units = {
-            s: f.metadata[b"unit"].decode(errors="replace")
-            for s, f in fields.items()
-            if b"unit" in (f.metadata or {})
-        }
+        units = {s: unit for s, f in fields.items() if (unit := unit_of(f))}
         names = [field.name for field in fields.values()]
         check_size(file, path, names, whole=False)
         # A duplicate name is read twice: `order` is the number among columns of that name.
@@ -60,8 +53,7 @@ def batches(
             yield ColumnTable({source: np.empty(0) for source in fields}, units)
 
 
-def names(path: Path, options: ReadOptions) -> Sequence[str]:
+def names(path: Path, _: ReadOptions) -> Sequence[str]:
     """Return the names of the columns."""
-    del options
     with reading(path), open_parquet(path) as file:
         return list(file.schema_arrow.names)

@@ -5,8 +5,7 @@ from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.guards.damaged import foreign
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.table import ReadOptions, optional
 from tsas_cli.support.errors import InputError, nearest
 
@@ -23,13 +22,12 @@ def tables(path: Path) -> list[str]:
     return sorted(found, key=lambda name: -len(sheets[name]))
 
 
-def convert(path: Path, folder: Path, options: ReadOptions, known: frozenset[str]) -> Path:
+def convert(path: Path, folder: Path, options: ReadOptions) -> Path:
     """Write a sheet as text with tabs into a folder; return its path. Rows keep their numbers.
 
     InputError: as from `tables`; or there are several sheets of numbers and the map names none, or
     there is none of that name.
     """
-    del known
     sheets = _sheets(path)
     found = [name for name in sheets if _has_numbers(sheets[name])]
     chosen = options.table or next(iter(found), None)

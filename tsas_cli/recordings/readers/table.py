@@ -46,30 +46,14 @@ class ReadOptions(BaseModel):
 
 @dataclass(frozen=True)
 class ColumnTable:
-    """The requested columns of one file, or of a part of its rows.
+    """The requested columns of one file, or of a part of its rows."""
 
-    Attributes
-    ----------
-    columns
-        Values by source, shape (n,); gaps are NaN.
-    units
-        The units stated by the file, by source.
-    header
-        The lines above the table, or other text of the file.
-    first_row
-        The number of the first row in the file, from 1.
-    typed
-        The columns whose unit follows from their data type, so that a map cannot set another.
-    numbers
-        The numbers of the rows in the file, shape (n,), if some of its rows were left out.
-    """
-
-    columns: Mapping[ColumnSource, Floats]
-    units: Mapping[ColumnSource, str] = field(default_factory=dict)
-    header: tuple[str, ...] = ()
-    first_row: int = 1
-    typed: frozenset[ColumnSource] = frozenset()
-    numbers: npt.NDArray[np.int64] | None = None
+    columns: Mapping[ColumnSource, Floats]  # by source, shape (n,); gaps are NaN
+    units: Mapping[ColumnSource, str] = field(default_factory=dict)  # stated by the file
+    header: tuple[str, ...] = ()  # the lines above the table, or other text of the file
+    first_row: int = 1  # the number of the first row in the file, from 1
+    typed: frozenset[ColumnSource] = frozenset()  # whose data type implies their unit
+    numbers: npt.NDArray[np.int64] | None = None  # of the rows, if some of the file are left out
 
     @property
     def row_numbers(self) -> npt.NDArray[np.int64]:
@@ -129,7 +113,9 @@ def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> 
             f"column {source} holds {values.dtype}", where=path, expected="real numbers"
         )
     try:
-        numbers = None if _has_text(values) else np.asarray(values, dtype=np.float64)
+        of_numbers = isinstance(values, np.ndarray) and values.dtype.kind in "fiub"
+        has_text = not of_numbers and any(isinstance(value, str | bytes) for value in values)
+        numbers = None if has_text else np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         numbers = None
     if numbers is None:
@@ -146,12 +132,6 @@ def not_a_number(found: object, source: ColumnSource, path: Path, row: int) -> I
         where=f"{path}, row {row}",
         expected="a number, or an empty cell for a gap",
     )
-
-
-def _has_text(values: Any) -> bool:
-    if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
-        return False
-    return any(isinstance(value, str | bytes) for value in values)
 
 
 def _number(value: Any, source: ColumnSource, path: Path, row: int) -> float:

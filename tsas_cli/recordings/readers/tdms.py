@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
@@ -15,21 +16,23 @@ from tsas_cli.support.errors import InputError
 
 
 @contextmanager
-def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
+def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the channels by name, as `group/name` if there are several groups.
 
     Where channels state their sample interval, `time` is their common clock.
     """
-    del options
     nptdms = optional("nptdms", extra="tdms")
     with nptdms.TdmsFile.open(path) as file:
         groups = [group for group in file.groups() if group.channels()]
-        channels = [c for group in groups for c in group.channels() if _is_numeric(c)]
+        channels = [c for group in groups for c in group.channels()]
+        channels = [
+            c for c in channels if c.dtype is not None and np.dtype(c.dtype).kind in "fiubM"
+        ]
         starts = [start for c in channels if (start := c.properties.get("wf_start_time"))]
         columns = [
             Column(
                 channel.name if len(groups) == 1 else f"{channel.group_name}/{channel.name}",
-                partial(_values, channel),
+                partial(getitem, channel, slice(None)),
                 str(channel.properties.get("unit_string", "")),
                 partial(_times, channel, min(starts, default=None))
                 if channel.properties.get("wf_increment")
@@ -41,14 +44,6 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
         if not columns:
             raise InputError("holds no channel of numbers", where=path)
         yield Offered(columns, tuple(f"{key} = {value}" for key, value in said.items()))
-
-
-def _is_numeric(channel: Any) -> bool:
-    return channel.dtype is not None and np.dtype(channel.dtype).kind in "fiubM"
-
-
-def _values(channel: Any) -> Any:
-    return channel[:]
 
 
 def _times(channel: Any, first: Any) -> Floats:

@@ -1,1 +1,1 @@
-"""The checks, one per file; `tsas_cli.recordings.quality.CHECKS` lists them in order."""
+"""The checks by subject, a function each; `tsas_cli.recordings.quality.CHECKS` lists them."""

@@ -4,7 +4,7 @@ A run that is a copy as a whole is left out. A stretch that two runs share has z
 them, as a gap has.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from tsas_cli.recordings.dataset import Dataset
@@ -42,8 +42,12 @@ def without_duplicates(dataset: Dataset) -> DeduplicatedDataset:
                 remedy="correct the conditions, or leave one of the two out with --runs",
             )
         by_run.setdefault(copy.run.id, []).append(copy)
-    copied = {run: _rows(copies) for run, copies in by_run.items()}
-    removed = {run for run, copies in by_run.items() if _all_of_it(copied[run], copies[0])}
+    copied = {
+        run: CopiedRows(tuple((copy.span.first, copy.span.end) for copy in copies))
+        for run, copies in by_run.items()
+    }
+    rows = {run: copies[0].all_of_run.rows for run, copies in by_run.items()}
+    removed = {run for run in copied if copied[run].mask(0, rows[run]).mean() >= WHOLE_SHARE}
     kept = dataset.only(r.id for r in dataset.runs if r.id not in removed) if removed else dataset
     return DeduplicatedDataset(
         kept,
@@ -55,11 +59,3 @@ def without_duplicates(dataset: Dataset) -> DeduplicatedDataset:
             for run, copies in by_run.items()
         ),
     )
-
-
-def _rows(copies: Sequence[Copy]) -> CopiedRows:
-    return CopiedRows(tuple((copy.span.first, copy.span.end) for copy in copies))
-
-
-def _all_of_it(copied: CopiedRows, copy: Copy) -> bool:
-    return bool(copied.mask(0, copy.all_of_run.rows).mean() >= WHOLE_SHARE)

@@ -1,4 +1,4 @@
-"""Fingerprint of a run: the resolution of each channel, and a few short stretches."""
+"""Runs in pieces, and their fingerprints: the resolution of each channel, short stretches."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -8,13 +8,16 @@ import numpy as np
 
 from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.noise import noise_sd
-from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.columns import TIME, largest
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.pieces import Piece
-from tsas_cli.recordings.quality.copies.agreement import RowSpan, RunSamples
+from tsas_cli.recordings.pieces import Piece, known_columns, long_run, pieces
+from tsas_cli.recordings.quality.copies.agreement import MARGIN_ROWS, RowSpan, RunSamples
 from tsas_cli.recordings.quality.samples import alternates, step_of
+from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats, Indices, Mask
+from tsas_cli.support.errors import InputError
 
 NOISE_SHARE = 0.05  # tolerance of a copy; a repeat deviates by more than the noise
 SINGLE_PRECISION = 2e-7  # of the largest value, rounding of single precision
@@ -106,7 +109,12 @@ def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
         if part.start == 0:
             begin_s = float(time_s[0])
             channels = {name: _Channel() for name in part.columns if name != TIME}
-            dense = tuple(name for name in channels if _is_dense(part.columns[name]))
+            valid = {name: np.isfinite(part.columns[name]) for name in channels}
+            dense = tuple(  # they vary and have values in most rows
+                name
+                for name, there in valid.items()
+                if 2 * there.sum() > there.size and np.ptp(part.columns[name][there]) > 0.0
+            )
         for name, channel in channels.items():
             channel.add(part.columns[name])
         for length, samples in _stretches(part, dense):
@@ -162,12 +170,6 @@ class _Channel:
         return Fineness(noise, step, largest, span, noisy)
 
 
-def _is_dense(values: Floats) -> bool:
-    """Return whether a channel varies and has values in most rows."""
-    valid = np.isfinite(values)
-    return bool(2 * valid.sum() > values.size and np.ptp(values[valid]) > 0.0)
-
-
 def _stretches(part: Piece, names: Sequence[str]) -> Iterator[tuple[int, RunSamples]]:
     """Yield lengths and stretches of changing rows, spread over a piece."""
     if not names:
@@ -195,3 +197,100 @@ def _crowd(values: Floats) -> Indices:
     share = (values - values.min()) / span if span > 0.0 else np.zeros(values.size)
     level = (share * (LEVELS - 1)).astype(np.int64)
     return np.asarray(np.bincount(level)[level])
+
+
+CACHE_VALUES = 1 << 23  # of short runs that stay in memory
+
+
+class Reader:
+    """The pieces of each run; short runs are cached up to `CACHE_VALUES`."""
+
+    def __init__(self, dataset: Dataset, *, strict: bool) -> None:
+        """Open a dataset; without `strict`, implausible values become NaN."""
+        self.dataset, self.strict = dataset, strict
+        self.cache: dict[str, Piece] = {}
+        self.room = CACHE_VALUES
+
+    def parts(self, run: Run) -> Iterator[Piece]:
+        """Yield the pieces of a run."""
+        if run.id in self.cache:
+            yield self.cache[run.id]
+            return
+        folder = self.dataset.folder
+        long = long_run(folder, run)
+        if long is not None:
+            parts = pieces(long, known_columns(long), strict=self.strict)
+            yield from parts if self.strict else map(_plausible, parts)
+            return
+        piece = Piece(0, dict(read_recording(folder, run, strict=self.strict).columns))
+        piece = piece if self.strict else _plausible(piece)
+        size = piece.rows * len(piece.columns)
+        if size <= self.room:
+            self.room -= size
+            self.cache[run.id] = piece
+        yield piece
+
+    def fingerprint(self, run: Run) -> Fingerprint | None:
+        """Return the fingerprint of a run; without `strict`, None if it cannot be read."""
+        try:
+            return fingerprint(run, self.parts(run))
+        except InputError:
+            if self.strict:
+                raise
+            return None
+
+
+def _plausible(piece: Piece) -> Piece:
+    """Return a piece with its implausible values as NaN."""
+    return Piece(
+        piece.start,
+        {
+            name: np.where(np.abs(values) <= largest(name), values, np.nan)
+            for name, values in piece.columns.items()
+        },
+    )
+
+
+MOST_SAMPLES = 1 << 16  # compared at once
+
+
+def side_by_side(
+    run: Iterator[Piece], source: Iterator[Piece], names: Sequence[str], shift_s: float
+) -> Iterator[tuple[int, RunSamples, RunSamples]]:
+    """Yield all samples of a run, moved by `shift_s` onto a source's clock, in order.
+
+    Each part is consecutive samples, after the number of the first in its run, and before the
+    source's samples around them. Run and source are given in pieces, at least one each; `names` are
+    the common channels.
+    """
+    row, left = 0, RunSamples(np.empty(0), np.empty((0, len(names))))
+    around = _samples(next(source), names)
+    ahead = next(source, None)
+    while True:
+        if left.time_s.size == 0:
+            part = next(run, None)
+            if part is None:
+                return
+            row, left = part.start, _samples(part, names).moved(shift_s)
+        # The last samples of a piece lack their margin until the next piece is read.
+        until = np.inf if ahead is None else around.time_s[-MARGIN_ROWS]
+        here = min(int(np.searchsorted(left.time_s, until)), MOST_SAMPLES)
+        if here:
+            now = left.part(slice(0, here))
+            first, last = np.searchsorted(around.time_s, now.time_s[[0, -1]]).tolist()
+            first = min(first, around.time_s.size - 2)  # the run may begin after the source's end
+            near = around.part(slice(max(first - MARGIN_ROWS, 0), last + MARGIN_ROWS))
+            yield row, now, near
+            row, left = row + here, left.part(slice(here, None))
+        elif ahead is not None:
+            overlap = around.part(slice(-2 * MARGIN_ROWS, None))
+            more = _samples(ahead, names)
+            around = RunSamples(
+                np.concatenate((overlap.time_s, more.time_s)),
+                np.concatenate((overlap.values, more.values)),
+            )
+            ahead = next(source, None)
+
+
+def _samples(piece: Piece, names: Sequence[str]) -> RunSamples:
+    return RunSamples(piece.columns[TIME], np.column_stack([piece.columns[n] for n in names]))

@@ -14,7 +14,6 @@ import numpy as np
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.quality.copies.agreement import (
     Copy,
     RowSpan,
@@ -24,9 +23,13 @@ from tsas_cli.recordings.quality.copies.agreement import (
     joined,
     stretches,
 )
-from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
+from tsas_cli.recordings.quality.copies.fingerprint import (
+    Fineness,
+    Fingerprint,
+    Reader,
+    side_by_side,
+)
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
-from tsas_cli.recordings.quality.copies.reader import Reader, side_by_side
 from tsas_cli.support.arrays import Floats, Indices
 
 SHIFT_TOLERANCE = 0.1  # of a sample interval, within which two shifts are one
@@ -63,27 +66,22 @@ def _found(dataset: Dataset, *, strict: bool) -> Found:
     for run in dataset.runs:
         digest = run.sha256.lower()
         if digest in first:
-            copies.append(_same_file(run, first[digest]))
+            known, same = first[digest], contradictions(run, first[digest].run)
+            copies.append(Copy(run, known.run, known.all, known.all, known.all, contradicts=same))
             continue
         one = reader.fingerprint(run)
         if one is not None:
             first[digest] = one
-    known = list(first.values())
+    searched = list(first.values())
     order = {run.id: k for k, run in enumerate(dataset.runs)}
-    copies += _search(reader, [f for f in known if f.increases], order)
+    copies += _search(reader, [f for f in searched if f.increases], order)
     if dataset.manifest.kind == "simulated":  # without noise, different rigs may have equal samples
-        quiet = {f.run.id for f in known if not f.noisy}
+        quiet = {f.run.id for f in searched if not f.noisy}
         copies = [replace(c, contradicts=()) if c.other.id in quiet else c for c in copies]
     return Found(
         tuple(sorted(copies, key=lambda c: (order[c.run.id], c.span.first))),
-        tuple(f.run.id for f in known if not f.increases),
-        tuple(f.run.id for f in known if f.increases and not f.stretches.size),
-    )
-
-
-def _same_file(run: Run, other: Fingerprint) -> Copy:
-    return Copy(
-        run, other.run, other.all, other.all, other.all, 0.0, 1, contradictions(run, other.run)
+        tuple(f.run.id for f in searched if not f.increases),
+        tuple(f.run.id for f in searched if f.increases and not f.stretches.size),
     )
 
 
@@ -129,12 +127,13 @@ def _in_source(
     for other, shift in _places(reader, source, groups, but):
         others[other.run.id] = other
         seen = places.setdefault(other.run.id, Counter())
-        seen[_known_shift(seen, shift, SHIFT_TOLERANCE * source.interval_s)] += 1
+        same = (s for s in seen if s.is_near(shift, SHIFT_TOLERANCE * source.interval_s))
+        seen[next(same, shift)] += 1
     for run, seen in places.items():
         spans: list[RowSpan] = []
         for shift, _ in seen.most_common(MOST_SHIFTS):
             for copy in _common_stretches(reader, source, others[run], shift):
-                if not any(_overlap(copy.span, span) for span in spans):
+                if not any(s.first < copy.span.end and copy.span.first < s.end for s in spans):
                     spans.append(copy.span)
                     yield copy
                     if not copy.whole:  # the source may be a part of it
@@ -142,17 +141,6 @@ def _in_source(
                         yield from _common_stretches(reader, others[run], source, back)
             if sum(span.rows for span in spans) == others[run].all.rows:
                 break
-
-
-def _overlap(a: RowSpan, b: RowSpan) -> bool:
-    return a.first < b.end and b.first < a.end
-
-
-def _known_shift(seen: Counter[Shift], shift: Shift, nearly_s: float) -> Shift:
-    for other in seen:
-        if abs(other.seconds - shift.seconds) < nearly_s and other.spline == shift.spline:
-            return other
-    return shift
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tsas_cli.recordings.guards.expansion import Expanded
+from tsas_cli.recordings.guards import Expanded
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 

@@ -1,8 +1,9 @@
-"""Foreign formats are read in a separate process, since their libraries crash on damaged files.
+"""Guards against damaged and hostile files: one error for them, limits of size, memory and time.
 
-The process is reused for the next file, except after a refused one; it ends with this one. A file
-that crashes it, or exceeds the time or memory of a file of its size, ends that process and raises
-an error here.
+Foreign formats are read in a separate process, since their libraries crash on damaged files. The
+process is reused for the next file, except after a refused one; it ends with this one. A file that
+crashes it, or exceeds the time or memory of a file of its size, ends that process and raises an
+error here.
 """
 
 import atexit
@@ -10,17 +11,102 @@ import os
 import signal
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from threading import Lock, Timer
 from typing import Any
 
-from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.limits import out_of_memory
 from tsas_cli.support.worker_process import WorkerProcess
 
 LEAST_S, BYTES_PER_S = 60.0, 1e6  # time limit: least, and per size of the file
 LEAST_BYTES, BYTES_PER_BYTE = 2 << 30, 20  # memory limit, likewise
+
+
+class EncryptedError(InputError):
+    """The file, or a column of it, is encrypted."""
+
+
+def damaged(path: object, kind: str, error: Exception) -> InputError:
+    """Return the error for a file that the library for its format refuses."""
+    if "crypt" in str(error):  # of pyarrow, at an encrypted file or column
+        return EncryptedError(
+            "holds encrypted columns",
+            where=path,
+            expected="columns that can be read",
+            remedy="decrypt them, and write the file again without encryption",
+        )
+    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+    return InputError(
+        f"cannot be read as {kind} ({reason})",
+        where=path,
+        remedy="the file may be incomplete: copy or export it again",
+    )
+
+
+@contextmanager
+def foreign(path: object, kind: str) -> Iterator[None]:
+    """Convert the errors of the library for a format to `InputError`."""
+    try:
+        yield
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise out_of_memory(path) from error
+    except Exception as error:  # a damaged file raises any of a dozen types
+        raise damaged(path, kind, error) from error
+
+
+@dataclass
+class Expanded:
+    """Unpacked bytes and items (variables, cells, blocks) of one file so far."""
+
+    path: object
+    of_file: int
+    most: int = limits.EXPANSION
+    bytes: int = 0
+    items: int = 0
+
+    @classmethod
+    def of(cls, path: Path, most: int = limits.EXPANSION) -> "Expanded":
+        """Return the empty count of a file that may expand to `most` times its size."""
+        return cls(path, path.stat().st_size, most)
+
+    def add(self, more: int, *, what: str = "") -> None:
+        """Count one item of so many bytes.
+
+        InputError: the file expands to more than a recording of its size can hold.
+        """
+        self.items += 1
+        if self.items > min(limits.ITEMS, max(1000, self.of_file // 8)):
+            raise InputError(
+                f"holds more than {self.items - 1} variables, or refers to one repeatedly",
+                where=self.path,
+                expected="a recording",
+                remedy="export the channels that you need",
+            )
+        self.grow(more, what=what)
+
+    def grow(self, more: int, *, what: str = "") -> None:
+        """Count more bytes of the same item."""
+        self.bytes += more
+        if self.bytes > max(limits.HARMLESS, self.most * self.of_file):
+            claimed = f"{what}, {limits.size(self.bytes)}" if what else limits.size(self.bytes)
+            raise InputError(
+                f"{claimed} or more from a file of {limits.size(self.of_file)}",
+                where=self.path,
+                expected=f"at most {self.most} times its size",
+                remedy="it may be damaged; else export it without compression, or as CSV",
+            )
+
+    def fits(self) -> None:
+        """Refuse a file that is loaded whole and exceeds the memory."""
+        limits.fits(self.path, limits.COPIES * self.bytes)
 
 
 class _Process:

@@ -1,20 +1,13 @@
-"""A channel is off by the ratio of two units: most likely its unit is not that in its name.
-
-Pairs that must agree are compared: the travel of the tendon's two ends; the level of the two
-tensions (their ratio is averaged geometrically over both directions, which cancels friction); the
-slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval with
-the duration of the strokes. A slope that is off by no known unit is a wrong gain or a wrong data
-sheet. A wide dead band also reduces the distal travel, but then the distal path is no scaled copy
-of the proximal one.
-"""
+"""The checks of channels whose sizes or times must agree."""
 
 import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Floats
 
 # Each ratio, if a channel were in that unit.
 _TRAVEL = {
@@ -54,10 +47,22 @@ _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
 
 
-def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
-    """Yield the channels that look as if they were in another unit."""
+def unit(trial: RunSignals) -> Remarks:
+    """A channel is off by the ratio of two units: most likely its unit is not that in its name.
+
+    Pairs that must agree are compared: the travel of the tendon's two ends; the level of the two
+    tensions (their ratio is averaged geometrically over both directions, which cancels friction);
+    the slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval
+    with the duration of the strokes. A slope that is off by no known unit is a wrong gain or a
+    wrong data sheet. A wide dead band also reduces the distal travel, but then the distal path is
+    no scaled copy of the proximal one.
+    """
     yield from _time(trial)
-    travel, tension, stiffness = _travel_ratio(trial), _tension_ratio(trial), _slope_ratio(trial)
+    tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
+    driven = trial.recording.run.load == "displacement"
+    travel = None
+    if trial.strokes and not driven and "x_out_mm" in trial.channels:
+        travel = _slope(trial, "x_in_mm", "x_out_mm")
     if travel is None and tension is None and stiffness is None:
         yield CannotTell("no two channels whose sizes must agree were recorded and move")
     yield from _suspect_unit(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
@@ -123,14 +128,6 @@ def _suspect_unit(
         )
 
 
-def _travel_ratio(trial: RunSignals) -> float | None:
-    """Return the travel of x_out over that of x_in, if one is a scaled copy of the other."""
-    driven = trial.recording.run.load == "displacement"
-    if driven or not trial.strokes or "x_out_mm" not in trial.channels:
-        return None
-    return _slope(trial, "x_in_mm", "x_out_mm")
-
-
 def _tension_ratio(trial: RunSignals) -> float | None:
     """Return the level of f_out over f_in, averaged geometrically over the two directions."""
     if not trial.strokes or not {"f_in_N", "f_out_N"} <= trial.channels.keys():
@@ -146,9 +143,8 @@ def _tension_ratio(trial: RunSignals) -> float | None:
 
 def _slope_ratio(trial: RunSignals) -> float | None:
     """Return the slope of f_out over x_out divided by the data sheet's load stiffness."""
-    nominal = trial.rig.load_stiffness_N_per_mm
-    spring = trial.recording.run.load == "spring"
-    if nominal is None or not spring or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
+    nominal = trial.rig.load_stiffness_N_per_mm if trial.on_spring else None
+    if nominal is None or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
         return None
     slope = _slope(trial, "x_out_mm", "f_out_N")
     return slope / nominal if slope is not None else None
@@ -177,4 +173,109 @@ def _time(trial: RunSignals) -> Iterator[Remark]:
         )
 
 
-CHECK = QualityCheck("unit", find, of_long="strokes")
+_MOST_CYCLES = 100  # evenly spread; more would not improve the estimate
+_ROUNDS = 20
+_ROWS = 40  # least number of independent rows of a smoothed cycle
+_SLOW = 0.3  # of the RMS speed: below, noise decides its sign
+_SPRING = 0.002  # largest share of the tension's variance that a spring leaves unexplained
+_OWN = 0.02  # least share of the speed that the other terms leave unexplained
+
+
+def delay(trial: RunSignals) -> Remarks:
+    """The tension at the load comes before or after the displacement at the load.
+
+    A spring's tension follows its displacement without lag, so a time shift between the two is an
+    artefact of the recording: filters, another bus, another clock. It is fitted cycle by cycle,
+    together with the spring's curvature and a friction at the load, and reported when the cycles
+    agree and it matters: above half a sample, and with an error of the tension above a quarter of
+    the noise. Other pairs of channels lag by the physics of the sheath and are not judged. A damper
+    or a mass at the load looks like a delay too.
+    """
+    if not trial.on_spring:
+        yield CannotTell(
+            "the load is no spring, so the tension at the load need not follow the displacement"
+        )
+        return
+    if not trial.increases:
+        yield CannotTell("time does not increase")
+        return
+    strokes = zip(trial.strokes[::2], trial.strokes[1::2], strict=False)
+    cycles = [slice(one.start, other.stop + 1) for one, other in strokes]
+    cycles = cycles[:: max(1, -(-len(cycles) // _MOST_CYCLES))]
+    delays = np.array([d for d in (_delay(trial, rows) for rows in cycles) if math.isfinite(d)])
+    if delays.size < 2:
+        yield CannotTell("fewer than two cycles of changing speed with a load like a spring")
+        return
+    mean, half = float(delays.mean()), _half_interval(delays)
+    if abs(mean) - half > _smallest(trial):
+        yield Remark(
+            "warning",
+            f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
+            f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
+            "use the same filter and clock for both channels, or shift one at the source (offset_s "
+            "in a .join list)",
+            "f_out_N",
+        )
+
+
+def _smallest(trial: RunSignals) -> float:
+    """Return the shortest delay that matters [s]."""
+    force = trial.channels["f_out_N"]
+    rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
+    return max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
+
+
+def _delay(trial: RunSignals, rows: slice) -> float:
+    """Return the delay of f_out behind x_out in one cycle [s]; NaN if it is not identifiable."""
+    x, y, time = (
+        trial.channels["x_out_mm"][rows],
+        trial.channels["f_out_N"][rows],
+        trial.time_s[rows],
+    )
+    valid = np.isfinite(x) & np.isfinite(y)
+    width = max(int(valid.sum()) // _ROWS, 1)
+    if valid.sum() < 2 * _ROWS or np.ptp(x[valid]) < 2.0 * trial.visible("x_out_mm"):
+        return math.nan
+    mean = np.ones(width) / width
+    x, y, time = (np.convolve(values[valid], mean, mode="valid") for values in (x, y, time))
+    longest = 0.25 * float(time[-1] - time[0])
+    delay = 0.0
+    for _ in range(_ROUNDS):
+        inside = (time - delay >= time[0]) & (time - delay <= time[-1])
+        shifted = np.interp(time - delay, time, x)
+        change = _remaining_delay(time[inside], shifted[inside], y[inside])
+        delay += change
+        if not abs(delay) < longest:
+            return math.nan
+        if abs(change) < 1e-3 * float(time[1] - time[0]):
+            return delay
+    return math.nan
+
+
+def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
+    """Return −c/b of y = a + b x + d x² + e sgn(v) + c v.
+
+    NaN if the speed is a combination of the other terms, or the terms do not explain the tension.
+    """
+    speed = np.gradient(x, time)
+    moving = np.abs(speed) > _SLOW * np.sqrt(np.mean(speed**2))
+    if moving.sum() < _ROWS // 2:
+        return math.nan
+    x, y, speed = x[moving] - x[moving].mean(), y[moving], speed[moving]
+    others = np.column_stack([np.ones_like(x), x, x**2, np.sign(speed)])
+    own = speed - others @ np.linalg.lstsq(others, speed, rcond=None)[0]
+    if np.sum(own**2) < _OWN * np.sum(speed**2):
+        return math.nan
+    terms = np.column_stack([others, speed])
+    coefficients = np.linalg.lstsq(terms, y, rcond=None)[0]
+    if np.var(y - terms @ coefficients) > _SPRING * np.var(y):
+        return math.nan
+    return float(-coefficients[4] / coefficients[1])
+
+
+def _half_interval(delays: Floats) -> float:
+    """Return half the 95 % interval of the mean, each cycle one observation."""
+    from scipy.special import stdtrit
+
+    quantile = float(stdtrit(delays.size - 1, 0.975))
+    return quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from tests.recordings.readers.matlab_files import save_5
-from tsas_cli.recordings.guards import process as module
-from tsas_cli.recordings.guards.process import in_another_process
+from tsas_cli.recordings import guards as module
+from tsas_cli.recordings.guards import in_another_process
 from tsas_cli.recordings.readers import read
 from tsas_cli.recordings.readers.table import ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
@@ -125,11 +125,11 @@ def test_errors_name_the_file_as_it_was_called(path, monkeypatch):
 def test_the_process_ends_with_the_one_that_started_it(path):
     script = path.with_name("script.py")
     script.write_text(
-        "from tests.recordings.guards.test_process import ask, prints\n"
+        "from tests.recordings.test_process import ask, prints\n"
         "from pathlib import Path\n"
         f"print(ask(Path({str(path)!r}), prints))\n"
     )
-    environment = os.environ | {"PYTHONPATH": str(Path(module.__file__).parents[3])}
+    environment = os.environ | {"PYTHONPATH": str(Path(module.__file__).parents[2])}
     call = [sys.executable, str(script)]
     done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
     for _ in range(400):

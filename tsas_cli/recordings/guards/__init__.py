@@ -1,1 +1,0 @@
-"""Limits on the memory and time that reading a file may take."""

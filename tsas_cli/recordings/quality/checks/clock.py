@@ -1,0 +1,218 @@
+"""The checks of a run's times."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
+from tsas_cli.support.wording import count_of
+
+
+def time_order(trial: RunSignals) -> Remarks:
+    """Time stops, decreases, or increases by an implausible step.
+
+    The clock was set, rows are duplicate, or files were joined in the wrong order; or the unit of
+    time is wrong by orders of magnitude. Every other stage refuses such a run.
+    """
+    step = np.diff(trial.time_s)
+    rows = np.flatnonzero(step <= 0) + 1
+    if rows.size == 0:
+        yield from _implausible_steps(trial, (step < SHORTEST_STEP_S) | (step > LONGEST_STEP_S))
+        return
+    row = int(rows[0])
+    before, after = trial.time_s[row - 1], trial.time_s[row]
+    yield Remark(
+        "error",
+        f"time does not increase at {rows.size} of {trial.time_s.size} rows, first at row "
+        f"{trial.first_row + row} ({before:.6g} s, then {after:.6g} s)",
+        "correct the clock or the order of the rows at the source, then ingest again",
+        "time_s",
+        float(before),
+    )
+
+
+def _implausible_steps(trial: RunSignals, implausible: Mask) -> Iterator[Remark]:
+    if implausible.any():
+        row = int(implausible.argmax()) + 1
+        before = float(trial.time_s[row - 1])
+        yield Remark(
+            "error",
+            f"time increases by less than {SHORTEST_STEP_S:g} s or more than {LONGEST_STEP_S:g} s "
+            f"at {int(implausible.sum())} of {implausible.size + 1} rows, first at row "
+            f"{trial.first_row + row} "
+            f"({before:.6g} s, then {trial.time_s[row]:.6g} s)",
+            "check the unit of the time, then ingest again",
+            "time_s",
+            before,
+        )
+
+
+def time_batches(trial: RunSignals) -> Remarks:
+    """Rows arrive in batches, and their times are those of the arrival.
+
+    A computer reads a buffer of the data acquisition every few samples and stamps the rows then:
+    times are near together, or equal, and jump between batches. The channels move on evenly from
+    row to row, which tells batches from gaps. Wrong times are a wrong phase of every motion; the
+    finding says how much that is beside the noise.
+    """
+    batches = trial.batches
+    if batches is None:
+        return
+    costs = {
+        name: batches.cost(values, trial.sizes[name].noise)
+        for name, values in trial.mechanical.items()
+    }
+    worst = max(costs, key=lambda name: costs[name], default=None)
+    cost = "" if worst is None else f"; the wrong times change {worst} by {costs[worst]:.2g}"
+    yield Remark(
+        "error",
+        f"rows come in batches of {batches.rows}: their times are {1e3 * batches.within_s:.3g} ms "
+        f"apart, then {1e3 * batches.between_s:.4g} ms"
+        + (f"{cost} × its noise level (RMS)" if cost else ""),
+        "if no sample is lost, let the rows count at ingest: time_s = { rate_Hz = "
+        f"{1.0 / batches.row_s:.5g} }} in the map; record with the clock of the data acquisition",
+        "time_s",
+    )
+
+
+_TOLERATED = 0.05
+
+
+def time_jitter(trial: RunSignals) -> Remarks:
+    """The sample interval scatters.
+
+    A logger on a busy computer, or rounded time stamps. The scatter is the RMS about the usual
+    interval, without gaps; it is reported above 5 %. The usual interval is the mean without the
+    shortest and longest twentieth: where a logger makes late stamps increase, half are too close.
+    """
+    if not trial.increases:
+        yield CannotTell("time does not increase")
+        return
+    if trial.batches is not None:
+        yield CannotTell("rows come in batches")
+        return
+    interval = np.diff(trial.time_s)
+    usual = float(np.mean(np.sort(interval)[interval.size // 20 : -(interval.size // 20) or None]))
+    steady = interval < 2.5 * usual
+    scatter = float(np.sqrt(np.mean((interval[steady] / usual - 1.0) ** 2)))
+    if scatter > _TOLERATED:
+        yield Remark(
+            "warning",
+            f"the sample interval scatters by {100 * scatter:.3g} % about {1e3 * usual:.4g} ms "
+            f"(from {1e3 * interval.min():.4g} to {1e3 * interval[steady].max():.4g} ms)",
+            "record with the clock of the data acquisition instead of the computer's",
+            "time_s",
+        )
+
+
+_BLOCK = 16  # rows
+_FEWEST_BLOCKS = 30
+_MEDIAN_OF_THIRD = 0.6745 * np.sqrt(20.0)  # of |third difference|, for noise of unit deviation
+_SLOW, _FAST = 0.3, 0.7  # quantiles of the speed
+_TIMES = 2.0  # the noise of slow motion
+_ALIKE = 1.5  # ratio of two times at most
+
+
+def unsteady_sampling(trial: RunSignals) -> Remarks:
+    """The samples were taken at other times than those that are written down.
+
+    A busy computer reads its sensors early and late, and writes even times. Each channel then has
+    noise in proportion to its speed, all by the same time. Reported where the noise of two channels
+    more than doubles from slow to fast motion, by times that agree.
+    """
+    if not trial.increases:
+        yield CannotTell("time does not increase")
+        return
+    found: dict[str, float] = {}
+    for name, values in trial.noisy.items():
+        scatter_s = _scatter_s(trial.time_s, values) if trial.moves(name) else None
+        if scatter_s is not None:
+            found[name] = scatter_s
+    sizes = sorted(found.values())
+    pairs = [b for a, b in pairwise(sizes) if b < _ALIKE * a]
+    if pairs:
+        yield Remark(
+            "error",
+            f"the noise of {' and '.join(found)} grows with the speed as if the samples were "
+            f"taken {1e3 * pairs[0]:.2g} ms (RMS) early or late",
+            "record with the clock of the data acquisition, or write down the time of each sample",
+        )
+
+
+def _scatter_s(time_s: Floats, values: Floats) -> float | None:
+    """Return the scatter of the times that explains a channel's noise [s]; None if none does."""
+    count = (values.size - 3) // _BLOCK
+    if count < _FEWEST_BLOCKS:
+        return None
+    third = np.abs(np.diff(values, 3))[: count * _BLOCK].reshape(count, _BLOCK)
+    noise = np.median(third, axis=1) / _MEDIAN_OF_THIRD
+    ends = _BLOCK * np.arange(count + 1)
+    speed = np.abs(np.diff(values[ends]) / np.diff(time_s[ends]))
+    slow, fast = np.quantile(speed, (_SLOW, _FAST))
+    calm = float(np.median(noise[speed <= slow]))
+    loud, at = float(np.median(noise[speed >= fast])), float(np.median(speed[speed >= fast]))
+    if not calm > 0.0 or loud < _TIMES * calm or at == 0.0:
+        return None
+    return float(np.sqrt(loud**2 - calm**2) / at)
+
+
+_COMMON = 0.05  # share of long intervals from which on they are jitter
+_GAP_REMEDY = "look for lost samples at the source; the stages leave the gap out"
+
+
+def gap(trial: RunSignals) -> Remarks:
+    """Samples are missing: rows that were not recorded, or cells that are empty.
+
+    An interval is a gap if it exceeds 1.5 times the median and the scatter of the others. Gaps are
+    never filled; each stage leaves them out.
+    """
+    if trial.batches is not None:
+        yield CannotTell("rows come in batches, so missing rows cannot be seen")
+    elif trial.increases:
+        yield from _missing_rows(trial)
+    else:
+        yield CannotTell("time does not increase, so missing rows cannot be seen")
+    for name, values in trial.recording.columns.items():
+        empty = ~np.isfinite(values)
+        if name != TIME and empty.any():
+            yield _empty_cells(trial, name, empty)
+
+
+def _missing_rows(trial: RunSignals) -> Iterator[Remark]:
+    interval = np.diff(trial.time_s)
+    median = float(np.median(interval))
+    scatter = 1.4826 * float(np.median(np.abs(interval - median)))
+    gaps = np.flatnonzero(interval > max(1.5 * median, median + 8.0 * scatter))
+    if 0 < gaps.size < _COMMON * interval.size:
+        longest = gaps[np.argmax(interval[gaps])]
+        yield Remark(
+            "warning",
+            f"rows are missing at {count_of(gaps.size, 'place')}; the longest gap is "
+            f"{interval[longest]:.4g} s at {trial.time_s[longest]:.6g} s "
+            f"(the sample interval is {1e3 * median:.4g} ms)",
+            _GAP_REMEDY,
+            TIME,
+            float(trial.time_s[gaps[0]]),
+        )
+
+
+def _empty_cells(trial: RunSignals, name: str, empty: Mask) -> Remark:
+    if empty.all() and (trial.overall is None or name not in trial.overall):
+        return Remark("error", f"{name} holds no value at all", "leave the column out", name)
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))
+    starts, lengths = edges[::2], edges[1::2] - edges[::2]
+    longest = int(np.argmax(lengths))
+    return Remark(
+        "warning",
+        f"{name} is empty in {int(empty.sum())} of {empty.size} rows, at "
+        f"{count_of(starts.size, 'place')}; the longest has {lengths[longest]} rows "
+        f"at {trial.time_s[starts[longest]]:.6g} s",
+        _GAP_REMEDY,
+        name,
+        float(trial.time_s[starts[0]]),
+    )

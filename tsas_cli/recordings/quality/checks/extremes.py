@@ -1,0 +1,250 @@
+"""The checks of a channel's range: its ends, its rests, its steps, its mean."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.numerics.turning_points import turning_points
+from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks, Severity
+from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
+from tsas_cli.recordings.quality.trial import RunSignals, Stroke
+from tsas_cli.support.wording import count_of
+
+_ZERO = 0.15  # of the channel's span: the mean of the second half
+_NEGATIVE = 0.2  # share of the samples there
+
+
+def ac_coupled(trial: RunSignals) -> Remarks:
+    """A tension has no constant part: its amplifier passes changes alone.
+
+    A tendon that pushes nowhere has a positive tension; behind a coupling to AC its mean falls to
+    zero within the time constant of the coupling, and what is left is negative half of the time.
+    Reported where the second half of a run has a mean near zero in both directions of the drive,
+    though the manifest states a preload. A zero that was set under load is a constant offset: it
+    leaves the mean where it was at the start.
+    """
+    preload = trial.recording.run.preload_N
+    if not preload or not trial.strokes:
+        yield CannotTell("no preload is stated, or the drive does not move")
+        return
+    for name in ("f_in_N", "f_out_N"):
+        if name not in trial.channels:
+            continue
+        values = trial.channels[name]
+        late = values[values.size // 2 :]
+        span = trial.sizes[name].span
+        began = float(np.nanmean(values[: trial.strokes[0].stop + 1]))
+        mean = float(np.nanmean(late))
+        if abs(mean) < _ZERO * span < began and np.nanmean(late < 0.0) > _NEGATIVE:
+            yield Remark(
+                "error",
+                f"{name} begins at {began:.3g} N and has a mean of {mean:.2g} N in the second half "
+                f"of the run, with a preload of {preload:g} N: its amplifier is coupled to AC",
+                "set the amplifier to DC and record again",
+                name,
+            )
+
+
+_FEWEST_ROWS = 5
+_TRAVEL = 0.05  # of the drive's span
+_LONG = 0.8  # of that span: strokes that are compared with what a line foretells
+_BEFORE, _LAST = (0.5, 0.8), 0.93  # shares of such a stroke
+_FOLLOWS = 0.3  # of the channel's span, that it changes by over a stroke at least
+_FLAT = 0.25  # slope at the end over that before
+_NEAR, _FEWEST_STROKES, _MOST_OF_THEM = 2.0, 2, 0.7
+_STRAIGHT = 1.0 / 3.0  # of what is visible: the RMS about a line, twice the noise
+_CLIPPED_REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
+
+
+def clipped(trial: RunSignals) -> Remarks:
+    """A channel sits at its highest or lowest value while the motion goes on.
+
+    The sensor or its amplifier is at the end of its range, or the part is at a stop. Reported when
+    the channel stays constant at its extreme while the drive moves on by more than a twentieth of
+    its span. Not clipping: a dwell (everything rests), the dead band after a reversal (the drive
+    moves back), a coarse step at the peak of a sine, a rest at the beginning. With noise behind the
+    end of the range, or a soft end, nothing is constant: then the end of each long stroke is a flat
+    line but for noise, and lacks what the stroke before it foretells. A force that falls with the
+    speed is curved there.
+    """
+    for name in trial.mechanical:
+        if name == trial.prescribed:
+            yield CannotTell(f"{name} is prescribed by the load, and may stay at its extremes")
+            continue
+        if trial.sizes[name].lowest == trial.sizes[name].highest:
+            continue
+        for end, sign in (("highest", 1), ("lowest", -1)):
+            exact = list(_clipping(trial, name, end, sign))
+            yield from exact or _saturation(trial, name, end, sign)
+
+
+def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
+    values = trial.channels[name]
+    extreme = trial.sizes[name].highest if sign > 0 else trial.sizes[name].lowest
+    flat = [
+        rows
+        for rows in plateaus(values, _FEWEST_ROWS)
+        if rows.start > 0
+        and values[rows.start] == extreme
+        and _motion_continues(trial, name, rows, sign)
+    ]
+    if flat:
+        seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
+        yield Remark(
+            "error",
+            f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in "
+            f"{count_of(len(flat), 'plateau')} while the motion goes on",
+            _CLIPPED_REMEDY,
+            name,
+            float(trial.time_s[flat[0].start]),
+        )
+
+
+def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
+    """Yield that a channel ends at a level, with noise on it, in all strokes that reach there."""
+    strokes = [s for s in trial.strokes if s.direction == sign]
+    ends = [_end_of_stroke(trial, name, s) for s in strokes] if name != "x_in_mm" else []
+    flat = [(level, lacks) for level, lacks, at_end in filter(None, ends) if at_end]
+    if not flat:
+        return
+    level = sign * max(sign * level for level, _ in flat)
+    near = [e for e in filter(None, ends) if abs(e[0] - level) < _NEAR * trial.visible(name)]
+    lacks = [e[1] for e in near if e[2]]
+    if len(lacks) >= max(_FEWEST_STROKES, _MOST_OF_THEM * len(near)):
+        yield Remark(
+            "error",
+            f"{name} ends at its {end} level {level:.4g} in {count_of(len(lacks), 'stroke')} while "
+            f"the motion goes on: up to {max(lacks):.2g} {name.rsplit('_', 1)[1]} are cut off",
+            _CLIPPED_REMEDY,
+            name,
+        )
+
+
+def _end_of_stroke(
+    trial: RunSignals, name: str, stroke: Stroke
+) -> tuple[float, float, bool] | None:
+    """Return a channel's level at the end of a stroke, how much it lacks there, and if it is flat.
+
+    It lacks what a line through the part of the stroke before foretells; None for a stroke that is
+    short, or in which the channel does not follow.
+    """
+    x, y = (trial.channels[n][stroke.rows] for n in ("x_in_mm", name))
+    share = (x - x[0]) / (x[-1] - x[0])
+    before, last = (share > _BEFORE[0]) & (share < _BEFORE[1]), share > _LAST
+    long = abs(x[-1] - x[0]) > _LONG * trial.sizes["x_in_mm"].span
+    if not long or min(before.sum(), last.sum()) < _FEWEST_ROWS or not np.isfinite(y).all():
+        return None
+    slope, at_zero = np.polyfit(share[before], y[before], 1)
+    if stroke.direction * slope < _FOLLOWS * trial.sizes[name].span:
+        return None
+    own = np.polyfit(share[last], y[last], 1)
+    if float(np.ptp(y[last])) == 0.0:
+        return None
+    level = float(y[last].mean())
+    lacks = stroke.direction * (at_zero + slope - level)
+    flat = own[0] / slope < _FLAT and lacks > trial.visible(name) + 0.5 * (1.0 - _LAST) * abs(slope)
+    straight = np.std(y[last] - np.polyval(own, share[last])) < _STRAIGHT * trial.visible(name)
+    return level, float(lacks), bool(flat and straight)
+
+
+def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
+    """Return whether the motion continues beyond its position at the start of the plateau."""
+    coarse = 4.0 * trial.sizes[name].step / max(trial.sizes[name].span, 1e-300)
+    for other in trial.references(name):
+        moved = sign * (trial.channels[other][rows] - trial.channels[other][rows.start])
+        further = float(np.nanmax(moved, initial=0.0))
+        needed = max(_TRAVEL, coarse) * trial.sizes[other].span + trial.visible(other)
+        back = float(np.nanmin(moved, initial=0.0))
+        if further > needed and -back < 0.6 * trial.sizes[other].span:
+            return True
+    return False
+
+
+_FEWEST_UPDATES = 20
+_LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel
+
+
+def stuck(trial: RunSignals) -> Remarks:
+    """A channel does not change at all while the motion goes back and forth.
+
+    The sensor, its cable or its software hangs. A noisy channel is stuck if it does not change for
+    20 updates during visible motion; a noiseless one only if the drive crosses most of its span and
+    returns, because the distal end also rests in a dead band.
+    """
+    for name, values in trial.mechanical.items():
+        if name == trial.prescribed:
+            yield CannotTell(f"{name} is prescribed by the load, and may rest")
+            continue
+        if trial.sizes[name].lowest == trial.sizes[name].highest:
+            yield _unchanging("warning", trial, name, slice(0, values.size))
+            continue
+        between = rows_between_changes(values)
+        shortest = int(_FEWEST_UPDATES * np.median(between)) if between.size else _FEWEST_UPDATES
+        long = plateaus(values, shortest)
+        noisy = bool(long) and _noisy(trial, name, long)
+        stuck = [rows for rows in long if _hangs(trial, name, rows, noisy=noisy)]
+        if stuck:
+            yield _unchanging("error", trial, name, max(stuck, key=lambda r: r.stop - r.start))
+
+
+def _unchanging(severity: Severity, trial: RunSignals, name: str, rows: slice) -> Remark:
+    begin, end = trial.time_s[rows.start], trial.time_s[rows.stop - 1]
+    return Remark(
+        severity,
+        f"{name} does not change from {begin:.6g} s to {end:.6g} s "
+        f"(it stays at {trial.channels[name][rows.start]:.6g})",
+        "check the sensor and its cable, and leave the column or this stretch out",
+        name,
+        float(begin),
+    )
+
+
+def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
+    values = trial.channels[name]
+    interior = trial.sizes[name].lowest < values[rows.start] < trial.sizes[name].highest
+    for other in trial.references(name):
+        motion = trial.channels[other][rows]
+        motion = motion[np.isfinite(motion)]
+        if motion.size < 2:
+            continue
+        if interior and noisy and np.ptp(motion) > 2.0 * trial.visible(other):
+            return True
+        span = trial.sizes[other].span
+        strokes = np.abs(np.diff(motion[turning_points(motion, 0.2 * span)]))
+        if np.ptp(motion) > 0.6 * span and strokes.sum() > 1.5 * span:  # it crosses and returns
+            return True
+    return False
+
+
+def _noisy(trial: RunSignals, name: str, long: list[slice]) -> bool:
+    """Return whether the noise exceeds the quantisation outside the long plateaus."""
+    values = trial.channels[name].copy()
+    for rows in long:
+        values[rows] = np.nan
+    least = max(trial.sizes[name].step, _LEAST_NOISE * trial.sizes[name].span)
+    return alternates(values) and noise_sd(values) > least
+
+
+_NOTE, _WARNING = 1 / 500, 1 / 50
+
+
+def quantised(trial: RunSignals) -> Remarks:
+    """A channel moves in steps that are coarse for its noise and its range.
+
+    A note if the step is more than twice the noise, so that averaging does not resolve it, and more
+    than a 500th of the range; a warning from a 50th of the range on.
+    """
+    for name in trial.mechanical:
+        step, noise, span = trial.sizes[name].step, trial.sizes[name].noise, trial.sizes[name].span
+        if step <= max(2.0 * noise, _NOTE * span) or span == 0.0:
+            continue
+        coarse = step > _WARNING * span and name != trial.prescribed
+        unit = name.rsplit("_", 1)[1]
+        yield Remark(
+            "warning" if coarse else "note",
+            f"{name} moves in steps of {step:.4g} {unit}, {100 * step / span:.2g} % of its range "
+            f"of {span:.4g} {unit}; its noise is {noise:.2g} {unit}",
+            "use a finer resolution or a smaller measuring range, if residuals below a step matter",
+            name,
+        )

@@ -1,0 +1,230 @@
+"""The checks of a channel's noise: outliers, interference from the mains, filters."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.columns import largest
+from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
+from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.wording import count_of
+
+_ASIDE = 3  # neighbours on each side
+_NEAR, _FAR = 3.5, 5.0  # times their usual deviation from their median
+_APART = 1.5  # times as many as between these: noise with long tails has fewer
+_BEYOND = 3.0  # the same, beyond both neighbours
+_RARE, _OFTEN = 0.012, 0.1  # share of all samples
+_PARTS, _EVERYWHERE = 20, 0.6  # of the run, and the share of them that holds some
+
+
+def outlier(trial: RunSignals) -> Remarks:
+    """Single samples are far from the samples before and after them.
+
+    A bit error on a line, a sentinel for a missing value, a loose plug. One outlier can dominate a
+    fit by least squares. Reported are one to three consecutive samples that deviate from both
+    neighbours by more than 20 times the noise, ten quantisation steps and a twentieth of the span,
+    ten times steeper than the neighbouring samples; and any implausible value, which every other
+    stage refuses. Many outliers are a warning: 1 to 10 % of the samples deviate from the median of
+    their neighbours by more than five times the noise, in all parts of the run, and fewer by a
+    little less; noise with long tails has more of those. Not reported: a lasting step, a fast
+    reversal.
+    """
+    yield from _frequent(trial)
+    for name, outlying in trial.outlying.items():
+        rows = np.flatnonzero(outlying)
+        if rows.size == 0:
+            continue
+        values = trial.recording.columns[name]
+        usual = float(np.nanmedian(values))
+        farthest = rows[np.argmax(np.abs(values[rows] / 2.0 - usual / 2.0))]
+        plausible = abs(values[farthest]) <= largest(name)
+        yield Remark(
+            "error",
+            f"{name} holds {count_of(rows.size, 'sample')} far from "
+            f"{'the samples before and after' if plausible else 'any plausible value'}; the "
+            f"farthest is {values[farthest]:.6g} at {trial.time_s[farthest]:.6g} s, "
+            f"row {trial.first_row + farthest}",
+            "leave these cells empty in the file and ingest again; the stages leave the gap out",
+            name,
+            float(trial.time_s[rows[0]]),
+        )
+
+
+def _frequent(trial: RunSignals) -> Iterator[Remark]:
+    """Yield the channels of which many samples deviate from the median of their neighbours."""
+    for name, values in trial.noisy.items():
+        window = np.lib.stride_tricks.sliding_window_view(values, 2 * _ASIDE + 1)
+        means = 0.5 * (window[:, :_ASIDE] + window[:, :_ASIDE:-1])  # free of a straight motion
+        deviation = window[:, _ASIDE] - np.median(means, axis=1)
+        noise = 1.4826 * float(np.nanmedian(np.abs(deviation)))
+        if not noise > 0.0:
+            continue
+        # A spike lies beyond both of its neighbours; on a slope one is above, the other below.
+        inner = values[_ASIDE:-_ASIDE]
+        left = inner - values[_ASIDE - 1 : -_ASIDE - 1]
+        right = inner - values[_ASIDE + 1 :][: inner.size]
+        spike = (left * right > 0.0) & (np.fmin(np.abs(left), np.abs(right)) > _BEYOND * noise)
+        size = np.where(spike, np.abs(deviation) / noise, 0.0)
+        far = size > _FAR
+        between = np.count_nonzero((size > _NEAR) & ~far)
+        parts = [bool(part.any()) for part in np.array_split(far, _PARTS)]
+        if np.count_nonzero(far) < _APART * between:
+            continue
+        if _RARE < float(far.mean()) < _OFTEN and np.mean(parts) > _EVERYWHERE:
+            yield Remark(
+                "warning",
+                f"{100.0 * far.mean():.2g} % of the samples of {name} deviate from the median of "
+                f"their neighbours by more than {_FAR:g} times its noise",
+                "look for bit errors and loose plugs; leave these cells empty and ingest again",
+                name,
+            )
+
+
+_BLOCK = 16  # rows
+_TIMES = 4.0  # the usual noise
+_IN_A_ROW = 2  # blocks, at least
+_MOST = 0.15  # share of the blocks
+_REPEATS = 0.02  # share of the rows
+
+
+def bursts(trial: RunSignals) -> Remarks:
+    """The noise of a channel rises manifold for short times.
+
+    A radio, a welder, a motor's brake or a loose plug. Reported where a few short stretches have
+    four times the noise of the rest of the run. Not reported: noise that grows with the speed or
+    lasts as long as the motion.
+    """
+    if float(trial.repeats.mean()) > _REPEATS:
+        yield CannotTell("rows repeat")
+        return
+    for name, values in trial.noisy.items():
+        third = np.diff(values, 3)
+        third = third[: third.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+        if not third.size or is_held(values):
+            continue
+        level = np.median(np.abs(third), axis=1)
+        alternates = np.mean(third[:, 1:] * third[:, :-1] < 0.0, axis=1) > 0.5  # noise, no motion
+        loud = alternates & (level > _TIMES * np.median(level))
+        edges = np.flatnonzero(np.diff(loud.astype(int), prepend=0, append=0))
+        bursts = [(a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW]
+        if bursts and float(loud.mean()) < _MOST:
+            start = _BLOCK * int(bursts[0][0])
+            more = float(np.median(level[loud]) / np.median(level))
+            yield Remark(
+                "warning",
+                f"the noise of {name} rises to {more:.2g} times its level in "
+                f"{count_of(len(bursts), 'burst')}, the first at {trial.time_s[start]:.4g} s",
+                "look for what switches at that time, shield the cable, or leave these cells empty",
+                name,
+                float(trial.time_s[start]),
+            )
+
+
+_HUM_S = 2.0
+_LINE_TIMES = 20.0  # the power beside the line
+_BESIDE_LINE = 0.35  # of the line's frequency: how far to the sides that is taken
+
+
+def hum(trial: RunSignals) -> Remarks:
+    """A channel oscillates at one frequency all the time, whatever the motion.
+
+    Mains hum aliased into the band, an inverter, a fan. Reported where the noise of a channel has
+    one narrow line, twenty times as strong as beside it and as strong in every part of the run.
+    """
+    if not trial.increases:
+        yield CannotTell("time does not increase")
+        return
+    for name, values in trial.noisy.items():
+        spectrum = noise_spectrum(trial.time_s, values, _HUM_S)
+        line = None if spectrum is None else _line(spectrum)
+        if line is not None:
+            yield Remark(
+                "warning",
+                f"{name} oscillates at about {line:.2g} Hz all the time, whatever the motion",
+                "look for hum, aliased perhaps, and for what runs at this frequency; shield the "
+                "cable, filter before sampling",
+                name,
+            )
+
+
+def _line(spectrum: NoiseSpectrum) -> float | None:
+    """Return the frequency of a line that stands out from the noise on both of its sides [Hz]."""
+    frequency, power = spectrum.frequency_Hz, spectrum.power
+    at = int(np.argmax(np.where(spectrum.is_steady, power, 0.0)))
+    apart = np.abs(frequency / frequency[at] - 1.0) > _BESIDE_LINE
+    below = np.flatnonzero(apart & (frequency < frequency[at]))[-2:]
+    above = np.flatnonzero(apart & (frequency > frequency[at]))[:4]
+    if not spectrum.is_steady[at] or not below.size or not above.size:
+        return None
+    stands_out = power[at] > _LINE_TIMES * max(power[below].max(), power[above].max())
+    return float(frequency[at]) if stands_out else None
+
+
+_SEGMENT_S, _OF_A_STROKE = 1.0, 0.5  # length of a segment, at most
+_FALLS = 30.0  # power of the noise over that at the highest frequencies
+_TOP = 0.7  # of the highest frequency: where that is taken
+_MIDDLE = (0.3, 0.5)  # of it: where white noise is as large as at the top
+_WHITE = 2.5  # times the power at the top, from which it is not white there
+_ROUNDING = 4.0  # times the power of the converter's rounding
+_STEPS, _COMPUTED = 0.45, 3e-5  # of a step, and of the span: less is rounding, or no sensor's
+_FLOOR = 0.1  # of the rounding: below, nothing is rounded
+_EVEN, _FEWEST_BANDS = 5.0, 3  # the noise below the end of a filter, within a factor, in bands
+_MATTERS = 10.0  # times the noise
+
+
+def filtered(trial: RunSignals) -> Remarks:
+    """A channel was low-pass filtered before it was recorded, slowly enough to delay the motion.
+
+    White noise of a sensor reaches up to half the sampling rate. Behind a filter it ends at a lower
+    frequency, and what is recorded above is the rounding of the converter, or nothing. A filter
+    delays the channel, or rounds off its corners, so that friction, backlash and delays are not
+    those of the rig. Reported where the noise falls thirtyfold towards the highest frequencies, and
+    a filter that ends there would change the channel by more than ten times its noise. Not
+    reported: noise that grows slower towards low frequencies, a fast amplifier, a recording without
+    noise.
+    """
+    if not trial.increases or not trial.strokes:
+        yield CannotTell("time does not increase, or the drive does not move")
+        return
+    segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
+    for name, values in trial.mechanical.items():
+        whole = np.isfinite(values).all() and trial.moves(name) and not is_held(values)
+        spectrum = noise_spectrum(trial.time_s, values, segment_s) if whole else None
+        size = trial.sizes[name]
+        rounding = size.step**2 / 6.0 * trial.step_s  # its power per hertz [unit²/Hz]
+        end_Hz = None if spectrum is None else _end_of_noise(spectrum, rounding)
+        if end_Hz is None or spectrum is None:
+            continue
+        below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
+        noise = float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
+        late_s = trial.time_s - 1.0 / (2.0 * np.pi * end_Hz)  # by a filter that ends there
+        change = np.interp(late_s, trial.time_s, values) - values
+        wrong = float(np.sqrt(np.mean(change**2)))
+        if noise > max(_STEPS * size.step, _COMPUTED * size.span) and wrong > _MATTERS * noise:
+            yield Remark(
+                "warning",
+                f"the noise of {name} ends at about {end_Hz:.2g} Hz, as behind a low-pass filter "
+                f"(the sampling rate is {1.0 / trial.step_s:.4g} Hz)",
+                "record without the filter, or with one that is ten times as fast for all channels",
+                name,
+            )
+
+
+def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
+    """Return the frequency above which there is no noise [Hz]; None where it reaches the top."""
+    share = spectrum.frequency_Hz / spectrum.frequency_Hz[-1]
+    top = float(np.median(spectrum.power[share >= _TOP]))
+    middle = spectrum.power[(share >= _MIDDLE[0]) & (share <= _MIDDLE[1])]
+    white = middle.size == 0 or float(np.median(middle)) < _WHITE * top
+    if white and top > _ROUNDING * rounding:
+        return None
+    noisy = spectrum.is_noise & (spectrum.power > _FALLS * top)
+    if not noisy.any():
+        return None
+    highest = float(spectrum.power[noisy].max())
+    plateau = np.count_nonzero(noisy & (spectrum.power > highest / _EVEN)) >= _FEWEST_BANDS
+    if not plateau and (rounding == 0.0 or top < _FLOOR * rounding):
+        return None  # a computed recording: what is left of a smooth motion falls all the way
+    level = float(np.median(spectrum.power[noisy]))
+    return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())

@@ -1,0 +1,97 @@
+"""The checks of the manifest, and of all runs beside each other."""
+
+from collections.abc import Callable
+
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.quality.copies.search import find_copies
+from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.support.errors import printable
+
+
+def unknown_key(manifest: Manifest) -> Remarks:
+    """The manifest holds a key that format 1 does not define.
+
+    Such a key is kept but has no effect; a misspelt key loses its value. A run may have keys of its
+    own, conditions that `tsas runs` finds it by.
+    """
+    places: dict[tuple[str, str], list[str]] = {}
+    tables = [("the top", manifest), ("[rig]", manifest.rig)]
+    for place, table in [*tables, *((f"run {run.id}", run) for run in manifest.run)]:
+        for key, hint in table.unknown_keys().items():
+            places.setdefault((key, hint), []).append(place)
+    for (key, hint), where in places.items():
+        misspelt = hint.startswith("did you mean")
+        if not misspelt and all(place.startswith("run ") for place in where):
+            continue
+        yield Remark(
+            "warning" if misspelt else "note",
+            f"dataset.toml holds the unknown key {printable(key)} in {where[0]}"
+            + (f" and {len(where) - 1} more" if len(where) > 1 else ""),
+            hint if misspelt else "none, if it is a note for readers",
+        )
+
+
+# Key, whether a value is implausible, and its likely unit.
+_Suspicions = tuple[tuple[str, Callable[[float], bool], str], ...]
+_RUN: _Suspicions = (
+    ("total_bend_rad", lambda v: v > 50 or (v > 6.5 and v % 5 == 0), "degree"),
+    ("sheath_length_mm", lambda v: v < 5, "metre"),
+    ("sheath_length_mm", lambda v: v > 5e4, "micrometre"),
+)
+_RIG: _Suspicions = (
+    ("tendon_diameter_mm", lambda v: v < 0.02, "metre"),
+    ("tendon_diameter_mm", lambda v: v > 50, "micrometre"),
+    ("tendon_modulus_GPa", lambda v: 1e3 < v < 1e6, "MPa"),
+    ("tendon_modulus_GPa", lambda v: v >= 1e6, "Pa"),
+    ("friction_coefficient", lambda v: v > 3, "percent"),
+    ("proximal_length_mm", lambda v: 0 < v < 0.5, "metre"),
+    ("distal_length_mm", lambda v: 0 < v < 0.5, "metre"),
+)
+
+
+def manifest_unit(manifest: Manifest) -> Remarks:
+    """A value in the manifest looks as if it were in another unit than its key says.
+
+    A bend of 180 rad is most likely 180°, a sheath of 0.8 mm most likely 0.8 m. The limits are far
+    beyond plausible values; a value within them may still be wrong.
+    """
+    tables = [("rig.", manifest.rig.model_dump(), _RIG)]
+    tables += [(f"run {run.id}: ", run.model_dump(), _RUN) for run in manifest.run]
+    for place, values, suspicions in tables:
+        for key, implausible, likely in suspicions:
+            value = values[key]
+            if value is not None and implausible(value):
+                yield Remark(
+                    "warning",
+                    f"dataset.toml says {place}{key} = {value:g}, which looks like {likely}",
+                    f"convert the value to the unit in the key, if it is in {likely}",
+                )
+
+
+def copies(dataset: Dataset) -> Remarks:
+    """A run holds samples of another run of the dataset, which are no further evidence.
+
+    Two runs that repeat a motion have independent noise; a copy shares it. Each run is searched for
+    in every other one: the same samples, written again or at shifted times, a part of them, every
+    second or third of them, or samples interpolated linearly or by a cubic spline. Every channel
+    that changes has to agree to within a twentieth of its noise, for longer than a repeat of the
+    motion could; constant stretches are no evidence. Runs computed without noise agree wherever
+    their motion does, and are reported as copies. A filtered (averaged, decimated through a filter)
+    or scaled copy is not found. Fits count each sample once, and report it.
+    """
+    found = find_copies(dataset, strict=False)
+    for copy in found.copies:
+        yield Remark(
+            "error" if copy.contradicts else "warning",
+            f"{copy.sentence}{copy.contradiction}",
+            "correct the conditions in dataset.toml, or leave out the wrong run"
+            if copy.contradicts
+            else "remove the copy, or leave it as it is: fits count each sample once",
+            first_s=copy.span.begin_s,
+            run=copy.run.id,
+        )
+    for run in found.unordered:
+        yield CannotTell("time does not increase", run)
+    for run in found.short:
+        yield CannotTell("too few rows change", run)

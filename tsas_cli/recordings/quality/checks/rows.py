@@ -1,0 +1,316 @@
+"""The checks for samples that are lost, or repeated."""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.samples import (
+    alternates,
+    is_held,
+    rows_between_changes,
+    smallest_change,
+)
+from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.wording import count_of
+
+_OF_A_STROKE, _LONGEST_S = 0.03, 0.1  # window on each side
+_FEWEST_ROWS = 6
+_FAR, _SEEN = 8.0, 5.0  # standard deviations, of x_in and of another channel
+_SUDDEN, _STEPS = 8.0, 3.0  # noise levels, and steps, that x_in changes by from row to row
+_EVEN, _MOSTLY, _GAP = 0.2, 0.98, 1.5  # intervals that are even, most of them, and a gap
+_SAME_SLOPE, _SAME_TIME = 0.4, 0.3  # relative
+
+
+class _Jumps(NamedTuple):
+    """What a channel does between neighbouring rows: its jump and slopes, shape (m,)."""
+
+    jump: Floats
+    before: Floats  # slope per second
+    after: Floats
+    usual: float
+    slope_sd: float
+    at_once: Floats  # what it changes by between the two rows, without its slope
+
+
+def lost_samples(trial: RunSignals) -> Remarks:
+    """Samples are lost, and the times run on as if none were.
+
+    Where the rows of a lost buffer are closed up, every channel jumps by its slope times the same
+    time, and goes on with that slope. A corner of the motion changes the slope, a slipped encoder
+    moves one channel alone, and a tendon that slips moves no drive. Reported where x_in and another
+    channel jump by the same time from one row to the next, far beyond the noise. A drive that
+    sticks and slips takes several rows.
+    """
+    if not trial.increases or not trial.strokes:
+        yield CannotTell("time does not increase, or the drive does not move")
+        return
+    interval = np.diff(trial.time_s)
+    even = float(np.mean(np.abs(interval / trial.step_s - 1.0) < _EVEN))
+    if even < _MOSTLY or float(trial.repeats.mean()) > 1.0 - _MOSTLY:
+        yield CannotTell("the times are uneven, or rows repeat")
+        return
+    step_s = trial.step_s
+    window_s = min(_OF_A_STROKE * trial.stroke_s, _LONGEST_S)
+    rows = max(round(window_s / step_s), _FEWEST_ROWS)
+    moving = {n: v for n, v in trial.mechanical.items() if trial.moves(n) and np.isfinite(v).all()}
+    if "x_in_mm" not in moving or len(moving) < 2 or trial.time_s.size < 4 * rows:
+        yield CannotTell("too few channels move without a gap")
+        return
+    jumps = {name: _jumps(values, rows, step_s) for name, values in moving.items()}
+    size = trial.sizes["x_in_mm"]
+    sudden = np.abs(jumps["x_in_mm"].at_once) > max(_SUDDEN * size.noise, _STEPS * size.step)
+    gap = np.convolve(interval > _GAP * step_s, np.ones(2 * rows), mode="same") > 0.0
+    places = _places(jumps, rows, sudden & ~gap[rows - 1 : rows - 1 + sudden.size])
+    if places:
+        lost = [lost_s for _, lost_s in places]
+        first, lost_s = places[0]
+        at = first + rows - 1
+        yield Remark(
+            "warning",
+            f"all channels jump at {count_of(len(places), 'place')}, as if samples were lost and "
+            f"the gap closed up: {lost_s:.2g} s at {trial.time_s[at]:.5g} s"
+            + (f", {sum(lost):.2g} s in total" if lost[1:] else ""),
+            "write down the time of each sample, and look for lost buffers at the source",
+            None,
+            float(trial.time_s[at]),
+        )
+
+
+def _places(jumps: dict[str, _Jumps], rows: int, possible: Mask) -> list[tuple[int, float]]:
+    """Return where samples are lost, and how long that lasted [s]."""
+    drive = jumps["x_in_mm"]
+    slope = 0.5 * (drive.before + drive.after)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lost_s = drive.jump / slope
+        steady = np.abs(drive.after - drive.before) < _SAME_SLOPE * np.abs(slope)
+    found: list[tuple[int, float]] = []
+    sudden = np.abs(drive.at_once - drive.jump) < _SAME_TIME * np.abs(drive.jump) + drive.usual
+    far = np.where(
+        possible & steady & sudden & (lost_s > 0.0), np.abs(drive.jump) / drive.usual, 0.0
+    )
+    for place in np.argsort(-far):
+        if far[place] < _FAR:
+            break
+        if any(abs(place - other) <= 2 * rows for other, _ in found):
+            continue
+        if _of_all(jumps, int(place), float(lost_s[place])):
+            found.append((int(place), float(lost_s[place])))
+    return sorted(found)
+
+
+def _of_all(jumps: dict[str, _Jumps], place: int, lost_s: float) -> bool:
+    """Return whether every other channel jumps by the same time, and one of them visibly."""
+    seen = False
+    for name, (jump, before, after, usual, slope_sd, at_once) in jumps.items():
+        if name == "x_in_mm":
+            continue
+        ends = sorted((lost_s * before[place], lost_s * after[place]))
+        slack = _SEEN * (usual + lost_s * slope_sd) + _SAME_TIME * max(abs(ends[0]), abs(ends[1]))
+        if not ends[0] - slack <= jump[place] <= ends[1] + slack:
+            return False
+        sudden = abs(at_once[place] - jump[place]) < _SAME_TIME * abs(jump[place]) + 3.0 * usual
+        seen = seen or bool(sudden and abs(jump[place]) > _SEEN * usual)
+    return seen
+
+
+def _jumps(values: Floats, rows: int, step_s: float) -> _Jumps:
+    """Return the jumps of a channel between parabolas through the rows before and after."""
+    at = np.arange(-rows, 0) + 0.5
+    fit = np.linalg.pinv(np.vander(at, 3))  # the last row gives the value, the one before the slope
+    windows = np.lib.stride_tricks.sliding_window_view(values, rows)
+    left, right = windows[:-rows], windows[rows:, ::-1]
+    jump = right @ fit[2] - left @ fit[2]
+    slope = 0.5 * (left @ fit[1] - right @ fit[1])
+    at_once = values[rows : rows + jump.size] - values[rows - 1 : rows - 1 + jump.size] - slope
+    usual = 1.4826 * float(np.median(np.abs(jump - np.median(jump))))
+    before, after = left @ fit[1] / step_s, -(right @ fit[1]) / step_s
+    slope_sd = 1.05 * float(np.median(np.abs(after - before)))  # of one side
+    return _Jumps(jump, before, after, max(usual, 1e-12), slope_sd, at_once)
+
+
+_BLOCK = 32  # rows
+_MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
+
+
+def repeated_rows(trial: RunSignals) -> Remarks:
+    """Rows repeat the row before them in every channel.
+
+    The logger sampled faster than the sensors, or repeated the last value while the link was down.
+    Noise makes an exact repeat unlikely; its probability follows, block by block, from each
+    channel's noise and its smallest change. Reported are repeats far beyond that, in blocks where
+    the noise of some channel exceeds its smallest change: quiet channels repeat by chance.
+    """
+    if not trial.channels:
+        yield CannotTell("no column besides time holds enough numbers")
+        return
+    repeated = trial.repeats.copy()
+    if not repeated.any():
+        return
+    block = (np.cumsum(~repeated) - 1) // _BLOCK  # a repeat belongs to the row that it repeats
+    chance = _chances(trial, ~repeated)[block]
+    noisy = chance < 1.0
+    if not noisy.any():
+        yield CannotTell("the channels are so quiet or so coarse that rows repeat by chance")
+        return
+    repeated &= noisy
+    count, expected = int(repeated.sum()), float(chance[noisy].sum())
+    if count > 3.0 * expected + 10.0:
+        yield Remark(
+            "warning",
+            f"{count} of {repeated.size} rows ({100 * count / repeated.size:.2g} %) repeat the row "
+            f"before them in all channels; with this noise about {expected:.0f} would",
+            "record no faster than the slowest sensor updates, or drop the repeats at ingest",
+            first_s=float(trial.time_s[np.argmax(repeated)]),
+        )
+
+
+def _chances(trial: RunSignals, fresh: Mask) -> Floats:
+    """Return the probability that a row equals the preceding one, for each block of fresh rows.
+
+    It is the largest of a block and its two neighbours, for blocks at the edge of a rest.
+    """
+    chance = np.ones(-(-int(fresh.sum()) // _BLOCK))
+    for values in trial.channels.values():
+        chance *= _chances_of(values[fresh], chance.size)
+    padded = np.pad(chance, 1, mode="edge")
+    return np.maximum(chance, np.maximum(padded[:-2], padded[2:]))
+
+
+def _chances_of(values: Floats, blocks: int) -> Floats:
+    """Return the probabilities of one channel; 1 where its noise is below its smallest change."""
+    smallest = smallest_change(values)
+    third = np.zeros(blocks * _BLOCK)
+    third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(np.diff(values, 3)))
+    noise = np.median(third.reshape(blocks, _BLOCK), axis=1) / _MEDIAN_OF_THIRD
+    return np.where(noise > smallest, smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300), 1.0)
+
+
+_FEWEST_OF_A_BUFFER = 4  # of a block
+
+
+def repeated_buffer(trial: RunSignals) -> Remarks:
+    """A block of rows is written twice, one after the other, and the times run on.
+
+    A driver that hands out its buffer again when no new one is ready. Every channel then repeats,
+    to the last digit, as many rows as the block has. Noise never does; a computed recording without
+    noise repeats whole periods, but more than once.
+    """
+    noisy = [values for values in trial.channels.values() if alternates(values)]
+    if not noisy:
+        yield CannotTell("no channel has noise, so rows may repeat by themselves")
+        return
+    table = np.column_stack([np.nan_to_num(values) for values in trial.channels.values()])
+    row = np.unique(table, axis=0, return_inverse=True)[1].ravel()
+    order = np.argsort(row, kind="stable")
+    before = np.full(row.size, -1)
+    same = row[order[1:]] == row[order[:-1]]
+    before[order[1:][same]] = order[:-1][same]
+    lag = np.where(before >= 0, np.arange(row.size) - before, 0)
+    edges = np.flatnonzero(np.diff(lag, prepend=0, append=0))
+    starts = [int(a) for a, b in pairwise(edges) if lag[a] == b - a >= _FEWEST_OF_A_BUFFER]
+    if starts:
+        first = starts[0]
+        yield Remark(
+            "error",
+            f"{count_of(len(starts), 'block')} of rows repeat the block before in all channels; "
+            f"the first has {lag[first]} rows and begins at {trial.time_s[first]:.6g} s, "
+            f"row {trial.first_row + first}",
+            "write each buffer once; remove the repeated rows with their times at the source",
+            None,
+            float(trial.time_s[first]),
+        )
+
+
+_CALM, _FEWEST_BLOCKS = 0.15, 4  # of all blocks
+_MORE, _MOST = 2.0, 0.3  # times the share by chance, and share beyond that
+_ONE_STEP, _DEVIATIONS = 1.2, 4.0  # times the share of changes by one step, and its deviations
+
+
+def repeated_values(trial: RunSignals) -> Remarks:
+    """A channel repeats its value far more often than its noise would: a median filter before it.
+
+    A median keeps one sample of its window until another one is in the middle. Reported where a
+    channel whose noise is larger than its steps repeats neighbours where it moves least, or
+    anywhere more often than it changes by one step, at irregular intervals; at regular ones it is
+    updated less often (`slow-channel`).
+    """
+    fresh = ~trial.repeats
+    for name, values in trial.mechanical.items():
+        size = trial.sizes[name]
+        if not trial.is_noisy(name) or is_held(values[fresh]):
+            continue
+        chance = size.step / (2.0 * math.sqrt(math.pi) * size.noise)
+        share = _repeats_where_it_rests(values[fresh], size.noise, chance)
+        where = " where it rests"
+        if share <= _MOST:
+            where, (share, chance) = "", _beside_one_step(values[fresh], size.step)
+            if share <= chance:
+                continue
+        yield Remark(
+            "warning",
+            f"{name} repeats its value in {100.0 * share:.2g} % of the rows{where}, its noise "
+            f"would in {100.0 * chance:.2g} %: as behind a median filter",
+            "record the channel without the filter",
+            name,
+        )
+
+
+def _repeats_where_it_rests(values: Floats, noise: float, chance: float) -> float:
+    """Return the usual share of repeats in the blocks of rows in which a channel changes least."""
+    blocks = values[: values.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+    if blocks.shape[0] < _FEWEST_BLOCKS:
+        return 0.0
+    spans = np.ptp(blocks, axis=1)
+    calm = blocks[spans <= np.quantile(spans, _CALM)]
+    if calm.shape[0] < _FEWEST_BLOCKS or float(np.median(np.ptp(calm, axis=1))) < noise:
+        return 0.0
+    return float(np.median(np.mean(np.diff(calm, axis=1) == 0.0, axis=1))) - _MORE * chance
+
+
+def _beside_one_step(values: Floats, step: float) -> tuple[float, float]:
+    """Return the share of repeats and that of changes by one step; (0, 0) where they are alike.
+
+    A clipped channel repeats its values too, but at one end: both halves of the span have to.
+    """
+    if step == 0.0:
+        return 0.0, 0.0
+    steps = np.rint(np.diff(values) / step)
+    high = values[1:] > 0.5 * (np.nanmin(values) + np.nanmax(values))
+    if all(_repeats_more(steps[half]) for half in (high, ~high)):
+        return float(np.mean(steps == 0.0)), 0.5 * float(np.mean(np.abs(steps) == 1.0))
+    return 0.0, 0.0
+
+
+def _repeats_more(steps: Floats) -> bool:
+    """Return whether changes by nothing are far more than those by one step."""
+    if steps.size == 0:
+        return False
+    repeats, one = np.mean(steps == 0.0), 0.5 * np.mean(np.abs(steps) == 1.0)
+    deviation = math.sqrt((repeats + 0.5 * one) / steps.size)
+    return bool(0.0 < one < min(repeats / _ONE_STEP, repeats - _DEVIATIONS * deviation))
+
+
+def slow_channel(trial: RunSignals) -> Remarks:
+    """A channel is updated less often than the rows are written.
+
+    Its sensor updates at a lower rate and the logger repeats the last value (zero-order hold), so
+    the channel is late by half an update on average. An encoder in slow motion also rests between
+    its steps, but moves by one step at a time; a channel under zero-order hold jumps.
+    """
+    fresh = ~trial.repeats
+    for name, values in trial.mechanical.items():
+        if not is_held(values[fresh]):
+            continue
+        change = np.abs(np.diff(values))
+        if np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values):
+            rows = rows_between_changes(values[fresh])
+            yield Remark(
+                "warning",
+                f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
+                "record the channel at its own rate, or correct for half an update of delay",
+                name,
+            )
