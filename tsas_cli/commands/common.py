@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from datetime import timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands.completion import run_ids
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -122,6 +123,19 @@ class _Said(logging.Handler):
 def names(listed: str | None) -> list[str] | None:
     """Return the comma-separated names of an option, or None without it."""
     return None if listed is None else [name.strip() for name in listed.split(",")]
+
+
+def run(
+    stage: str, *given: Any, rrd: bool = False, quiet: bool, as_json: bool, **named: Any
+) -> Any:
+    """Return the result of a stage, called under a progress bar, after printing it.
+
+    With `rrd` the stage also writes `stream.rrd`.
+    """
+    with progress(stage.replace("_", "-"), quiet=quiet) as step, with_stream(rrd, step):
+        result = getattr(tsas, stage)(*given, **named, step=step)
+    present(result, quiet=quiet, as_json=as_json)
+    return result
 
 
 def present(result: "Result", *, quiet: bool, as_json: bool) -> None:

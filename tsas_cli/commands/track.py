@@ -5,7 +5,6 @@ from typing import Annotated, Literal
 
 import typer
 
-import tsas_cli as tsas
 from tsas_cli.commands import common
 from tsas_cli.commands.completion import controllers, references
 
@@ -27,9 +26,7 @@ def track(
     controller: Annotated[
         str,
         typer.Option(
-            metavar="NAMES",
-            help="Names, comma-separated, or all.",
-            autocompletion=controllers,
+            metavar="NAMES", help="Names, comma-separated, or all.", autocompletion=controllers
         ),
     ] = "adaptive-sliding-mode",
     compare: Annotated[
@@ -71,23 +68,24 @@ def track(
 ) -> None:
     """Track a reference of the distal tension with controllers that measure x_in only."""
     with common.watched(live, "tracking", quiet=quiet) as stream:
-        with common.progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
-            result = tsas.track(
-                out=out,
-                model=model,
-                plant=plant,
-                drive=drive,
-                controllers=common.names(controller) or (),
-                compare=compare,
-                reference=reference,
-                disturb=disturb or (),
-                as_printed=as_printed,
-                dynamics=dynamics,
-                settings=settings,
-                seeds=seeds,
-                first_seed=seed,
-                force=force,
-                step=step,
-                each=stream.tracked if stream else common.not_shown,
-            )
-        common.present(result, quiet=quiet, as_json=as_json)
+        common.run(
+            "track",
+            out=out,
+            model=model,
+            plant=plant,
+            drive=drive,
+            controllers=common.names(controller) or (),
+            compare=compare,
+            reference=reference,
+            disturb=disturb or (),
+            as_printed=as_printed,
+            dynamics=dynamics,
+            settings=settings,
+            seeds=seeds,
+            first_seed=seed,
+            force=force,
+            each=stream.tracked if stream else common.not_shown,
+            rrd=rrd,
+            quiet=quiet,
+            as_json=as_json,
+        )
