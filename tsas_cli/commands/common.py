@@ -216,9 +216,9 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
         return
     from tsas_cli.reporting.stream.live import live_stream
     from tsas_cli.reporting.viewer.open import has_screen, note_once, opened
-    from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
+    from tsas_cli.support.stopping import until_stopped
 
-    with cleaned_up_when_stopped(), opened(in_browser=not has_screen()) as viewer:
+    with opened(in_browser=not has_screen()) as viewer:
         _report(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
         computed, failure = False, None
         try:
