@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tsas_cli.commands.common import Json, Quiet, progress, show
+from tsas_cli.records.result import heading
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
 
@@ -36,10 +37,7 @@ def init(
 
     files, proposal = start(folder, sources or [])
     questions = proposal.questions if proposal else {}
-    summary = {
-        "format": 1,
-        "stage": "init",
-        "version": __version__,
+    summary = heading("init") | {
         "folder": str(folder),
         "files": files,
         "questions": questions,
@@ -66,10 +64,7 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
     with progress("looking", quiet=quiet):
         core, more, machine = list(core_packages()), extras(), list(abilities())
     python = sys.version.split()[0]
-    summary = {
-        "format": 1,
-        "stage": "doctor",
-        "version": __version__,
+    summary = heading("doctor") | {
         "python": {"version": python, "program": sys.executable},
         "packages": [asdict(package) for package in core],
         "extras": [

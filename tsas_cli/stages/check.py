@@ -44,9 +44,20 @@ class CheckResult(Result):
         """Checks that could not tell, with the reason; this is not the same as passed."""
         return self.record.not_checked
 
-    def tables(self) -> list[Table]:
-        """Return what was found, what to do about it, and what could not be checked."""
-        return list(_tables(self.record))
+    def tables(self) -> Iterator[Table]:
+        """Yield what was found, what to do about it, and what could not be checked."""
+        found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in self.findings]
+        header = ("severity", "code", "run", "finding") if found else ()
+        yield f"the checks found {len(found) or 'nothing'}", header, found
+        remedies = dict.fromkeys((f.code, f.remedy) for f in self.findings)
+        if remedies:
+            yield "what to do", ("code", "remedy"), list(remedies)
+        reasons: dict[tuple[str, str], list[str]] = {}
+        for silent in self.not_checked:
+            reasons.setdefault((silent.code, silent.reason), []).append(silent.run or "")
+        if reasons:
+            rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
+            yield "not checked", ("code", "reason", "runs"), rows
 
 
 def check(
@@ -93,21 +104,6 @@ def check(
         if written is not None:
             record.write(written)
     return CheckResult(record.content(), folder, record)
-
-
-def _tables(report: CheckFile) -> Iterator[Table]:
-    found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
-    header = ("severity", "code", "run", "finding") if found else ()
-    yield f"the checks found {len(found) or 'nothing'}", header, found
-    remedies = dict.fromkeys((f.code, f.remedy) for f in report.findings)
-    if remedies:
-        yield "what to do", ("code", "remedy"), list(remedies)
-    reasons: dict[tuple[str, str], list[str]] = {}
-    for silent in report.not_checked:
-        reasons.setdefault((silent.code, silent.reason), []).append(silent.run or "")
-    if reasons:
-        rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
-        yield "not checked", ("code", "reason", "runs"), rows
 
 
 def accepted_errors(

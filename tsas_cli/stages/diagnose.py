@@ -94,9 +94,37 @@ class DiagnosisResult(Result):
             models["extended model"] = self.model
         return plot_loop(runs[chosen], models, channel)
 
-    def tables(self) -> list[Table]:
-        """Return what is named, the errors before and after, and the ranking."""
-        return list(_tables(self.record, self.titled("causes", records.EXTENDED_MODEL)))
+    def tables(self) -> Iterator[Table]:
+        """Yield what is named or not proven, the errors before and after, and the ranking."""
+        columns = ("effect", "parameter", "value [95 %]", "unit")
+        for heading, last, causes in (
+            (self.titled("causes", records.EXTENDED_MODEL), "rivals", self.record.named),
+            ("what gains and is not proven", "why", self.record.stand_ins),
+        ):
+            if causes:
+                yield heading, (*columns, last), list(_parameter_rows(causes))
+        errors = [
+            (
+                name,
+                *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)),
+                c.unit,
+            )
+            for name, c in self.record.channels.items()
+        ]
+        header = ("channel", "before", "after", "noise", "attainable", "unit")
+        if errors:
+            yield "error on held-out data", header, errors
+        ranking = [
+            (
+                " + ".join(row.effects),
+                number_text(row.gain_percent, ".1f"),
+                number_text(row.test_statistic, ".1f"),
+                "" if row.converged else "not converged",
+            )
+            for row in self.record.candidates[:SHOWN]
+        ]
+        if ranking:
+            yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
 
     def sentences(self) -> list[str]:
         """Return the verdict, what to measure next, and what the recordings do not say."""
@@ -228,37 +256,6 @@ def _predictions(run: Prepared, extended: Model, nominal: Model) -> Recording:
     columns = {"time_s": run.time_s, "x_in_mm": after.response.x_in_mm, **after.channels}
     columns |= {nominal_name(name): values for name, values in before.channels.items()}
     return Recording(run.run, columns)
-
-
-def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
-    """Yield what is named, what is not proven, the errors before and after, and the ranking."""
-    columns = ("effect", "parameter", "value [95 %]", "unit")
-    for heading, last, causes in (
-        (title, "rivals", record.named),
-        ("what gains and is not proven", "why", record.stand_ins),
-    ):
-        if causes:
-            yield heading, (*columns, last), list(_parameter_rows(causes))
-    errors = [
-        (name, *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)))
-        for name, c in record.channels.items()
-    ]
-    units = [c.unit for c in record.channels.values()]
-    header = ("channel", "before", "after", "noise", "attainable", "unit")
-    rows = [(*row, unit) for row, unit in zip(errors, units, strict=True)]
-    if rows:
-        yield "error on held-out data", header, rows
-    ranking = [
-        (
-            " + ".join(row.effects),
-            number_text(row.gain_percent, ".1f"),
-            number_text(row.test_statistic, ".1f"),
-            "" if row.converged else "not converged",
-        )
-        for row in record.candidates[:SHOWN]
-    ]
-    if ranking:
-        yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
 
 
 def _parameter_rows(causes: Iterable[records.NamedCause]) -> Iterator[tuple[str, ...]]:

@@ -19,7 +19,7 @@ from tsas_cli.physics.response import mechanics_of, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.records.base import number_text
-from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import Named, file_of, one_of, path_of
 from tsas_cli.stages.mujoco import mjcf
 from tsas_cli.support import __version__
@@ -127,10 +127,7 @@ def export(
         text = _json(found) if kind == "json" else _csv(found)
     with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    summary = {
-        "format": 1,
-        "stage": "export",
-        "version": __version__,
+    summary = heading("export") | {
         "format_of_model": kind,
         "errors": {name: asdict(one) for name, one in errors.items()},
         "lost": lost,

@@ -29,9 +29,24 @@ class PlanResult(Result):
     record: RunPlan  # what `plan.json` holds
     plan: ExperimentPlan
 
-    def tables(self) -> list[Table]:
-        """Return each effect, the pairs, the proposals."""
-        return list(_tables(self.record))
+    def tables(self) -> Iterator[Table]:
+        """Yield each effect, the pairs, the proposals."""
+        rows = [
+            (
+                row.effect,
+                row.parameter,
+                row.unit,
+                _size(row.found_from, "not shown"),
+                _size(row.named_from, "" if row.found_from is None else "never"),
+                ", ".join(row.hidden_in) or row.nearest or "",
+            )
+            for row in self.record.effects
+        ]
+        header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
+        yield "smallest size of each effect, less its neutral value", header, rows
+        if self.record.groups:
+            yield "indistinguishable", ("effect", "and"), self.record.groups
+        yield from map(_proposal_table, self.record.proposals)
 
     def sentences(self) -> list[str]:
         """Return what the runs do not show, and why."""
@@ -139,26 +154,6 @@ def _proposal(proposal: FurtherRun) -> RunProposal:
             for better in proposal.better
         ],
     )
-
-
-def _tables(record: RunPlan) -> Iterator[Table]:
-    """Yield each effect, the pairs, the proposals."""
-    rows = [
-        (
-            row.effect,
-            row.parameter,
-            row.unit,
-            _size(row.found_from, "not shown"),
-            _size(row.named_from, "" if row.found_from is None else "never"),
-            ", ".join(row.hidden_in) or row.nearest or "",
-        )
-        for row in record.effects
-    ]
-    header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
-    yield "smallest size of each effect, less its neutral value", header, rows
-    if record.groups:
-        yield "indistinguishable", ("effect", "and"), record.groups
-    yield from map(_proposal_table, record.proposals)
 
 
 def _proposal_table(proposal: RunProposal) -> Table:
