@@ -9,7 +9,7 @@ from tests.commands.test_track import QUICK
 from tests.reporting.test_page import Outline
 from tsas_cli.comparing import tracked
 from tsas_cli.comparing.tracked import are_tracked, compare_tracked, record_of, tables
-from tsas_cli.reporting.comparing.tracked import tracked_page
+from tsas_cli.reporting.comparing import tracked_page
 from tsas_cli.stages.track import track
 from tsas_cli.support.errors import InputError
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from tsas_cli.records.closing import ClosedCase, ClosingFile, Named, Row
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, Table, table_of
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import as_printed, plain, with_spread
@@ -66,8 +66,7 @@ def table(closing: ClosingFile) -> Table:
         for row in case.controllers
     )
     header = ("case", "controller", *(it.label for it in MODELS.values()), "extended / true")
-    numeric = frozenset(range(2, len(header)))
-    return Table(f"RMSE of the force [N] by model{over}", header, rows, numeric=numeric)
+    return table_of(f"RMSE of the force [N] by model{over}", header, rows)
 
 
 def dots(closing: ClosingFile) -> Picture:
@@ -207,7 +206,7 @@ def _hidden_and_named(closing: ClosingFile) -> Table:
         for case in closing.cases
     )
     header = ("case", "what differs", "hidden", "verdict", "named")
-    return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
+    return table_of("What was hidden in the plant, and what the diagnosis named", header, rows)
 
 
 def _hidden(case: ClosedCase) -> str:

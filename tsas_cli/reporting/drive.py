@@ -10,7 +10,7 @@ import numpy as np
 from tsas_cli.drive.json import tables
 from tsas_cli.records.drive import BodeCurve, DriveFile, FrequencyResponses, MeasuredResponse, Pole
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, table_of
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import RAISED, plain, spanned
@@ -22,7 +22,7 @@ def section(inputs: Inputs) -> Section | None:
     drive = inputs.get(DriveFile)
     if drive is None:
         return None
-    printed = tuple(map(Table.printed, tables(drive, "The identified drive")))
+    printed = tuple(table_of(*table) for table in tables(drive, "The identified drive"))
     evidence = (drive.diagnosis.evidence.sentence, f"Next: {drive.diagnosis.next_experiment}")
     parts = (
         Section("drive-numbers", "What was found, in numbers", tables=printed),

@@ -17,8 +17,8 @@ from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table
-from tsas_cli.reporting.drawing import POINTS, kept_samples, legend, picture, shared_points
+from tsas_cli.reporting.content import Group, Picture, Section, Table, table_of
+from tsas_cli.reporting.drawing import kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import PHASES, Phase, at_axis, in_words, phase_of_samples
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
@@ -69,9 +69,7 @@ def _runs(dataset: Dataset) -> Table:
         "started",
         "load",
     )
-    rows = tuple(_run(recording, more) for recording in dataset)
-    numeric = frozenset(range(2, 8 + len(more)))
-    return Table("The recordings", header, rows, numeric=numeric).without_empty()
+    return table_of("The recordings", header, (_run(recording, more) for recording in dataset))
 
 
 def _run(recording: Recording, more: Sequence[str]) -> tuple[str, ...]:
@@ -109,7 +107,7 @@ def _findings(check: CheckFile) -> Table:
             more = f"{len(rest)} more of this kind; `tsas check` lists them"
             rows.append((severity, code, runs, ABSENT, more, ""))
     header = ("severity", "code", "run", "column", "what", "what to do")
-    return Table("What the checks found", header, tuple(rows)).without_empty()
+    return table_of("What the checks found", header, rows)
 
 
 def _rank(finding: Finding) -> int:
@@ -120,8 +118,8 @@ def _not_checked(check: CheckFile) -> Table:
     reasons: dict[tuple[str, str], list[str]] = {}
     for silent in check.not_checked:
         reasons.setdefault((silent.code, silent.reason), []).append(silent.run or ABSENT)
-    rows = tuple((code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items())
-    return Table("What the checks could not tell", ("code", "reason", "runs"), rows)
+    rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
+    return table_of("What the checks could not tell", ("code", "reason", "runs"), rows)
 
 
 def loops_section(inputs: Inputs) -> Section | None:
@@ -156,58 +154,36 @@ def _pictures(
         if x is None or y is None or not np.isfinite(x + y).any():
             continue
         yield picture(
-            partial(
-                draw_loop,
-                x=x,
-                y=y,
-                phase=phase,
-                labels=(at_axis(_X), at_axis(column)),
-                points=points,
-            ),
+            partial(_draw_loop, x=x, y=y, phase=phase, column=column, points=points),
             key=f"loop-{number}-{column}",
             alt=_alt(recording.run.id, x, y, phase, column),
             caption=f"{in_words(column).capitalize()} over {in_words(_X)}.",
         )
 
 
-def _alt(run: str, x: Floats, y: Floats, phase: npt.NDArray[np.object_], column: str) -> str:
+def _alt(run: str, x: Floats, y: Floats, phase: Keys, column: str) -> str:
     whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
     shown = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
     each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in shown)
     return f"Loop of run {run}: {whole}. By phase: {each or 'unknown'}."
 
 
-def draw_loop(
-    figure: Any,
-    *,
-    x: Floats,
-    y: Floats,
-    phase: Keys,
-    labels: tuple[str, str],
-    points: int = POINTS,
-) -> None:
-    """Draw the loop of one run.
-
-    `x` [mm] and `y` [N] have shape (n,), NaN for gaps, and so has the key of the phase; `labels`
-    are the names of the two axes, with units.
-    """
+def _draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, column: str, points: int) -> None:
+    """Draw a tension over x_in, shape (n,) each, NaN for gaps, in the colours of the phases."""
     axes = figure.add_subplot()
     y = np.where(np.isfinite(x), y, np.nan)
     kept = kept_samples(x, y, points=points)
     for one in PHASES:
-        if (phase == one.key).any():
-            _draw_phase(axes, x[kept], y[kept], phase[kept] == one.key, one)
-            _number(axes, x, y, phase == one.key, one)
-    axes.set(xlabel=labels[0], ylabel=labels[1])
+        inside = phase == one.key
+        if inside.any():
+            joined = inside[kept]
+            joined[1:] |= joined[:-1].copy()  # up to the first sample of the next phase: no hole
+            style = {"color": STAND_IN[one.colour], "label": f"{one.number} {one.label}".strip()}
+            axes.plot(x[kept], np.where(joined, y[kept], np.nan), **style)
+            _number(axes, x, y, inside, one)
+    axes.set(xlabel=at_axis(_X), ylabel=at_axis(column))
     if (phase != "unknown").any():
         legend(figure)
-
-
-def _draw_phase(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:
-    joined = inside.copy()
-    joined[1:] |= inside[:-1]  # up to the first sample of the next phase: no hole between two
-    label = f"{one.number} {one.label}".strip()
-    axes.plot(x, np.where(joined, y, np.nan), color=STAND_IN[one.colour], label=label)
 
 
 def _number(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:

@@ -16,7 +16,7 @@ from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.content import Section, table_of
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.support import __version__
 from tsas_cli.support.files import sha256_of
@@ -44,9 +44,9 @@ def section(inputs: Inputs) -> Section:
         hashes |= {one.path: one.sha256 for one in prediction.models if one.sha256}
     if tracking := inputs.get(TrackingFile):
         hashes |= files_read(tracking)
-    tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
+    tables = [table_of("Versions", ("program", "version"), _versions(inputs))]
     if hashes:
-        tables.append(Table("Files read", ("file", "SHA-256"), tuple(hashes.items())))
+        tables.append(table_of("Files read", ("file", "SHA-256"), hashes.items()))
     return Section(
         "repeat",
         "How to repeat it",

@@ -97,8 +97,7 @@ def compare(
 
 
 def _page(both: Comparison | Tracks, step: Steps) -> str:
-    from tsas_cli.reporting.comparing.page import comparison_page
-    from tsas_cli.reporting.comparing.tracked import tracked_page
+    from tsas_cli.reporting.comparing import comparison_page, tracked_page
 
     return tracked_page(both, step) if isinstance(both, Tracks) else comparison_page(both, step)
 

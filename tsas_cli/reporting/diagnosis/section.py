@@ -7,7 +7,7 @@ from typing import Any
 
 from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause, TriedHypothesis
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Section, Table, missing
+from tsas_cli.reporting.content import Section, Table, missing, table_of
 from tsas_cli.reporting.diagnosis import causes, maps, similarity
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
@@ -102,19 +102,9 @@ def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
     standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
     shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
     of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
-    header = (
-        "effects",
-        "reduction [%]",
-        "test statistic",
-        "convincing",
-        "remark",
-    )
-    table = Table(
-        f"Hypotheses{of}",
-        header,
-        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
-        numeric=frozenset({1, 2}),
-    ).without_empty()
+    header = ("effects", "reduction [%]", "test statistic", "convincing", "remark")
+    rows = (_row(c, standing[frozenset(c.effects)]) for c in shown)
+    table = table_of(f"Hypotheses{of}", header, rows)
     return Section("diagnosis-candidates", _TRIED, (_HYPOTHESES,), tables=(table,))
 
 
@@ -192,9 +182,7 @@ def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
         "nominal, normalised",
         "extended, normalised",
     )
-    caption = "RMS of the residual on held-out data"
-    numeric = frozenset({1, 2, 3, 4, 6, 7})
-    return Table(caption, header, rows, numeric=numeric).without_empty()
+    return table_of("RMS of the residual on held-out data", header, rows)
 
 
 def _normalised(rms: float | None, channel: HeldOut) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive
 from tsas_cli.reporting.colours import of_controller
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, table_of
 from tsas_cli.reporting.drawing import bound, line, picture
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun, mark_change
@@ -38,7 +38,7 @@ def part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -> Section |
     runs = [(c, run) for c in conditions for run in c.runs if run.name == ADAPTIVE]
     if not runs:
         return None
-    rows = tuple(row for condition, run in runs for row in _rows(condition.name, run, law))
+    rows = [row for condition, run in runs for row in _rows(condition.name, run, law)]
     header = (
         "parameter",
         "condition",
@@ -49,7 +49,7 @@ def part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -> Section |
         "unit",
         "time at a bound [%]",
     )
-    table = Table("Adapted parameters", header, rows, numeric=frozenset({2, 3, 4, 5, 7}))
+    table = table_of("Adapted parameters", header, rows)
     return Section(
         "tracking-adaptation",
         "Adapted parameters",

@@ -10,7 +10,7 @@ from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.base import ModelFile
 from tsas_cli.records.tracking import Spread, StatedSettings, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, Table, table_of
 from tsas_cli.reporting.drawing import kept_cells, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_spread
@@ -120,8 +120,7 @@ def _scores(tracking: TrackingFile) -> Table:
         for result in tracking.results
     )
     header = ("controller", "condition", *(title for title, _ in _COLUMNS), "at its limit [%]")
-    numeric = frozenset(range(2, len(header)))
-    return Table(f"Scores{over}", header, rows, numeric=numeric).without_empty()
+    return table_of(f"Scores{over}", header, rows)
 
 
 def _cell(number: Spread) -> str:
