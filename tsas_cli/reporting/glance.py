@@ -13,7 +13,7 @@ from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting import before_after
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import called, heading_of, title_of, within
+from tsas_cli.reporting.names import heading_of, in_words, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 from tsas_cli.support.wording import listed
 
@@ -88,7 +88,7 @@ def _errors(channels: Mapping[str, HeldOut], *, extended: bool) -> Iterator[Fact
         before, after = plain(channel.rmse_before, 3), plain(channel.rmse_after, 3)
         value = f"{after if extended else before} {channel.unit}"
         note = _normalised(channel, extended=extended)
-        yield Fact(called(name), value, note, before if extended else "")
+        yield Fact(in_words(name), value, note, before if extended else "")
 
 
 def _normalised(channel: HeldOut, *, extended: bool) -> str:
@@ -162,7 +162,7 @@ def _of_simulation(simulation: SimulationFile) -> Glance | None:
     if not ratios:
         return None
     worst = max(map(max, ratios.values()))
-    facts = (Fact(called(name), ranged(found), "") for name, found in ratios.items())
+    facts = (Fact(in_words(name), ranged(found), "") for name, found in ratios.items())
     return Glance(
         "Simulation against measurement",
         f"Within {plain(worst, 2)} times the noise",

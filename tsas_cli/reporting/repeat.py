@@ -70,7 +70,7 @@ def _intro(inputs: Inputs) -> Iterator[str]:
 
 def _in_memory(inputs: Inputs) -> bool:
     """Say whether a stage was given what no file holds."""
-    stages = inputs.stages.values()
+    stages = [stage for stage, _ in inputs.given]
     if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
         return True
     files = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
@@ -82,7 +82,7 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
     if closing := inputs.get(ClosingFile):
         yield ["tsas", "close-loop", *closing_options(closing), "--out", folder[ClosingFile]]
-    read = [*folder.values(), *(str(path) for _, path in inputs.more_simulations)]
+    read = [str(path) for _, path in inputs.given]
     if inputs.dataset is not None:
         read.insert(0, str(inputs.dataset.folder))
         yield from _of_dataset(inputs, read[0], folder)

@@ -84,11 +84,10 @@ def report(
         for path in printed:
             print_page(text, path)
     read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
-    read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
-    if inputs.more_simulations:
+    read |= {stage.FILE: str(folder) for stage, folder in inputs.given}
+    if len(every := inputs.simulations) > 1:
         del read[SimulationFile.FILE]
-        every = inputs.simulations.items()
-        read |= {f"{SimulationFile.FILE}, {name}": str(path) for name, (_, path) in every}
+        read |= {f"{SimulationFile.FILE}, {name}": str(path) for name, (_, path) in every.items()}
     sizes = {str(path): path.stat().st_size for path in pages}
     summary = {"stage": "report", "page": str(out), "bytes": sizes[str(pages[0])], "read": read}
     if pdf:
@@ -98,10 +97,7 @@ def report(
 
 def _files_of(inputs: Inputs) -> list[tuple[Location, str]]:
     """Return the files that say what was read, by which all else is found."""
-    stages: list[tuple[Location, str]] = [
-        (folder, kind.FILE) for kind, folder in inputs.folders.items()
-    ]
-    stages += [(folder, SimulationFile.FILE) for _, folder in inputs.more_simulations]
+    stages: list[tuple[Location, str]] = [(folder, one.FILE) for one, folder in inputs.given]
     return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST_FILE), *stages]
 
 

@@ -11,7 +11,7 @@ from tsas_cli.reporting.content import Section, Table, missing, table_of
 from tsas_cli.reporting.diagnosis import causes, maps, similarity
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import called, signal_in_words
+from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import ABSENT, fixed, plain
 from tsas_cli.support.wording import listed
 
@@ -88,7 +88,7 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
         yield "There is structure in it that no effect of the catalogue accounts for."
     yield from (noise.text(name) for name, noise in left.slow_noise.items())
     if left.depends_on:
-        signals = listed([signal_in_words(name) for name in left.depends_on])
+        signals = listed([in_words(name) for name in left.depends_on])
         yield f"What is left depends on {signals}."
 
 
@@ -192,7 +192,7 @@ def _normalised(rms: float | None, channel: HeldOut) -> str:
 def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
     after = f", extended model {plain(channel.rmse_after, 3)}" if named else ""
     return (
-        f"{called(name)}: nominal model {plain(channel.rmse_before, 3)}"
+        f"{in_words(name)}: nominal model {plain(channel.rmse_before, 3)}"
         f"{after}, attainable {plain(channel.attainable, 3)}, noise level "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )

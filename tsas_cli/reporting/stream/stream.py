@@ -61,7 +61,7 @@ class Stream:
 def stream_of(inputs: Inputs) -> Stream:
     """Return what there is to see of what the stages wrote."""
     dataset = "tsas" if inputs.dataset is None else inputs.dataset.manifest.name
-    stages = [kind.FILE.removesuffix(".json") for kind in inputs.folders]
+    stages = dict.fromkeys(stage.FILE.removesuffix(".json") for stage, _ in inputs.given)
     return Stream(", ".join([dataset, *stages]), overview(inputs), tuple(seen_runs(inputs)))
 
 
