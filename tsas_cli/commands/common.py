@@ -194,12 +194,6 @@ def show(
             print(printable(sentence))
 
 
-def hint(text: str, *, quiet: bool, as_json: bool) -> None:
-    """Print a hint on standard error, if it is a terminal."""
-    if sys.stderr.isatty() and not (quiet or as_json):
-        print(text, file=sys.stderr)
-
-
 def not_shown(*run: object) -> None:
     """Ignore a run."""
     del run

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Force, Json, Quiet, hint, present, progress, run, show
+from tsas_cli.commands.common import Force, Json, Quiet, present, progress, run, show
 from tsas_cli.commands.completion import effect_names
 
 _HOW_TO_END = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
@@ -79,7 +79,8 @@ def view(
 def effects(quiet: Quiet = False, as_json: Json = False) -> None:
     """List the effects by which a real rig differs from the nominal model."""
     present(tsas.catalogue(), quiet=quiet, as_json=as_json)
-    hint("`tsas explain NAME` describes an effect", quiet=quiet, as_json=as_json)
+    if sys.stderr.isatty() and not (quiet or as_json):
+        print("`tsas explain NAME` describes an effect", file=sys.stderr)
 
 
 def explain(

@@ -187,9 +187,9 @@ def _own(name: str, value: str, key: str) -> str:
     return value.replace("url(#", f"url(#{key}-")
 
 
-def line(axes: Any, time_s: Floats, values: Floats, *, points: int = POINTS, **style: Any) -> None:
+def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:
     """Draw values over time, with as many points as the plot can show."""
-    kept = kept_samples(values, points=points)
+    kept = kept_samples(values)
     axes.plot(time_s[kept], values[kept], **style)
 
 

@@ -36,17 +36,9 @@ def draw_two_residuals(
         both = panel.first, panel.second
         least = min(float(np.nanstd(values)) for values in both)
         for name, values, role in zip(names, both, ("before", "after"), strict=True):
-            on_top = float(np.nanstd(values)) <= least
-            order = 2.2 if on_top else 2.1
-            line(
-                axes,
-                panel.time_s,
-                values,
-                color=STAND_IN[role],
-                linewidth=0.7,
-                label=name,
-                zorder=order,
-            )
+            order = 2.2 if float(np.nanstd(values)) <= least else 2.1
+            style = {"color": STAND_IN[role], "linewidth": 0.7, "label": name, "zorder": order}
+            line(axes, panel.time_s, values, **style)
         noise_bounds(axes, panel.noise)
         axes.set_ylabel(panel.label)
     rows[-1].set_xlabel("time [s]")

@@ -1,6 +1,7 @@
 """How well a wanted force is followed, by whom, and at what cost."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -8,25 +9,47 @@ import numpy as np
 
 from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.base import ModelFile
-from tsas_cli.records.tracking import Spread, StatedSettings, TrackingFile
+from tsas_cli.records.tracking import ADAPTIVE, Adaptive, Spread, StatedSettings, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section, Table, table_of
-from tsas_cli.reporting.drawing import kept_cells, picture
+from tsas_cli.reporting.drawing import bound, kept_cells, line, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_spread
-from tsas_cli.reporting.tracking import adaptation
 from tsas_cli.reporting.tracking.runs import (
+    ESTIMATES,
     WANTED,
     X_IN,
     X_INV,
     RunsUnderCondition,
     TrackedRun,
     curve_parts,
+    mark_change,
     read_conditions,
 )
 from tsas_cli.support.arrays import Floats
 
 _ACROSS = 2
+_ADAPTED = (
+    "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "
+    "bounds. They serve the sliding surface; they need not come to the drive's true values."
+)
+_SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
+
+
+@dataclass(frozen=True)
+class AdaptiveEstimate:
+    """One parameter: symbol, unit, values over time, shape (n,), and bounds."""
+
+    symbol: str
+    unit: str
+    values: Floats
+    lowest: float
+    highest: float
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """The first and the last value."""
+        return plain(float(self.values[0]), 3), plain(float(self.values[-1]), 3)
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -37,7 +60,7 @@ def section(inputs: Inputs) -> Section | None:
     conditions = read_conditions(inputs, tracking)
     force, error, effort = curve_parts(conditions)
     portrait = portraits_part(conditions, tracking.settings)
-    adapted = adaptation.part(conditions, tracking.settings.controllers.adaptive)
+    adapted = adaptation_part(conditions, tracking.settings.controllers.adaptive)
     return Section(
         "tracking",
         "Tracking",
@@ -196,3 +219,81 @@ def draw_portraits(figure: Any, *, orbits: Sequence[tuple[str, Floats, Floats]])
         axes.set_xlabel("e [mm]")
     for axes in panels[:, 0]:
         axes.set_ylabel("de/dt [mm/s]")
+
+
+def adaptation_part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -> Section | None:
+    """Return the part, None where no controller adapts."""
+    runs = [(c, run) for c in conditions for run in c.runs if run.name == ADAPTIVE]
+    if not runs:
+        return None
+    rows = [row for condition, run in runs for row in _rows(condition.name, run, law)]
+    header = (
+        "parameter",
+        "condition",
+        "at the start",
+        "at the end",
+        "lower bound",
+        "upper bound",
+        "unit",
+        "time at a bound [%]",
+    )
+    table = table_of("Adapted parameters", header, rows)
+    return Section(
+        "tracking-adaptation",
+        "Adapted parameters",
+        (_ADAPTED,),
+        tables=(table,),
+        pictures=tuple(_estimates_picture(condition, run, law) for condition, run in runs),
+    )
+
+
+def _estimates(run: TrackedRun, law: Adaptive) -> Iterator[AdaptiveEstimate]:
+    names = zip(ESTIMATES, _SYMBOLS, law.lowest, law.highest, strict=True)
+    for column, (symbol, unit), lowest, highest in names:
+        yield AdaptiveEstimate(symbol, unit, run.columns[column], lowest, highest)
+
+
+def _rows(condition: str, run: TrackedRun, law: Adaptive) -> Iterator[tuple[str, ...]]:
+    for it in _estimates(run, law):
+        at_bound = (it.values <= it.lowest) | (it.values >= it.highest)
+        share = f"{100.0 * float(np.mean(at_bound)):.0f}"
+        yield it.symbol, condition, *it.ends, f"{it.lowest:g}", f"{it.highest:g}", it.unit, share
+
+
+def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adaptive) -> Picture:
+    estimates = tuple(_estimates(run, law))
+    said = "; ".join(
+        f"{it.symbol} from {' to '.join(it.ends)} {it.unit}, "
+        f"bounds {it.lowest:g} and {it.highest:g}"
+        for it in estimates
+    )
+    time_s, change_s = run.time_s, condition.change_s
+    return picture(
+        partial(_draw_estimates, time_s=time_s, estimates=estimates, change_s=change_s),
+        key=f"tracking-adaptation-{condition.number}",
+        alt=f"Adapted parameters over time, {condition.name}: {said}.",
+        caption=f"{condition.name.capitalize()}: estimates over time, bounds dashed.",
+        height_in=4.2,
+    )
+
+
+def _draw_estimates(
+    figure: Any,
+    *,
+    time_s: Floats,
+    estimates: Sequence[AdaptiveEstimate],
+    change_s: float | None,
+) -> None:
+    """Draw one panel for each estimate, its axis in powers of ten where all is positive."""
+    rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, it in zip(rows, estimates, strict=True):
+        line(axes, time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
+        for value in (it.lowest, it.highest):
+            bound(axes, value)
+        if min(it.lowest, float(it.values.min())) > 0.0:
+            axes.set_yscale("log")
+            axes.yaxis.set_major_formatter("{x:g}")
+            axes.yaxis.set_minor_formatter("")
+        mark_change(axes, change_s)
+        axes.set_title(f"{it.symbol} [{it.unit}]", loc="left", fontsize=9.0, pad=3.0)
+    rows[-1].set_xlabel("time [s]")
