@@ -5,7 +5,7 @@ import io
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -38,14 +38,7 @@ _ALWAYS_LOST = (
 )
 
 
-@dataclass(frozen=True)
-class Difference:
-    """RMS and largest difference of a channel from the model's prediction, its range, its unit."""
-
-    rms: float
-    largest: float
-    span: float
-    unit: str
+Differences = dict[str, dict[str, Any]]  # by channel: rms, largest, span and unit
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -114,7 +107,7 @@ def export(
     found = model_of(given)
     fitted = read_fitted_to(given) if isinstance(given, Path) else None
     inputs = [given] if isinstance(given, Path) else []
-    errors: dict[str, Difference] = {}
+    errors: Differences = {}
     lost: tuple[str, ...] = ()
     if kind == "mujoco":
         conditions = {
@@ -129,7 +122,7 @@ def export(
         temporary.write_text(text, encoding="utf-8")
     summary = heading("export") | {
         "format_of_model": kind,
-        "errors": {name: asdict(one) for name, one in errors.items()},
+        "errors": errors,
         "lost": lost,
     }
     return ExportResult(summary, path, lost)
@@ -142,10 +135,9 @@ def _json(model: Model) -> str:
 
 def _csv(model: Model) -> str:
     rows = [asdict(e) | {"run": _no_formula(e.run)} for e in model.estimates]
-    first = ("name", "run", "value", "unit")
-    header = [*first, *(key for key in rows[0] if key not in first)] if rows else first
+    header = dict.fromkeys(("name", "run", "value", "unit", *(rows[0] if rows else ())))
     text = io.StringIO()
-    writer = csv.DictWriter(text, header, lineterminator="\n")
+    writer = csv.DictWriter(text, list(header), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue()
@@ -158,7 +150,7 @@ def _no_formula(run: str | None) -> str | None:
 
 def _mujoco(
     model: Model, fitted: FittedTo, conditions: dict[str, float | None], name: str
-) -> tuple[str, dict[str, Difference], tuple[str, ...]]:
+) -> tuple[str, Differences, tuple[str, ...]]:
     """Return the model file, its errors by channel, and what it does not hold."""
     known = {key: _condition(key, value, fitted) for key, value in conditions.items()}
     if known["preload_N"] is None:
@@ -175,8 +167,8 @@ def _mujoco(
         f"Sheath {rig.sheath_length_mm:g} mm, bend {rig.total_bend_rad:g} rad.",
         f"Strokes of {stroke:g} mm that pull from a preload of {rig.preload_N:g} N.",
         *(
-            f"{channel}: differs from the model by {number_text(one.rms)} {one.unit} (RMS), "
-            f"{number_text(one.largest)} at most, in a range of {number_text(one.span)}."
+            f"{channel}: differs from the model by {number_text(one['rms'])} {one['unit']} (RMS), "
+            f"{number_text(one['largest'])} at most, in a range of {number_text(one['span'])}."
             for channel, one in errors.items()
         ),
         *(f"Not held: {sentence}." for sentence in lost),
@@ -206,8 +198,11 @@ def _gear(fitted: FittedTo) -> float:
     return 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
 
 
-def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> dict[str, Difference]:
-    """Return the differences between the lumped tendon and the rig, after the first stroke."""
+def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> Differences:
+    """Return how far the lumped tendon is from the rig after the first stroke, by channel.
+
+    `rms` and `largest` are of the difference, `span` is the channel's range in the rig.
+    """
     phase = np.pi * np.arange(STROKES * SAMPLES + 1) / SAMPLES
     x_in = 0.5 * stroke_mm * (1.0 - np.cos(phase))
     drive = DriveInput(x_in)
@@ -221,12 +216,12 @@ def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> dict[str, Difference]
         ("x_out_mm", "mm", true.x_out_mm, x_out),
     ):
         difference = (other - ours)[SAMPLES:]
-        out[name] = Difference(
-            float(np.sqrt(np.mean(difference**2))),
-            float(np.abs(difference).max()),
-            float(np.ptp(ours)),
-            unit,
-        )
+        out[name] = {
+            "rms": float(np.sqrt(np.mean(difference**2))),
+            "largest": float(np.abs(difference).max()),
+            "span": float(np.ptp(ours)),
+            "unit": unit,
+        }
     return out
 
 
