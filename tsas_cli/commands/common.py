@@ -25,6 +25,12 @@ if TYPE_CHECKING:
     from tsas_cli.records.result import Result
     from tsas_cli.reporting.stream.live import LiveStream
 
+
+def names(listed: str | None) -> list[str] | None:
+    """Return the comma-separated names of an option, or None without it."""
+    return None if listed is None else [name.strip() for name in listed.split(",")]
+
+
 ENDS = (
     "Ctrl-C: the search ends after this step, and what it has found is written; "
     "Ctrl-C again stops at once and writes nothing"
@@ -47,6 +53,7 @@ ChosenRuns = Annotated[
         metavar="IDS",
         help="Only these runs, comma-separated; default: all.",
         autocompletion=run_ids,
+        callback=names,
     ),
 ]
 Despite = Annotated[
@@ -120,20 +127,15 @@ class _Said(logging.Handler):
         self.bar.say(record.getMessage())
 
 
-def names(listed: str | None) -> list[str] | None:
-    """Return the comma-separated names of an option, or None without it."""
-    return None if listed is None else [name.strip() for name in listed.split(",")]
-
-
-def run(
-    stage: str, *given: Any, rrd: bool = False, quiet: bool, as_json: bool, **named: Any
-) -> Any:
+def run(stage: str, *, rrd: bool = False, quiet: bool, as_json: bool, **given: Any) -> Any:
     """Return the result of a stage, called under a progress bar, after printing it.
 
-    With `rrd` the stage also writes `stream.rrd`.
+    `given` are the arguments of its function; those that are None were not asked for. With `rrd`
+    the stage also writes `stream.rrd`.
     """
+    asked = {name: value for name, value in given.items() if value is not None}
     with progress(stage.replace("_", "-"), quiet=quiet) as step, with_stream(rrd, step):
-        result = getattr(tsas, stage)(*given, **named, step=step)
+        result = getattr(tsas, stage)(**asked, step=step)
     present(result, quiet=quiet, as_json=as_json)
     return result
 
@@ -192,11 +194,6 @@ def show(
             print()
         for sentence in sentences:
             print(printable(sentence))
-
-
-def not_shown(*run: object) -> None:
-    """Ignore a run."""
-    del run
 
 
 @contextmanager

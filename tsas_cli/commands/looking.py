@@ -32,7 +32,7 @@ def report(
 
     With `--pdf`, report.html is also printed to report.pdf.
     """
-    run("report", folders, out=out, pdf=pdf, force=force, quiet=quiet, as_json=as_json)
+    run("report", **locals())
 
 
 def view(

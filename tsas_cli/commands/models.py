@@ -18,8 +18,6 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    names,
-    not_shown,
     present,
     progress,
     run,
@@ -49,19 +47,7 @@ def calibrate(
     as_json: Json = False,
 ) -> None:
     """Fit the nominal model and the stiffness km of each phase to a dataset."""
-    run(
-        "calibrate",
-        dataset,
-        out=out,
-        model=model,
-        dynamics=dynamics,
-        runs=names(runs),
-        despite=despite or (),
-        force=force,
-        rrd=rrd,
-        quiet=quiet,
-        as_json=as_json,
-    )
+    run("calibrate", **locals())
 
 
 def identify_harmonic_drive(
@@ -82,17 +68,7 @@ def identify_harmonic_drive(
     as_json: Json = False,
 ) -> None:
     """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
-    run(
-        "identify_harmonic_drive",
-        dataset,
-        out=out,
-        speed=speed,
-        runs=names(runs),
-        force=force,
-        rrd=rrd,
-        quiet=quiet,
-        as_json=as_json,
-    )
+    run("identify_harmonic_drive", **locals())
 
 
 def simulate(
@@ -119,18 +95,18 @@ def simulate(
     as_json: Json = False,
 ) -> None:
     """Simulate every run with a model, and compute its residual."""
-    data = tsas.read(dataset, runs=names(runs))
+    data = tsas.read(dataset, runs=runs)
     with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
         run(
             "simulate",
-            data,
+            dataset=data,
             out=out,
             model=model,
             dynamics=dynamics,
             fit_own=fit_own,
             nodes=nodes,
             force=force,
-            each=partial(stream.simulated, data) if stream else not_shown,
+            each=partial(stream.simulated, data) if stream else None,
             rrd=rrd,
             quiet=quiet,
             as_json=as_json,
@@ -157,7 +133,7 @@ def diagnose(
             dataset,
             out=out,
             model=model,
-            runs=names(runs),
+            runs=runs,
             despite=despite or (),
             force=force,
             step=step,
@@ -196,22 +172,13 @@ def predict(
     Each model is simulated on every run of DATASET and held to what was measured. A run whose
     conditions or signals leave what a model was fitted to is outside the model's range.
     """
-    *models, dataset = given
+    options = locals()
+    *models, dataset = options.pop("given")
     if not models:
         raise InputError(
             "one argument alone", where=dataset, expected="MODEL… DATASET, the dataset last"
         )
-    run(
-        "predict",
-        models,
-        dataset,
-        out=out,
-        runs=names(runs),
-        fit_own=fit_own,
-        force=force,
-        quiet=quiet,
-        as_json=as_json,
-    )
+    run("predict", models=models, dataset=dataset, **options)
 
 
 def compare(
@@ -234,21 +201,11 @@ def compare(
 
     A and B are model files, or outputs of `tsas calibrate`, `diagnose`, `simulate` or `track`.
     """
-    run(
-        "compare",
-        a,
-        b,
-        out=out,
-        on=on,
-        runs=names(runs),
-        force=force,
-        quiet=quiet,
-        as_json=as_json,
-    )
+    run("compare", **locals())
 
 
 def plan(
-    path: Annotated[
+    runs: Annotated[
         str, typer.Argument(metavar="DATASET|RIG.toml", help="A dataset, or planned runs.")
     ],
     out: Annotated[
@@ -259,7 +216,7 @@ def plan(
     as_json: Json = False,
 ) -> None:
     """Compute the smallest detectable size of each effect, and the most useful further run."""
-    run("plan", path, out=out, force=force, quiet=quiet, as_json=as_json)
+    run("plan", **locals())
 
 
 def export(

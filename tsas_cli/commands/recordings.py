@@ -59,15 +59,8 @@ def ingest(
             remedy=f"`tsas ingest {source} --guess --out MAP.toml` proposes a map",
         )
     else:
-        run(
-            "ingest",
-            sources,
-            map=map_path,
-            out=out,
-            force=force,
-            quiet=quiet,
-            as_json=as_json,
-        )
+        shown = {"quiet": quiet, "as_json": as_json}
+        run("ingest", sources=sources, map=map_path, out=out, force=force, **shown)
 
 
 def check(
@@ -84,16 +77,7 @@ def check(
     """Check recordings for faults before a model is fitted."""
     if rrd and out is None:
         raise InputError("--rrd has no folder to write to", remedy="set --out")
-    run(
-        "check",
-        dataset,
-        out=out,
-        runs=names(runs),
-        force=force,
-        rrd=rrd,
-        quiet=quiet,
-        as_json=as_json,
-    )
+    run("check", **locals())
 
 
 def runs(
@@ -107,7 +91,10 @@ def runs(
     columns: Annotated[
         str | None,
         typer.Option(
-            metavar="NAMES", help="Columns to print, comma-separated.", autocompletion=run_columns
+            metavar="NAMES",
+            help="Columns to print, comma-separated.",
+            autocompletion=run_columns,
+            callback=names,
         ),
     ] = None,
     sort: Annotated[
@@ -116,6 +103,7 @@ def runs(
             metavar="NAMES",
             help="Columns to sort by; -NAME: descending.",
             autocompletion=sort_columns,
+            callback=names,
         ),
     ] = None,
     limit: Annotated[int | None, typer.Option(min=0, help="Largest number of runs.")] = None,
@@ -135,8 +123,8 @@ def runs(
         found = tsas.runs(
             query,
             folders or ".",
-            columns=names(columns) or (),
-            sort=names(sort) or (),
+            columns=columns or (),
+            sort=sort or (),
             limit=limit,
             step=step,
         )
@@ -156,7 +144,7 @@ def upload(
     as_json: Json = False,
 ) -> None:
     """Copy a dataset to object storage, where every command reads it by its address."""
-    run("upload", folder, address, force=force, quiet=quiet, as_json=as_json)
+    run("upload", **locals())
 
 
 def verify(
@@ -173,7 +161,7 @@ def verify(
     The exit code is 2 if a file has changed or is missing. A file without a recorded checksum is
     listed, but is no fault.
     """
-    result = run("verify", path, raw=raw or (), quiet=quiet, as_json=as_json)
+    result = run("verify", **locals())
     sys.stdout.flush()
     if wrong := result.wrong:
         some = ", ".join(dict.fromkeys(one.file for one in wrong[:3]))

@@ -49,7 +49,7 @@ def sweep(
     """
     result = run(
         "sweep",
-        _plan(what, datasets or [], options or [], each_run=each_run),
+        plan=_plan(what, datasets or [], options or [], each_run=each_run),
         out=out,
         workers=workers,
         cluster=cluster,

@@ -5,8 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from tsas_cli.commands import common
-from tsas_cli.commands.completion import controllers, references
+from tsas_cli.commands import common, completion
 
 
 def track(
@@ -23,10 +22,14 @@ def track(
         Path | None,
         typer.Option(metavar="D.toml", help="The controller's drive model; default: r1, im."),
     ] = None,
-    controller: Annotated[
+    controllers: Annotated[
         str,
         typer.Option(
-            metavar="NAMES", help="Names, comma-separated, or all.", autocompletion=controllers
+            "--controller",
+            metavar="NAMES",
+            help="Names, comma-separated, or all.",
+            autocompletion=completion.controllers,
+            callback=common.names,
         ),
     ] = "adaptive-sliding-mode",
     compare: Annotated[
@@ -37,7 +40,7 @@ def track(
         str,
         typer.Option(
             help="sine, two-frequency, steps, ramps, or a Parquet file (f_out_ref_N).",
-            autocompletion=references,
+            autocompletion=completion.references,
         ),
     ] = "sine",
     disturb: Annotated[
@@ -59,7 +62,7 @@ def track(
         typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="Number of noise seeds.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
+    first_seed: Annotated[int, typer.Option("--seed", min=0, help="The first noise seed.")] = 1,
     rrd: common.Rrd = False,
     live: common.Live = False,
     force: common.Force = False,
@@ -67,25 +70,6 @@ def track(
     as_json: common.Json = False,
 ) -> None:
     """Track a reference of the distal tension with controllers that measure x_in only."""
-    with common.watched(live, "tracking", quiet=quiet) as stream:
-        common.run(
-            "track",
-            out=out,
-            model=model,
-            plant=plant,
-            drive=drive,
-            controllers=common.names(controller) or (),
-            compare=compare,
-            reference=reference,
-            disturb=disturb or (),
-            as_printed=as_printed,
-            dynamics=dynamics,
-            settings=settings,
-            seeds=seeds,
-            first_seed=seed,
-            force=force,
-            each=stream.tracked if stream else common.not_shown,
-            rrd=rrd,
-            quiet=quiet,
-            as_json=as_json,
-        )
+    given = locals()
+    with common.watched(given.pop("live"), "tracking", quiet=quiet) as stream:
+        common.run("track", **given, each=stream.tracked if stream else None)
