@@ -4,7 +4,7 @@ Below it is what `tsas predict` writes and prints of that: tables and sentences.
 """
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import ascii_uppercase
@@ -21,7 +21,7 @@ from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.identification.repeatability import repeatability
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.records.base import number_text
+from tsas_cli.records.base import number_text, span_text
 from tsas_cli.records.prediction import (
     PredictedChannel,
     PredictingModel,
@@ -238,18 +238,10 @@ def _best(channel: str, rows: Sequence[PredictedChannel]) -> str:
     how = " alike" if len(best) > 1 else " best" if others else ""
     said = f"{channel}: {who}{how}, RMSE {least:.3g} {unit} over {runs} that no fit has seen"
     said += f" ({others})" if others else ""
-    noise, repeated = (
-        _span(getattr(row, name) for row in of) for name in ("normalised_residual", "repeatability")
-    )
+    noise = span_text(row.normalised_residual for row in of)
+    repeated = span_text(row.repeatability for row in of)
     said += f"; {noise} × the noise level" if noise else ""
     return f"{said}; repeatability {f'{repeated} {unit}' if repeated else 'unknown'}."
-
-
-def _span(values: Iterable[float | None]) -> str:
-    known = [value for value in values if value is not None]
-    if not known:
-        return ""
-    return " to ".join(dict.fromkeys(number_text(end) for end in (min(known), max(known))))
 
 
 def _outside(it: Predicted) -> Iterator[str]:

@@ -11,7 +11,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, table_of
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import as_printed, plain, with_spread
+from tsas_cli.reporting.numbers import as_printed, over_seeds, plain, with_spread
 from tsas_cli.support.wording import listed
 
 _HOW = (
@@ -53,8 +53,6 @@ _PANEL_IN = 0.34  # its title
 
 def table(closing: ClosingFile) -> Table:
     """Return the table, with its spread where there is more than one seed."""
-    seeds = closing.seeds[1] - closing.seeds[0] + 1
-    over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
     rows = tuple(
         (
             case.case,
@@ -66,7 +64,7 @@ def table(closing: ClosingFile) -> Table:
         for row in case.controllers
     )
     header = ("case", "controller", *(it.label for it in MODELS.values()), "extended / true")
-    return table_of(f"RMSE of the force [N] by model{over}", header, rows)
+    return table_of(f"RMSE of the force [N] by model{over_seeds(*closing.seeds)}", header, rows)
 
 
 def dots(closing: ClosingFile) -> Picture:

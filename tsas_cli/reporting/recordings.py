@@ -44,8 +44,9 @@ def section(inputs: Inputs) -> Section | None:
     tables = [_runs(inputs.dataset)]
     if inputs.check.findings:
         tables.append(_findings(inputs.check))
-    if inputs.check.not_checked:
-        tables.append(_not_checked(inputs.check))
+    if reasons := inputs.check.reasons():
+        header = ("code", "reason", "runs")
+        tables.append(table_of("What the checks could not tell", header, reasons))
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
 
 
@@ -112,14 +113,6 @@ def _findings(check: CheckFile) -> Table:
 
 def _rank(finding: Finding) -> int:
     return _SEVERITIES.index(finding.severity) if finding.severity in _SEVERITIES else -1
-
-
-def _not_checked(check: CheckFile) -> Table:
-    reasons: dict[tuple[str, str], list[str]] = {}
-    for silent in check.not_checked:
-        reasons.setdefault((silent.code, silent.reason), []).append(silent.run or ABSENT)
-    rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
-    return table_of("What the checks could not tell", ("code", "reason", "runs"), rows)
 
 
 def loops_section(inputs: Inputs) -> Section | None:

@@ -21,7 +21,7 @@ from tsas_cli.reporting.content import Group, Picture, Section, Table, missing, 
 from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import at_axis, in_words
-from tsas_cli.reporting.numbers import ABSENT, plain, spanned
+from tsas_cli.reporting.numbers import over, plain, spanned
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import sha256_of
 
@@ -151,17 +151,13 @@ def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Tab
     rows = []
     for one in compared:
         sizes = [one.rmse(model) for model in models]
-        normalised = (_normalised(size, one.noise) for size in sizes)
+        normalised = (over(size, one.noise) for size in sizes)
         noise = plain(one.noise, 3)
         found = (*(plain(size, 3) for size in sizes), noise, one.unit, *normalised)
         rows.append((one.run, one.channel, *found))
     names = [model.label for model in models]
     header = ("run", "channel", *names, "noise level", "unit", *(f"{n}, normalised" for n in names))
     return table_of("RMS of the residual", header, rows)
-
-
-def _normalised(size: float | None, noise: float | None) -> str:
-    return ABSENT if size is None or not noise else plain(size / noise, 3)
 
 
 def _inputs(inputs: Inputs) -> Iterator[Table]:

@@ -52,12 +52,8 @@ class CheckResult(Result):
         remedies = dict.fromkeys((f.code, f.remedy) for f in self.findings)
         if remedies:
             yield "what to do", ("code", "remedy"), list(remedies)
-        reasons: dict[tuple[str, str], list[str]] = {}
-        for silent in self.not_checked:
-            reasons.setdefault((silent.code, silent.reason), []).append(silent.run or "")
-        if reasons:
-            rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
-            yield "not checked", ("code", "reason", "runs"), rows
+        if reasons := self.record.reasons():
+            yield "not checked", ("code", "reason", "runs"), reasons
 
 
 def check(

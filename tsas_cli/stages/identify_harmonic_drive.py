@@ -19,7 +19,6 @@ from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
@@ -152,7 +151,13 @@ def identify_harmonic_drive(
         notes = (*counted.notes, *cannot_tell(record, sheet, final, known.values()))
         record = record.model_copy(update={"cannot_tell": notes})
         step()
-        simulated = _recordings(counted.dataset.runs, search, by_fit, by_nominal)
+        each = zip(counted.dataset.runs, search.bench.runs, by_fit, by_nominal, strict=True)
+        simulated = {
+            entry.id: Recording(
+                entry, {"time_s": run.time_s, "x_in_mm": fit, "x_in_nominal_mm": of_nominal}
+            )
+            for entry, run, fit, of_nominal in each
+        }
         if folder is not None:
             record.write(folder)
             structure, of = {"name": name_of(final), "hold": hold}, record.dataset.content()
@@ -178,15 +183,3 @@ def _simulated(search: DriveSearch, terms: Terms) -> list[Floats]:
     """Return x_in of every run by a set of terms."""
     values = search.trial(terms).values
     return [search.bench.simulated(r, values) for r in range(len(search.bench.runs))]
-
-
-def _recordings(
-    entries: list[Run], search: DriveSearch, fitted: list[Floats], nominal: list[Floats]
-) -> dict[str, Recording]:
-    """Return the simulated runs."""
-    simulated = {}
-    each = zip(entries, search.bench.runs, fitted, nominal, strict=True)
-    for entry, run, by_fit, by_nominal in each:
-        columns = {"time_s": run.time_s, "x_in_mm": by_fit, "x_in_nominal_mm": by_nominal}
-        simulated[entry.id] = Recording(entry, columns)
-    return simulated

@@ -79,8 +79,21 @@ class TrackingResult(Result):
         return recording_of(self.runs, run)
 
     def tables(self) -> list[Table]:
-        """Return the scores, one row for each controller and condition."""
-        return [_table(self.record.results, self.titled("tracking"))]
+        """Return the scores of each controller and condition, beside those of the paper's Table 5.
+
+        These are left out where they do not apply.
+        """
+        results = self.record.results
+        header = ["controller", "condition", *(name for name, _ in COLUMNS)]
+        rows = [
+            [row.controller, row.condition, *(row.scores[key].text() for _, key in COLUMNS)]
+            for row in results
+        ]
+        if any(row.printed_rmse_N is not None for row in results):
+            header.insert(3, "Table 5 [N]")
+            for cells, row in zip(rows, results, strict=True):
+                cells.insert(3, number_text(row.printed_rmse_N, "g"))
+        return [(self.titled("tracking"), header, rows)]
 
     def sentences(self) -> list[str]:
         """Return what of the runs is not to be trusted or not to be reached, and why."""
@@ -277,18 +290,3 @@ def _result(
         relay=any(run.is_relay for run in runs),
         unsettled_steps=sum(run.unsettled for run in runs),
     )
-
-
-def _table(results: Sequence[records.TrackedResult], title: str) -> Table:
-    """Return the scores; what Table 5 of the paper prints stands beside them where it applies."""
-    header = ["controller", "condition", *(name for name, _ in COLUMNS)]
-    rows = [
-        [row.controller, row.condition, *(row.scores[key].text() for _, key in COLUMNS)]
-        for row in results
-    ]
-    printed = [row.printed_rmse_N for row in results]
-    if any(value is not None for value in printed):
-        header.insert(3, "Table 5 [N]")
-        for row, value in zip(rows, printed, strict=True):
-            row.insert(3, number_text(value, "g"))
-    return title, header, rows

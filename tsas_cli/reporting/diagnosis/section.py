@@ -12,7 +12,7 @@ from tsas_cli.reporting.diagnosis import causes, maps, similarity
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import in_words
-from tsas_cli.reporting.numbers import ABSENT, fixed, plain
+from tsas_cli.reporting.numbers import ABSENT, fixed, over, plain
 from tsas_cli.support.wording import listed
 
 _BOUNDS = (
@@ -167,8 +167,8 @@ def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
             plain(c.attainable, 3),
             plain(c.noise_floor, 3),
             c.unit,
-            _normalised(c.rmse_before, c),
-            _normalised(c.rmse_after, c) if named else ABSENT,
+            over(c.rmse_before, c.noise_floor),
+            over(c.rmse_after, c.noise_floor) if named else ABSENT,
         )
         for name, c in channels.items()
     )
@@ -183,10 +183,6 @@ def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
         "extended, normalised",
     )
     return table_of("RMS of the residual on held-out data", header, rows)
-
-
-def _normalised(rms: float | None, channel: HeldOut) -> str:
-    return ABSENT if rms is None or not channel.noise_floor else plain(rms / channel.noise_floor, 3)
 
 
 def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:

@@ -14,7 +14,7 @@ from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section, Table, table_of
 from tsas_cli.reporting.drawing import bound, kept_cells, line, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import ABSENT, plain, with_spread
+from tsas_cli.reporting.numbers import ABSENT, over_seeds, plain, with_spread
 from tsas_cli.reporting.tracking.runs import (
     ESTIMATES,
     WANTED,
@@ -131,8 +131,6 @@ _COLUMNS = (
 
 def _scores(tracking: TrackingFile) -> Table:
     """Return the scores, with their spread where there is more than one seed."""
-    seeds = tracking.seeds[1] - tracking.seeds[0] + 1
-    over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
     rows = tuple(
         (
             result.controller,
@@ -143,7 +141,7 @@ def _scores(tracking: TrackingFile) -> Table:
         for result in tracking.results
     )
     header = ("controller", "condition", *(title for title, _ in _COLUMNS), "at its limit [%]")
-    return table_of(f"Scores{over}", header, rows)
+    return table_of(f"Scores{over_seeds(*tracking.seeds)}", header, rows)
 
 
 def _cell(number: Spread) -> str:
