@@ -280,7 +280,10 @@ def notes(it: Predicted) -> Iterator[str]:
         if it.own_fitted
         else "Nothing is fitted to these runs."
     )
-    for unknown, who in _by_models(it, lambda n: _not_stated(it, n)):
+    lacking: dict[str, dict[str, None]] = {name: {} for name in it.models}
+    for row in it.ranges:
+        lacking[row.model] |= dict.fromkeys(row.not_stated)
+    for unknown, who in _by_models(it, lambda name: listed([*lacking[name]])):
         if unknown:
             yield f"Not known of the recordings behind {who}, and not compared: {unknown}."
     for name, side in it.models.items():
@@ -288,8 +291,3 @@ def notes(it: Predicted) -> Iterator[str]:
             yield f"{name} does not say what it was fitted to: it may have seen these runs."
         if side.not_converged:
             yield f"The fit of {name} did not converge ({side.not_converged.rstrip('.')})."
-
-
-def _not_stated(it: Predicted, model: str) -> str:
-    rows = [row for row in it.ranges if row.model == model]
-    return listed([*dict.fromkeys(quantity for row in rows for quantity in row.not_stated)])

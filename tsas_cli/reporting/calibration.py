@@ -100,13 +100,11 @@ def _notes(rows: tuple[Stiffness, ...]) -> tuple[str, ...]:
         if row.note:
             places.setdefault(row.note, []).append(f"{row.run} {label_of(row.phase)}")
     return tuple(
-        f"{_sentence(note)}." if len(found) == len(rows) else f"{note}: {', '.join(found)}"
+        f"{note[:1].upper()}{note[1:].rstrip('.')}."
+        if len(found) == len(rows)
+        else f"{note}: {', '.join(found)}"
         for note, found in places.items()
     )
-
-
-def _sentence(note: str) -> str:
-    return note[:1].upper() + note[1:].rstrip(".")
 
 
 def _picture(key: str, rows: list[Stiffness]) -> Picture:

@@ -6,7 +6,7 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from tsas_cli.records.closing import ClosedCase, ClosingFile, Named, Row
+from tsas_cli.records.closing import ClosedCase, ClosingFile, Row
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, table_of
 from tsas_cli.reporting.drawing import legend, picture
@@ -70,10 +70,14 @@ def table(closing: ClosingFile) -> Table:
 def dots(closing: ClosingFile) -> Picture:
     """Return the picture of the same errors, one panel for each controller."""
     controllers = closing.of_controllers()
-    said = "; ".join(
-        f"{name}: {', '.join(_said(case, row) for case, row in rows.items())}"
+    sizes = {
+        name: ", ".join(
+            f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
+            for case, row in rows.items()
+        )
         for name, rows in controllers.items()
-    )
+    }
+    said = "; ".join(f"{name}: {of}" for name, of in sizes.items())
     return picture(
         partial(draw_dots, controllers=controllers),
         key="closing-rmse",
@@ -89,10 +93,6 @@ def worth(closing: ClosingFile) -> Iterator[str]:
     """Yield, for each controller, what the extended model is worth, and where it falls short."""
     for name, rows in closing.of_controllers().items():
         yield f"`{name}`: {_gain(rows)} {_limit(rows)}"
-
-
-def _said(case: str, row: Row) -> str:
-    return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
 
 
 def _gain(rows: dict[str, Row]) -> str:
@@ -183,7 +183,13 @@ def section(inputs: Inputs) -> Section | None:
         "closing",
         "Does a better model track better?",
         (_HOW, _SHARED),
-        tables=(_hidden_and_named(closing),),
+        tables=(
+            table_of(
+                "What was hidden in the plant, and what the diagnosis named",
+                ("case", "what differs", "hidden", "verdict", "named"),
+                map(_case, closing.cases),
+            ),
+        ),
         parts=(
             Section(
                 "closing-rmse",
@@ -197,20 +203,8 @@ def section(inputs: Inputs) -> Section | None:
     )
 
 
-def _hidden_and_named(closing: ClosingFile) -> Table:
-    """Return what was hidden and what was named, one row for each case."""
-    rows = tuple(
-        (case.case, case.title, _hidden(case), case.verdict, _named(case.named))
-        for case in closing.cases
-    )
-    header = ("case", "what differs", "hidden", "verdict", "named")
-    return table_of("What was hidden in the plant, and what the diagnosis named", header, rows)
-
-
-def _hidden(case: ClosedCase) -> str:
-    return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
-
-
-def _named(named: tuple[Named, ...]) -> str:
-    causes = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in named)
-    return ", ".join(causes) or "nothing"
+def _case(case: ClosedCase) -> tuple[str, ...]:
+    """Return what was hidden and what was named in a case."""
+    hidden = (f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
+    named = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in case.named)
+    return case.case, case.title, ", ".join(hidden), case.verdict, ", ".join(named) or "nothing"

@@ -257,7 +257,9 @@ def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
             continue
         first, second = (side[WANTED] - side[TRUE] for side in (a, b))
         panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
-        words = _words(both)
+        sizes = (with_spread(r.scores.rmse_N.mean, r.scores.rmse_N.sd) for r in (both.a, both.b))
+        in_a, in_b = sizes
+        words = f"{both.a.controller}, {both.a.condition}: RMSE {in_a} N in A, {in_b} N in B."
         yield picture(
             partial(draw_two_residuals, panels=[panel]),
             key=f"tracked-{number}",
@@ -265,8 +267,3 @@ def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
             caption=words,
             height_in=height_in(1) + 0.6,
         )
-
-
-def _words(both: tracked.ControllerPair) -> str:
-    a, b = (with_spread(r.scores["rmse_N"].mean, r.scores["rmse_N"].sd) for r in (both.a, both.b))
-    return f"{both.a.controller}, {both.a.condition}: RMSE {a} N in A, {b} N in B."

@@ -35,6 +35,7 @@ def section(inputs: Inputs) -> Section:
     diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
+    reason = diagnosis.reason
     evidence = (
         gains_part(diagnosis, inputs.held_out),
         maps.part(diagnosis),
@@ -44,7 +45,7 @@ def section(inputs: Inputs) -> Section:
     return Section(
         "diagnosis",
         _TITLE,
-        (_verdict(diagnosis),),
+        (f"Undecided: {reason}" if diagnosis.verdict == "undecided" else reason,),
         parts=(
             *causes.parts(diagnosis.named, inputs),
             *causes.law_parts(diagnosis, inputs),
@@ -53,11 +54,6 @@ def section(inputs: Inputs) -> Section:
             *(replace(part, folded=True) for part in evidence if part is not None),
         ),
     )
-
-
-def _verdict(diagnosis: DiagnosisFile) -> str:
-    undecided = diagnosis.verdict == "undecided"
-    return f"Undecided: {diagnosis.reason}" if undecided else diagnosis.reason
 
 
 def closing(diagnosis: DiagnosisFile) -> Iterator[Section]:
