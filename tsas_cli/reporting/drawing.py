@@ -256,12 +256,8 @@ def kept_cells(x: Floats, y: Floats, *, cells: int = CELLS) -> Indices:
     `x` and `y` have shape (n,), without gaps; `cells` is how many there are along each axis of the
     curve's own range.
     """
-    places = [_cells(values, cells) for values in (x, y)]
-    enters = (np.diff(places[0]) != 0) | (np.diff(places[1]) != 0)
+    both = np.stack((x, y))
+    spans = np.ptp(both, axis=1, keepdims=True)
+    shares = (both - both.min(axis=1, keepdims=True)) / np.where(spans > 0.0, spans, 1.0)
+    enters = (np.diff(np.floor(shares * cells)) != 0).any(axis=0)
     return np.unique(np.concatenate(([0], np.flatnonzero(enters) + 1, [x.size - 1])))
-
-
-def _cells(values: Floats, cells: int) -> Indices:
-    span = float(np.ptp(values)) or 1.0
-    places: Indices = np.floor((values - values.min()) / span * cells).astype(np.int64)
-    return places

@@ -66,11 +66,15 @@ def _response(drive: DriveFile) -> tuple[Picture, ...]:
         caption=f"From motor speed to x_in: measured where the coherence tells, and fitted.{shown}",
         height_in=5.0,
     )
+    said = "".join(
+        f"; {pole.kind} at {plain(pole.frequency_Hz, 3)} Hz"
+        + ("" if pole.in_band else ", outside of what the input shows")
+        for pole in drive.poles
+    )
     poles = picture(
         partial(draw_poles, poles=drive.poles, band_Hz=band),
         key="drive-poles",
-        alt=f"Poles of the fitted transfer function in the complex plane: one at 0"
-        f"{''.join(map(_pole_in_words, drive.poles))}.",
+        alt=f"Poles of the fitted transfer function in the complex plane: one at 0{said}.",
         caption="Poles of G(s), the integrator's at 0; between the dashed lines the input shows "
         "them. A diamond is 1/delay.",
         height_in=4.0,
@@ -91,11 +95,6 @@ def _bode_in_words(response: FrequencyResponses) -> str:
     )
     excited = sum(response.measured.excited)
     return f"Fitted magnitude and phase: {said}. Measured at {excited} frequencies with coherence."
-
-
-def _pole_in_words(pole: Pole) -> str:
-    where = "" if pole.in_band else ", outside of what the input shows"
-    return f"; {pole.kind} at {plain(pole.frequency_Hz, 3)} Hz{where}"
 
 
 def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:

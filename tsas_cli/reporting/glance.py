@@ -63,7 +63,10 @@ def _of_diagnosis(
 ) -> Glance:
     named = diagnosis.named
     reason = diagnosis.reason[:1].upper() + diagnosis.reason[1:].rstrip(".")
-    verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, reason)
+    verdict = _NO_CAUSE.get(diagnosis.verdict, reason)
+    if named:
+        first, *more = map(heading_of, named)
+        verdict = listed([first, *map(within, more)])
     if isinstance(diagnosis, DiagnosisFile) and diagnosis.faults:
         verdict = _FAULT
     numbers = "RMS of the residual on held-out data"
@@ -76,11 +79,6 @@ def _of_diagnosis(
     if len(named) == 1 and shown and shown[0].label == _REDUCTION:
         kind += f": {_REDUCTION} on held-out data {shown[0].value}"
     return Glance(kind, verdict, numbers if shown else "", shown)
-
-
-def _causes(named: Sequence[NamedCause]) -> str:
-    first, *more = (heading_of(cause) for cause in named)
-    return listed([first, *map(within, more)])
 
 
 def _errors(channels: Mapping[str, HeldOut], *, extended: bool) -> Iterator[Fact]:

@@ -68,8 +68,12 @@ class Inputs:
     @cached_property
     def check(self) -> CheckFile:
         """What the checks say of the dataset; they are run here where no folder holds them."""
-        given = self.get(CheckFile)
-        return _own_check(cast("Dataset", self.dataset)) if given is None else given
+        if given := self.get(CheckFile):
+            return given
+        dataset = cast("Dataset", self.dataset)
+        report = check_dataset(dataset)
+        found, silent = report.findings, report.not_checked
+        return CheckFile(**dataset.header(Path()), findings=found, not_checked=silent)
 
     @property
     def recordings(self) -> Iterable[Recording]:
@@ -231,15 +235,6 @@ def _dataset_of(stage: StageFile, path: Path) -> Location:
             remedy="give the dataset's folder to `tsas report` too",
         )
     return folder
-
-
-def _own_check(dataset: Dataset) -> CheckFile:
-    report = check_dataset(dataset)
-    return CheckFile(
-        **dataset.header(Path()),
-        findings=report.findings,
-        not_checked=report.not_checked,
-    )
 
 
 def _check_own(dataset: Dataset, path: Path) -> None:

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.base import PhaseSegment
@@ -40,7 +39,9 @@ def section(inputs: Inputs) -> Section | None:
     manifest = inputs.dataset.manifest
     kind = {"measured": "measured on a rig", "simulated": "simulated, not measured"}[manifest.kind]
     intro = [f"The dataset {manifest.name} holds {len(manifest.run)} recordings, {kind}."]
-    intro += [text for text in (manifest.description, _credit(manifest)) if text]
+    credit = [("Source", manifest.source), ("License", manifest.license)]
+    said = " ".join(f"{name}: {text.rstrip('.')}." for name, text in credit if text)
+    intro += [text for text in (manifest.description, said) if text]
     tables = [_runs(inputs.dataset)]
     if inputs.check.findings:
         tables.append(_findings(inputs.check))
@@ -48,11 +49,6 @@ def section(inputs: Inputs) -> Section | None:
         header = ("code", "reason", "runs")
         tables.append(table_of("What the checks could not tell", header, reasons))
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
-
-
-def _credit(manifest: Manifest) -> str:
-    parts = [("Source", manifest.source), ("License", manifest.license)]
-    return " ".join(f"{name}: {text.rstrip('.')}." for name, text in parts if text)
 
 
 def _runs(dataset: Dataset) -> Table:
@@ -94,7 +90,8 @@ def _run(recording: Recording, more: Sequence[str]) -> tuple[str, ...]:
 def _findings(check: CheckFile) -> Table:
     """Return the findings, errors first; of many of one kind the first few, and whose they are."""
     kinds: dict[tuple[str, str], list[Finding]] = {}
-    for finding in sorted(check.findings, key=_rank):
+    rank = {severity: place for place, severity in enumerate(_SEVERITIES)}
+    for finding in sorted(check.findings, key=lambda finding: rank.get(finding.severity, -1)):
         kinds.setdefault((finding.severity, finding.code), []).append(finding)
     rows: list[tuple[str, ...]] = []
     for (severity, code), found in kinds.items():
@@ -109,10 +106,6 @@ def _findings(check: CheckFile) -> Table:
             rows.append((severity, code, runs, ABSENT, more, ""))
     header = ("severity", "code", "run", "column", "what", "what to do")
     return table_of("What the checks found", header, rows)
-
-
-def _rank(finding: Finding) -> int:
-    return _SEVERITIES.index(finding.severity) if finding.severity in _SEVERITIES else -1
 
 
 def loops_section(inputs: Inputs) -> Section | None:

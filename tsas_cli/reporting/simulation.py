@@ -256,16 +256,13 @@ def diagnosed_models(inputs: Inputs) -> tuple[Simulated, ...]:
 
 def simulated_models(inputs: Inputs) -> tuple[Simulated, ...]:
     """Return the diagnosis's models and those of the simulations, but none twice."""
-    diagnosed = diagnosed_models(inputs)
-    return *diagnosed, *_simulations(inputs, known=bool(diagnosed))
-
-
-def _simulations(inputs: Inputs, *, known: bool) -> Iterator[Simulated]:
-    extended = inputs.folders[DiagnosisFile] / EXTENDED_MODEL if known else None
+    found = list(diagnosed_models(inputs))
+    extended = inputs.folders[DiagnosisFile] / EXTENDED_MODEL if found else None
     digest = sha256_of(extended) if extended is not None and extended.is_file() else None
     for number, (name, (record, folder)) in enumerate(inputs.simulations.items()):
         if digest is None or record.model.sha256 != digest:
-            yield Simulated(name, _ROLES[number % len(_ROLES)], folder)
+            found.append(Simulated(name, _ROLES[number % len(_ROLES)], folder))
+    return tuple(found)
 
 
 def rms(residual: Floats) -> float:

@@ -115,11 +115,15 @@ def accepted_errors(
         There is an error of another code, or `despite` holds what is no code of a check.
     """
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
-    found = check_runs(dataset, step).findings
+    found = [one for one in check_runs(dataset, step).findings if one.code in CODES]
+    runs: dict[tuple[str, str | None], set[str | None]] = {}
+    for one in found:
+        runs.setdefault((one.code, one.column), set()).add(one.run)
     errors = [
         one
         for one in found
-        if one.code in CODES and (one.severity == "error" or _in_most_runs(one, found, dataset))
+        if one.severity == "error"
+        or (one.code in _IN_MOST_RUNS and 2 * len(runs[one.code, one.column]) > len(dataset.runs))
     ]
     refused = [one for one in errors if one.code not in accepted]
     if refused:
@@ -133,12 +137,6 @@ def accepted_errors(
             remedy=f"{first.remedy}, or accept what `tsas check` finds with {options}",
         )
     return tuple(errors)
-
-
-def _in_most_runs(one: Finding, found: Sequence[Finding], dataset: Dataset) -> bool:
-    """Return whether a warning is of a kind that most runs have, on the same channel."""
-    same = {other.run for other in found if (other.code, other.column) == (one.code, one.column)}
-    return one.code in _IN_MOST_RUNS and 2 * len(same) > len(dataset.runs)
 
 
 def unrecorded(columns: Sequence[Container[str]]) -> Iterator[str]:

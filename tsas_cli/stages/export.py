@@ -117,7 +117,9 @@ def export(
         }
         text, errors, lost = _mujoco(found, fitted or FittedTo(), conditions, path.stem)
     else:
-        text = _json(found) if kind == "json" else _csv(found)
+        head = {"stage": "export", "version": __version__}
+        content = head | {"parameters": [asdict(e) for e in found.estimates]}
+        text = json_text(content) if kind == "json" else _csv(found)
     with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
     summary = heading("export") | {
@@ -128,24 +130,17 @@ def export(
     return ExportResult(summary, path, lost)
 
 
-def _json(model: Model) -> str:
-    head = {"stage": "export", "version": __version__}
-    return json_text(head | {"parameters": [asdict(e) for e in model.estimates]})
-
-
 def _csv(model: Model) -> str:
-    rows = [asdict(e) | {"run": _no_formula(e.run)} for e in model.estimates]
+    rows = [asdict(e) for e in model.estimates]
+    for row in rows:
+        if row["run"] and row["run"][0] in "=+-@":  # which a spreadsheet would compute
+            row["run"] = f"'{row['run']}"
     header = dict.fromkeys(("name", "run", "value", "unit", *(rows[0] if rows else ())))
     text = io.StringIO()
     writer = csv.DictWriter(text, list(header), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue()
-
-
-def _no_formula(run: str | None) -> str | None:
-    """Return a run's id so that no spreadsheet computes it."""
-    return f"'{run}" if run and run[0] in "=+-@" else run
 
 
 def _mujoco(
@@ -173,7 +168,10 @@ def _mujoco(
         ),
         *(f"Not held: {sentence}." for sentence in lost),
     ]
-    return mjcf(name, lumped, said, gear=_gear(fitted)), errors, lost
+    ratio, radius = (fitted.ranges.get(n) for n in ("gear_ratio", "turntable_radius_mm"))
+    # Tension per torque of the motor [1/m], 1 where the gear is not known.
+    gear = 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
+    return mjcf(name, lumped, said, gear=gear), errors, lost
 
 
 def _condition(name: str, given: float | None, fitted: FittedTo) -> float | None:
@@ -190,12 +188,6 @@ def _condition(name: str, given: float | None, fitted: FittedTo) -> float | None
             remedy=f"{option} {high:.6g}",
         )
     return 0.5 * (low + high)
-
-
-def _gear(fitted: FittedTo) -> float:
-    """Return the tension per torque of the motor [1/m], 1 where the gear is not known."""
-    ratio, radius = (fitted.ranges.get(n) for n in ("gear_ratio", "turntable_radius_mm"))
-    return 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
 
 
 def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> Differences:

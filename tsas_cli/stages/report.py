@@ -10,7 +10,7 @@ from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.storage import Location
 from tsas_cli.records.result import Result, Table
 from tsas_cli.records.simulation import SimulationFile
-from tsas_cli.reporting.inputs import Inputs, read_inputs
+from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.reporting.pdf import PDF_MARK, browser, print_page
 from tsas_cli.stages.given import Named, file_of, places_of
@@ -79,7 +79,11 @@ def report(
         )
         inputs = read_inputs(places, several=True)
         step.ahead(len(SECTIONS))
-        text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
+        # The files that say what was read, by which all else is found.
+        files: list[tuple[Location, str]] = [(folder, one.FILE) for one, folder in inputs.given]
+        if inputs.dataset is not None:
+            files.insert(0, (inputs.dataset.folder, MANIFEST_FILE))
+        text = with_seal(page(inputs, step), files, pages[0])
         html.write_text(text, encoding="utf-8")
         for path in printed:
             print_page(text, path)
@@ -93,12 +97,6 @@ def report(
     if pdf:
         summary["pdf"] = str(pages[1])
     return ReportResult(summary, pages[0], sizes)
-
-
-def _files_of(inputs: Inputs) -> list[tuple[Location, str]]:
-    """Return the files that say what was read, by which all else is found."""
-    stages: list[tuple[Location, str]] = [(folder, one.FILE) for one, folder in inputs.given]
-    return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST_FILE), *stages]
 
 
 def _beside(out: Path) -> Path:

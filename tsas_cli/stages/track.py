@@ -182,6 +182,7 @@ def track(
     one_of(DYNAMICS, dynamics, "dynamics")
     read = printed_gains(read_settings(given)) if as_printed else read_settings(given)
     known, real = what_is_known(read, *models)
+    followed = Path(str(reference))  # a shape is the name of no file
     wanted = reference_of(str(reference), read.reference, read.step_s)
     drive_path = plan(wanted, known, read)
     made = partial(
@@ -191,7 +192,9 @@ def track(
         drive=source_of(models[2], path, DRIVE_FILE, without="kinematics"),
         settings=read.model_dump(mode="json", by_alias=True)
         | ({} if given is None else source_of(given, path)),
-        reference=_reference_of(Path(str(reference)), path),
+        reference=read_from(followed, path or Path())
+        if followed.is_file()
+        else {"shape": str(reference)},
         dynamics=dynamics,
         gains="as printed" if as_printed else "default",
         seeds=(numbers[0], numbers[-1]),
@@ -199,7 +202,7 @@ def track(
     )
     follow = partial(run_loop, wanted, drive_path, known, dynamics=dynamics, relay=as_printed)
     results, tables = list[records.TrackedResult](), dict[str, pa.Table]()
-    inputs = (*models, given, Path(str(reference)))  # a shape is the name of no file
+    inputs = (*models, given, followed)
     with folder_if(path, stage="track", inputs=inputs, force=force) as folder:
         step.ahead(len(names) * len(changes) * many)
         for condition in changes:
@@ -237,10 +240,6 @@ def _known_controllers(named: Sequence[str]) -> Sequence[str]:
         if name not in CONTROLLERS:
             raise InputError(f"unknown controller {name}", remedy=nearest(name, CONTROLLERS))
     return list(dict.fromkeys(named))
-
-
-def _reference_of(reference: Path, out: Path | None) -> dict[str, str]:
-    return read_from(reference, out or Path()) if reference.is_file() else {"shape": str(reference)}
 
 
 def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:

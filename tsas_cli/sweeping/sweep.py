@@ -185,15 +185,13 @@ def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Tabl
     failed = [row for row in rows if row["state"] == "failed"]
     if failed:
         more = f", the first {MOST_SHOWN}" if len(failed) > MOST_SHOWN else ""
-        shown = [(_input(row, varied), row["error"]) for row in failed[:MOST_SHOWN]]
+        shown = []
+        for row in failed[:MOST_SHOWN]:  # by the dataset, run and values that identify the task
+            source = [str(row[name]) for name in ("dataset", "run") if name in row]
+            values = [f"{name}={row[name]}" for name in varied if name in row]
+            shown.append((", ".join([*source, *values]), row["error"]))
         tables.append((f"failed {len(failed)}{more}", ("input", "error"), shown))
     return tables
-
-
-def _input(row: Row, varied: Iterable[str]) -> str:
-    """Return the dataset, run and values that identify a task."""
-    source = [str(row[name]) for name in ("dataset", "run") if name in row]
-    return ", ".join([*source, *(f"{name}={row[name]}" for name in varied if name in row)])
 
 
 def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:

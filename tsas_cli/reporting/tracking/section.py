@@ -136,7 +136,7 @@ def _scores(tracking: TrackingFile) -> Table:
             result.controller,
             result.condition,
             *(_cell(getattr(result.scores, key)) for _, key in _COLUMNS),
-            _limit(result.scores.at_limit_percent),
+            _cell(limit) if (limit := result.scores.at_limit_percent).mean else ABSENT,
         )
         for result in tracking.results
     )
@@ -146,11 +146,6 @@ def _scores(tracking: TrackingFile) -> Table:
 
 def _cell(number: Spread) -> str:
     return with_spread(number.mean, number.sd)
-
-
-def _limit(number: Spread) -> str:
-    """Return how long the motor is at its speed limit; nothing where it never is."""
-    return _cell(number) if number.mean else ABSENT
 
 
 def portraits_part(conditions: tuple[RunsUnderCondition, ...], settings: StatedSettings) -> Section:
