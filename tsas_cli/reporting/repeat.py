@@ -43,7 +43,8 @@ def section(inputs: Inputs) -> Section:
     if prediction := inputs.get(PredictionFile):
         hashes |= {one.path: one.sha256 for one in prediction.models if one.sha256}
     if tracking := inputs.get(TrackingFile):
-        hashes |= files_read(tracking)
+        named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
+        hashes |= {one.file: one.sha256 for one in named if one.sha256 is not None}
     tables = [table_of("Versions", ("program", "version"), _versions(inputs))]
     if hashes:
         tables.append(table_of("Files read", ("file", "SHA-256"), hashes.items()))
@@ -197,9 +198,3 @@ def tracking_options(tracking: TrackingFile) -> Iterator[str]:
         yield from ("--settings", tracking.settings.file)
     first, last = tracking.seeds
     yield from ("--seeds", str(last - first + 1), "--seed", str(first))
-
-
-def files_read(tracking: TrackingFile) -> dict[str, str]:
-    """Return the checksums of models and reference by file, of those that were given."""
-    named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
-    return {one.file: one.sha256 for one in named if one.sha256 is not None}

@@ -99,8 +99,13 @@ class DiagnosisResult(Result):
             (self.titled("causes", records.EXTENDED_MODEL), "rivals", self.record.named),
             ("what gains and is not proven", "why", self.record.stand_ins),
         ):
+            rows = [
+                (c.effect, name, v.text(), v.unit, "; ".join(c.failed) or ", ".join(c.rivals))
+                for c in causes
+                for name, v in c.parameters.items()
+            ]
             if causes:
-                yield heading, (*columns, last), list(_parameter_rows(causes))
+                yield heading, (*columns, last), rows
         errors = [
             (
                 name,
@@ -254,14 +259,6 @@ def _predictions(run: Prepared, extended: Model, nominal: Model) -> Recording:
     columns = {"time_s": run.time_s, "x_in_mm": after.response.x_in_mm, **after.channels}
     columns |= {nominal_name(name): values for name, values in before.channels.items()}
     return Recording(run.run, columns)
-
-
-def _parameter_rows(causes: Iterable[records.NamedCause]) -> Iterator[tuple[str, ...]]:
-    """Yield each parameter of each cause, with its rivals, or what it does not prove."""
-    for cause in causes:
-        last = "; ".join(cause.failed) or ", ".join(cause.rivals)
-        for name, value in cause.parameters.items():
-            yield cause.effect, name, value.text(), value.unit, last
 
 
 def _plot_loop(run: Prepared, models: Mapping[str, Model], channel: str) -> "tuple[Axes, Axes]":

@@ -9,7 +9,7 @@ import numpy as np
 
 from tsas_cli.drive import json as drive_json
 from tsas_cli.drive.diagnosis import diagnose_drive
-from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of
+from tsas_cli.drive.estimates import drive_sheet, estimates_of
 from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
 from tsas_cli.drive.json import tables
@@ -34,6 +34,7 @@ SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
 
 STAGE = "identify-harmonic-drive"
+_OF_SHEET = ("turntable_radius_mm", "gear_ratio", "inertia_N_mm_s2")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -133,7 +134,10 @@ def identify_harmonic_drive(
         fitted = estimates_of(trial, numbered, sheet, by_run=folds.by_run)
         nominal, found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, nominal)
-        known = fitted | _given(sheet)
+        known = dict(fitted)
+        for name in _OF_SHEET:
+            if (stated := getattr(sheet, name)) is not None:
+                known[name] = Estimate(name, stated, UNITS[name], "data sheet")
         record = DriveFile(
             **counted.dataset.header(path),
             hold=hold,
@@ -164,19 +168,6 @@ def identify_harmonic_drive(
             write_drive(folder / DRIVE_FILE, known, structure, version=record.version, dataset=of)
             write_runs(folder / "runs", simulated)
     return DriveResult(record.content(), path, record, known, simulated)
-
-
-def _given(sheet: DataSheet) -> dict[str, Estimate]:
-    stated = {
-        "turntable_radius_mm": sheet.turntable_radius_mm,
-        "gear_ratio": sheet.gear_ratio,
-        "inertia_N_mm_s2": sheet.inertia_N_mm_s2,
-    }
-    return {
-        name: Estimate(name, value, UNITS[name], "data sheet")
-        for name, value in stated.items()
-        if value is not None
-    }
 
 
 def _simulated(search: DriveSearch, terms: Terms) -> list[Floats]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
+from tsas_cli.diagnosis.amplitudes import Amplitude
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import TINY
@@ -113,23 +113,22 @@ def record_of(plan: ExperimentPlan, **of: object) -> RunPlan:
     """Return what `plan.json` says of a plan, and what it is `of`: a dataset or a rig file."""
     return RunPlan(
         **of,
-        effects=[_size_of(seen) for seen in plan.seen],
+        effects=[
+            EffectSize(
+                effect=seen.cause.effect.name,
+                parameter=seen.cause.parameter.name,
+                unit=seen.cause.parameter.unit,
+                shape={name.split(".")[1]: value for name, value in seen.cause.shape.items()},
+                found_from=_or_any(seen.cause, seen.found),
+                named_from=_or_any(seen.cause, seen.named),
+                nearest=seen.nearest,
+                hidden_in=seen.hidden_in,
+            )
+            for seen in plan.seen
+        ],
         groups=plan.groups,
         proposals=[_proposal(proposal) for proposal in plan.proposals],
         cannot_tell=plan.cannot_tell,
-    )
-
-
-def _size_of(seen: Visibility) -> EffectSize:
-    return EffectSize(
-        effect=seen.cause.effect.name,
-        parameter=seen.cause.parameter.name,
-        unit=seen.cause.parameter.unit,
-        shape={name.split(".")[1]: value for name, value in seen.cause.shape.items()},
-        found_from=_or_any(seen.cause, seen.found),
-        named_from=_or_any(seen.cause, seen.named),
-        nearest=seen.nearest,
-        hidden_in=seen.hidden_in,
     )
 
 

@@ -112,10 +112,24 @@ def curve_parts(conditions: tuple[RunsUnderCondition, ...]) -> Iterator[Section]
 
 def _force(condition: RunsUnderCondition, key: str) -> Picture:
     wanted = condition.runs[0].columns[WANTED]
+
+    def draw(
+        figure: Any, time_s: Floats, curves: Sequence[TimeCurve], change_s: float | None
+    ) -> None:
+        """Draw what is wanted, wide and grey, and all curves over it."""
+        axes = figure.add_subplot()
+        line(axes, time_s, wanted, color=STAND_IN["measured"], linewidth=3.2, label="wanted")
+        for curve in curves:
+            colour = of_controller(curve.controller)
+            line(axes, time_s, curve.values, color=colour, linewidth=1.1, label=curve.label)
+        mark_change(axes, change_s)
+        axes.set(xlabel="time [s]", ylabel="force at the load [N]")
+        legend(figure)
+
     return _picture(
         condition,
         [TimeCurve(run.name, run.name, run.columns[TRUE]) for run in condition.runs],
-        partial(_draw_together, wanted=wanted),
+        draw,
         key=key,
         what=("Force at the load", f"newton: wanted {spanned(wanted)}"),
         caption="wanted force, and what each controller gives",
@@ -182,25 +196,6 @@ def _panels_in(condition: RunsUnderCondition) -> float:
     """Return the height in inches that a panel for each run needs."""
     panels = len(condition.runs)
     return 0.6 + (1.15 * panels if panels > 1 else 2.4)
-
-
-def _draw_together(
-    figure: Any,
-    *,
-    time_s: Floats,
-    wanted: Floats,
-    curves: Sequence[TimeCurve],
-    change_s: float | None,
-) -> None:
-    """Draw what is wanted, wide and grey, and all curves over it."""
-    axes = figure.add_subplot()
-    line(axes, time_s, wanted, color=STAND_IN["measured"], linewidth=3.2, label="wanted")
-    for curve in curves:
-        colour = of_controller(curve.controller)
-        line(axes, time_s, curve.values, color=colour, linewidth=1.1, label=curve.label)
-    mark_change(axes, change_s)
-    axes.set(xlabel="time [s]", ylabel="force at the load [N]")
-    legend(figure)
 
 
 def draw_panels(

@@ -1,8 +1,7 @@
 """How well a wanted force is followed, by whom, and at what cost."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -166,12 +165,32 @@ def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture
         f"{name} error up to {plain(_most(x), 3)} mm, rate up to {plain(_most(y), 3)} mm/s"
         for name, x, y in orbits
     )
+    across = min(_ACROSS, len(orbits))
+    down = -(-len(orbits) // across)
+
+    def draw(figure: Any) -> None:
+        """Draw each error and its rate in a panel with its own scales, zero as a cross."""
+        panels = figure.subplots(down, across, squeeze=False)
+        for axes in panels.flat[len(orbits) :]:
+            axes.set_axis_off()
+        for axes, (name, x, y) in zip(panels.flat, orbits, strict=False):
+            axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+            axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+            kept = kept_cells(x, y)
+            axes.plot(x[kept], y[kept], color=of_controller(name), linewidth=0.8)
+            axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
+            axes.locator_params(nbins=5)
+        for axes in panels[-1]:
+            axes.set_xlabel("e [mm]")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("de/dt [mm/s]")
+
     return picture(
-        partial(draw_portraits, orbits=orbits),
+        draw,
         key=f"tracking-phase-{condition.number}",
         alt=f"Phase portraits of the drive's error, {condition.name}: {said}.",
         caption=f"{condition.name.capitalize()}: rate of the drive's error over the error.",
-        height_in=portraits_in(len(orbits)),
+        height_in=0.5 + 2.0 * down if len(orbits) > 1 else 3.5,
     )
 
 
@@ -188,30 +207,6 @@ def _error_and_rate(run: TrackedRun, settings: StatedSettings) -> tuple[Floats, 
 
 def _most(values: Floats) -> float:
     return float(np.abs(values).max())
-
-
-def portraits_in(orbits: int) -> float:
-    """Return the height in inches that so many panels need."""
-    return 0.5 + 2.0 * -(-orbits // _ACROSS) if orbits > 1 else 3.5
-
-
-def draw_portraits(figure: Any, *, orbits: Sequence[tuple[str, Floats, Floats]]) -> None:
-    """Draw each controller's error and its rate in a panel with its own scales, zero as a cross."""
-    across = min(_ACROSS, len(orbits))
-    panels = figure.subplots(-(-len(orbits) // across), across, squeeze=False)
-    for axes in panels.flat[len(orbits) :]:
-        axes.set_axis_off()
-    for axes, (name, x, y) in zip(panels.flat, orbits, strict=False):
-        axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
-        axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.9)
-        kept = kept_cells(x, y)
-        axes.plot(x[kept], y[kept], color=of_controller(name), linewidth=0.8)
-        axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
-        axes.locator_params(nbins=5)
-    for axes in panels[-1]:
-        axes.set_xlabel("e [mm]")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("de/dt [mm/s]")
 
 
 def adaptation_part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -> Section | None:
@@ -260,33 +255,26 @@ def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adap
         f"bounds {it.lowest:g} and {it.highest:g}"
         for it in estimates
     )
-    time_s, change_s = run.time_s, condition.change_s
+
+    def draw(figure: Any) -> None:
+        """Draw a panel for each estimate, its axis in powers of ten where all is positive."""
+        rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, it in zip(rows, estimates, strict=True):
+            line(axes, run.time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
+            for value in (it.lowest, it.highest):
+                bound(axes, value)
+            if min(it.lowest, float(it.values.min())) > 0.0:
+                axes.set_yscale("log")
+                axes.yaxis.set_major_formatter("{x:g}")
+                axes.yaxis.set_minor_formatter("")
+            mark_change(axes, condition.change_s)
+            axes.set_title(f"{it.symbol} [{it.unit}]", loc="left", fontsize=9.0, pad=3.0)
+        rows[-1].set_xlabel("time [s]")
+
     return picture(
-        partial(_draw_estimates, time_s=time_s, estimates=estimates, change_s=change_s),
+        draw,
         key=f"tracking-adaptation-{condition.number}",
         alt=f"Adapted parameters over time, {condition.name}: {said}.",
         caption=f"{condition.name.capitalize()}: estimates over time, bounds dashed.",
         height_in=4.2,
     )
-
-
-def _draw_estimates(
-    figure: Any,
-    *,
-    time_s: Floats,
-    estimates: Sequence[AdaptiveEstimate],
-    change_s: float | None,
-) -> None:
-    """Draw one panel for each estimate, its axis in powers of ten where all is positive."""
-    rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, it in zip(rows, estimates, strict=True):
-        line(axes, time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
-        for value in (it.lowest, it.highest):
-            bound(axes, value)
-        if min(it.lowest, float(it.values.min())) > 0.0:
-            axes.set_yscale("log")
-            axes.yaxis.set_major_formatter("{x:g}")
-            axes.yaxis.set_minor_formatter("")
-        mark_change(axes, change_s)
-        axes.set_title(f"{it.symbol} [{it.unit}]", loc="left", fontsize=9.0, pad=3.0)
-    rows[-1].set_xlabel("time [s]")
