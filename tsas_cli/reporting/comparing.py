@@ -21,10 +21,9 @@ from tsas_cli.records.comparison import ParameterPair, shared_name
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, rendered, table_of
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
-from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.drawing import Residuals, draw_two_residuals, height_in, legend, picture
 from tsas_cli.reporting.numbers import plain, with_spread
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
-from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 _MOST = 8  # strips of a picture
 _SAID = 3  # findings that stand in the summary

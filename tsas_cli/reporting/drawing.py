@@ -7,7 +7,8 @@ import io
 import json
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -212,6 +213,41 @@ def legend(figure: Any, axes: Any = None, *, ncols: int = 2, handlelength: float
     figure.legend(
         *named, loc="outside upper left", ncols=ncols, handlelength=handlelength, columnspacing=1.2
     )
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """One panel: its name at the axis, time [s], both residuals, shape (n,) each, and the noise."""
+
+    label: str
+    time_s: Floats
+    first: Floats
+    second: Floats
+    noise: float | None
+
+
+def height_in(panels: int) -> float:
+    """Return the height in inches that so many panels need."""
+    return 0.8 + 1.3 * panels
+
+
+def draw_two_residuals(
+    figure: Any, *, panels: Sequence[Residuals], names: tuple[str, str] = ("A", "B")
+) -> None:
+    """Draw panel below panel; the larger residual lies below the smaller one."""
+    rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, panel in zip(rows, panels, strict=True):
+        both = panel.first, panel.second
+        least = min(float(np.nanstd(values)) for values in both)
+        for name, values, role in zip(names, both, ("before", "after"), strict=True):
+            order = 2.2 if float(np.nanstd(values)) <= least else 2.1
+            style = {"color": STAND_IN[role], "linewidth": 0.7, "label": name, "zorder": order}
+            line(axes, panel.time_s, values, **style)
+        noise_bounds(axes, panel.noise)
+        axes.set_ylabel(panel.label)
+    rows[-1].set_xlabel("time [s]")
+    figure.align_ylabels()
+    legend(figure, rows[0], ncols=3)
 
 
 def kept_samples(*series: Floats, points: int = POINTS) -> Indices:

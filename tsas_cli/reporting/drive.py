@@ -11,10 +11,16 @@ from tsas_cli.drive.json import tables
 from tsas_cli.records.drive import DriveFile, FrequencyResponses
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, table_of
-from tsas_cli.reporting.drawing import bound, legend, picture
+from tsas_cli.reporting.drawing import (
+    Residuals,
+    bound,
+    draw_two_residuals,
+    height_in,
+    legend,
+    picture,
+)
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import RAISED, plain, spanned
-from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 
 def section(inputs: Inputs) -> Section | None:
