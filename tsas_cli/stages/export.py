@@ -239,8 +239,9 @@ def _effects_left_out(effects: Effects) -> Sequence[str]:
 def _mjcf(name: str, lumped: Lumped, comments: Sequence[str], *, gear: float) -> str:
     """Return a model file of MuJoCo, in N, m, kg and s.
 
-    `gear` is the tension at the drive [N] per unit of control. Joints drive, sheath and load are x_in, the tendon in the middle of the sheath, and x_out, 0 at
-    the preload; each tendon's force is the tension, that of `proximal` f_in, of `distal` f_out.
+    `gear` is the tension at the drive [N] per unit of control. Joints drive, sheath and load are
+    x_in, the tendon in the middle of the sheath, and x_out, 0 at the preload; each tendon's force
+    is the tension, that of `proximal` f_in, of `distal` f_out.
     """
     drive = _joint(
         "drive",
