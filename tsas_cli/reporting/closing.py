@@ -98,7 +98,10 @@ def worth(closing: ClosingFile) -> Iterator[str]:
 def _gain(rows: dict[str, Row]) -> str:
     """Return in sentences how much the extended model lowers the error of the data sheet's."""
     middle = median(row.gain for row in rows.values())
-    said = f"the better model {_matters(middle)}. RMSE data sheet / extended is {plain(middle, 2)}"
+    matters = "hardly matters" if middle > 1.0 / NEAR else "does harm"
+    if middle > NEAR:
+        matters = "matters"
+    said = f"the better model {matters}. RMSE data sheet / extended is {plain(middle, 2)}"
     if len(rows) == 1:
         return f"{said}."
     gains = {case: row.gain for case, row in rows.items()}
@@ -106,12 +109,6 @@ def _gain(rows: dict[str, Row]) -> str:
     worse = [f"{case} ({plain(gain, 2)})" for case, gain in gains.items() if gain < 1.0 / NEAR]
     but = f"; the data sheet's is better by more than {_PERCENT} in {listed(worse)}"
     return f"{said} (median of {len(rows)} cases, {low} to {high}){but if worse else ''}."
-
-
-def _matters(gain: float) -> str:
-    if gain > NEAR:
-        return "matters"
-    return "hardly matters" if gain > 1.0 / NEAR else "does harm"
 
 
 def _limit(rows: dict[str, Row]) -> str:

@@ -9,7 +9,7 @@ from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.records.drive import DriveDiagnosis, DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
-from tsas_cli.records.tracking import TrackingFile
+from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting import before_after
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.inputs import Inputs
@@ -111,23 +111,20 @@ def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
 
 
 def _of_tracking(tracking: TrackingFile) -> Glance:
-    by_controller: dict[str, dict[str, str]] = {}
-    means: dict[str, float] = {}
+    by_controller: dict[str, list[TrackedResult]] = {}
     for result in tracking.results:
-        rmse = result.scores.rmse_N
-        shown = f"{plain(rmse.mean, 3)} N"
-        by_controller.setdefault(result.controller, {})[result.condition] = shown
-        if rmse.mean is not None and len(by_controller[result.controller]) == 1:
-            means[result.controller] = rmse.mean
-    first = tracking.results[0].condition
+        by_controller.setdefault(result.controller, []).append(result)
+    means = {name: of[0].scores.rmse_N.mean for name, of in by_controller.items()}
+    known = {name: mean for name, mean in means.items() if mean is not None}
     verdict = f"Followed by {listed(list(by_controller))}"
-    if len(means) > 1:
-        verdict = f"{min(means, key=lambda name: means[name]).capitalize()} follows best"
+    if len(known) > 1:
+        verdict = f"{min(known, key=lambda name: known[name]).capitalize()} follows best"
     facts = []
-    for name, by_condition in by_controller.items():
-        (_, value), *others = by_condition.items()
-        facts.append(Fact(name, value, "; ".join(f"{c}: {rmse}" for c, rmse in others)))
-    numbers = f"Root mean square error of the force, {first}"
+    for name, (first, *others) in by_controller.items():
+        sizes = [f"{plain(it.scores.rmse_N.mean, 3)} N" for it in (first, *others)]
+        more = zip(others, sizes[1:], strict=True)
+        facts.append(Fact(name, sizes[0], "; ".join(f"{it.condition}: {n}" for it, n in more)))
+    numbers = f"Root mean square error of the force, {tracking.results[0].condition}"
     return Glance("Tracking, simulated", verdict, numbers, tuple(facts))
 
 
