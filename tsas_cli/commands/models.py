@@ -95,22 +95,12 @@ def simulate(
     as_json: Json = False,
 ) -> None:
     """Simulate every run with a model, and compute its residual."""
-    data = tsas.read(dataset, runs=runs)
-    with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
-        run(
-            "simulate",
-            dataset=data,
-            out=out,
-            model=model,
-            dynamics=dynamics,
-            fit_own=fit_own,
-            nodes=nodes,
-            force=force,
-            each=partial(stream.simulated, data) if stream else None,
-            rrd=rrd,
-            quiet=quiet,
-            as_json=as_json,
-        )
+    given = locals()
+    data = tsas.read(given.pop("dataset"), runs=given.pop("runs"))
+    name = f"{data.manifest.name} · simulation"
+    with watched(given.pop("live"), name, quiet=quiet) as stream:
+        each = partial(stream.simulated, data) if stream else None
+        run("simulate", dataset=data, each=each, **given)
 
 
 def diagnose(
@@ -125,10 +115,7 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Locate the residuals of the simulation, name their cause, and fit the extended model."""
-    with (
-        progress("diagnose", quiet=quiet, endable=True) as step,
-        with_stream(rrd, step),
-    ):
+    with progress("diagnose", quiet=quiet, endable=True) as step, with_stream(rrd, step):
         result = tsas.diagnose(
             dataset,
             out=out,
