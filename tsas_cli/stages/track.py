@@ -23,9 +23,10 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, one_of, path_of
+from tsas_cli.stages.given import Named, at_least, listed, one_of, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
+from tsas_cli.support.limits import SEEDS
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import Condition, disturbed, printed_rmse, proximal_spring
 from tsas_cli.tracking.recorded import (
@@ -175,7 +176,9 @@ def track(
         asked = [Condition("undisturbed"), *(asked or [proximal_spring()])]
     changes = asked or [Condition("undisturbed")]
     names = CONTROLLERS if compare else _known_controllers(listed(controllers))
-    many = (COMPARED_SEEDS if compare else 1) if seeds is None else number_of_seeds(seeds)
+    many = COMPARED_SEEDS if compare else 1
+    if seeds is not None:
+        many = at_least(1, seeds, "seeds", most=SEEDS)
     numbers = range(at_least(0, first_seed, "first_seed"), first_seed + many)
     given, path = path_of(settings, Mapping), path_of(out)
     models = path_of(model, Model), path_of(plant, Model), path_of(drive, IdentifiedDrive)
