@@ -192,7 +192,7 @@ def compare(
 
 
 def plan(
-    runs: Annotated[
+    path: Annotated[
         str, typer.Argument(metavar="DATASET|RIG.toml", help="A dataset, or planned runs.")
     ],
     out: Annotated[
@@ -203,7 +203,7 @@ def plan(
     as_json: Json = False,
 ) -> None:
     """Compute the smallest detectable size of each effect, and the most useful further run."""
-    run("plan", **locals())
+    run("plan", runs=path, out=out, force=force, quiet=quiet, as_json=as_json)
 
 
 def export(
