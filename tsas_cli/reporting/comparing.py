@@ -225,7 +225,7 @@ def tracked_page(it: tracked.Tracks, advance: Callable[[], None] = lambda: None)
     return rendered(
         name="A and B, side by side",
         about=" and ".join(str(path) for path in it.paths.values()),
-        summary=" ".join(tracked.findings(it))
+        summary=" ".join(it.record.findings)
         or "There is no controller and condition that both have.",
         sections=_tracked_sections(it),
         advance=advance,
@@ -235,13 +235,12 @@ def tracked_page(it: tracked.Tracks, advance: Callable[[], None] = lambda: None)
 def _tracked_sections(it: tracked.Tracks) -> Iterator[Section]:
     sides = table_of("Folders", ("", "path"), [(n, str(p)) for n, p in it.paths.items()])
     printed = [table_of(*table) for table in tracked.tables(it)]
-    yield Section(
-        "sides", "What is compared", points=tuple(tracked.notes(it)), tables=(sides, *printed)
-    )
+    yield Section("sides", "What is compared", points=it.record.notes, tables=(sides, *printed))
     if pictures := tuple(_error_pictures(it)):
         what = "Wanted less true force at the load, with the first seed of noise."
         yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
-    files = tuple((n, tracked.TRACKING_FILE, digest) for n, digest in it.checksums.items())
+    sides_read = {"A": it.record.a, "B": it.record.b}
+    files = tuple((n, *read) for n, side in sides_read.items() for read in side.files.items())
     yield _repeated(["tsas", "compare", *map(str, it.paths.values())], files)
 
 

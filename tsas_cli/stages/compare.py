@@ -87,9 +87,7 @@ def compare(
     path = path_of(out)
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
-        record: ComparisonFile = (
-            tracked.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)
-        )
+        record: ComparisonFile = both.record if isinstance(both, Tracks) else stage.record_of(both)
         if folder is not None:
             record.write(folder)
             (folder / "report.html").write_text(_page(both, step), encoding="utf-8")
