@@ -2,7 +2,7 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
@@ -45,6 +45,13 @@ def table_of(
         frozenset(k for k in range(1, len(kept)) if all(_NUMBER.match(row[k]) for row in shown)),
         tuple(notes),
     )
+
+
+def table_by_column(caption: str, rows: Iterable[Mapping[str, str]]) -> Table:
+    """Return a table of rows whose cells stand by the names of their columns."""
+    cells = list(rows)
+    header = list(dict.fromkeys(name for row in cells for name in row))
+    return table_of(caption, header, [[row.get(name, "") for name in header] for row in cells])
 
 
 @dataclass(frozen=True)

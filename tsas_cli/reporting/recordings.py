@@ -1,6 +1,6 @@
 """What the recordings are, what the checks say about them, and their loops by phase."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -9,14 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table, table_of
+from tsas_cli.reporting.content import Group, Picture, Section, Table, table_by_column, table_of
 from tsas_cli.reporting.drawing import kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import PHASES, Phase, at_axis, in_words, phase_of_samples
@@ -42,7 +41,7 @@ def section(inputs: Inputs) -> Section | None:
     credit = [("Source", manifest.source), ("License", manifest.license)]
     said = " ".join(f"{name}: {text.rstrip('.')}." for name, text in credit if text)
     intro += [text for text in (manifest.description, said) if text]
-    tables = [_runs(inputs.dataset)]
+    tables = [table_by_column("The recordings", map(_run, inputs.dataset))]
     if inputs.check.findings:
         tables.append(_findings(inputs.check))
     if reasons := inputs.check.reasons():
@@ -51,40 +50,24 @@ def section(inputs: Inputs) -> Section | None:
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
 
 
-def _runs(dataset: Dataset) -> Table:
-    more = list(dict.fromkeys(key for run in dataset.manifest.run for key in run.model_extra or {}))
-    header = (
-        "run",
-        "channels",
-        "samples",
-        "duration [s]",
-        "rate [Hz]",
-        "sheath length [mm]",
-        "total bend [rad]",
-        "preload [N]",
-        *more,
-        "started",
-        "load",
-    )
-    return table_of("The recordings", header, (_run(recording, more) for recording in dataset))
-
-
-def _run(recording: Recording, more: Sequence[str]) -> tuple[str, ...]:
+def _run(recording: Recording) -> dict[str, str]:
+    """Return what a recording is, by column of the table."""
     run, time_s = recording.run, recording.time_s
     duration = float(time_s[-1] - time_s[0])
-    return (
-        run.id,
-        ", ".join(name for name in BY_NAME if name in recording.columns and name != TIME),
-        str(time_s.size),
-        plain(duration),
-        plain((time_s.size - 1) / duration),
-        plain(run.sheath_length_mm),
-        plain(run.total_bend_rad),
-        plain(run.preload_N),
-        *(str((run.model_extra or {}).get(key, ABSENT)) for key in more),
-        run.started.isoformat(" ") if run.started else ABSENT,
-        run.load,
-    )
+    channels = [name for name in BY_NAME if name in recording.columns and name != TIME]
+    row = {
+        "run": run.id,
+        "channels": ", ".join(channels),
+        "samples": str(time_s.size),
+        "duration [s]": plain(duration),
+        "rate [Hz]": plain((time_s.size - 1) / duration),
+        "sheath length [mm]": plain(run.sheath_length_mm),
+        "total bend [rad]": plain(run.total_bend_rad),
+        "preload [N]": plain(run.preload_N),
+    }
+    more = {key: str(value) for key, value in (run.model_extra or {}).items() if key not in row}
+    started = run.started.isoformat(" ") if run.started else ABSENT
+    return row | more | {"started": started, "load": run.load}
 
 
 def _findings(check: CheckFile) -> Table:

@@ -17,7 +17,15 @@ from tsas_cli.recordings.columns import BY_NAME, nominal_name
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table, missing, table_of
+from tsas_cli.reporting.content import (
+    Group,
+    Picture,
+    Section,
+    Table,
+    missing,
+    table_by_column,
+    table_of,
+)
 from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import at_axis, in_words
@@ -163,39 +171,26 @@ def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Tab
 def _inputs(inputs: Inputs) -> Iterator[Table]:
     """Yield how each run's inputs were cleaned, where it starts and what solved it."""
     rows = [
-        (
-            name,
-            run_id,
-            column,
-            plain(c.window_s, 3),
-            plain(c.noise, 3),
-            c.unit,
-            str(c.reversals),
-            run.start,
-            run.solver,
-            str(run.slack_samples),
-            str(run.unconverged_samples),
-        )
+        {
+            "simulation": name,
+            "run": run_id,
+            "input": column,
+            "window [s]": plain(c.window_s, 3),
+            "noise level": plain(c.noise, 3),
+            "unit": c.unit,
+            "reversals": str(c.reversals),
+            "start": run.start,
+            "solver": run.solver,
+            "samples with slack": str(run.slack_samples),
+            "not converged": str(run.unconverged_samples),
+        }
         for name, (record, _) in inputs.simulations.items()
         for run_id, run in record.runs.items()
         for column, c in run.conditioning.items()
     ]
-    header = (
-        "simulation",
-        "run",
-        "input",
-        "window [s]",
-        "noise level",
-        "unit",
-        "reversals",
-        "start",
-        "solver",
-        "samples with slack",
-        "not converged",
-    )
     if rows:
         caption = "How the measured inputs were made ready, and what solved the model"
-        yield table_of(caption, header, rows)
+        yield table_by_column(caption, rows)
 
 
 def _picture(it: ShownChannel, number: int, points: int) -> Picture:

@@ -7,7 +7,7 @@ from typing import Any
 
 from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause, TriedHypothesis
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Section, Table, missing, table_of
+from tsas_cli.reporting.content import Section, Table, missing, table_by_column, table_of
 from tsas_cli.reporting.diagnosis import causes, maps, similarity
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
@@ -155,30 +155,20 @@ def _judged(diagnosis: DiagnosisFile) -> str:
 
 def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
     """Return the residuals in numbers, in the channel's unit and over its noise level."""
-    rows = tuple(
-        (
-            name,
-            plain(c.rmse_before, 3),
-            plain(c.rmse_after, 3) if named else ABSENT,
-            plain(c.attainable, 3),
-            plain(c.noise_floor, 3),
-            c.unit,
-            over(c.rmse_before, c.noise_floor),
-            over(c.rmse_after, c.noise_floor) if named else ABSENT,
-        )
+    rows = (
+        {
+            "channel": name,
+            "nominal model": plain(c.rmse_before, 3),
+            "extended model": plain(c.rmse_after, 3) if named else ABSENT,
+            "attainable": plain(c.attainable, 3),
+            "noise level": plain(c.noise_floor, 3),
+            "unit": c.unit,
+            "nominal, normalised": over(c.rmse_before, c.noise_floor),
+            "extended, normalised": over(c.rmse_after, c.noise_floor) if named else ABSENT,
+        }
         for name, c in channels.items()
     )
-    header = (
-        "channel",
-        "nominal model",
-        "extended model",
-        "attainable",
-        "noise level",
-        "unit",
-        "nominal, normalised",
-        "extended, normalised",
-    )
-    return table_of("RMS of the residual on held-out data", header, rows)
+    return table_by_column("RMS of the residual on held-out data", rows)
 
 
 def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:

@@ -10,7 +10,7 @@ from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.base import ModelFile
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive, Spread, StatedSettings, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
-from tsas_cli.reporting.content import Picture, Section, Table, table_of
+from tsas_cli.reporting.content import Picture, Section, Table, table_by_column, table_of
 from tsas_cli.reporting.drawing import bound, kept_cells, line, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, over_seeds, plain, with_spread
@@ -25,7 +25,7 @@ from tsas_cli.reporting.tracking.runs import (
     mark_change,
     read_conditions,
 )
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Mask
 
 _ACROSS = 2
 _ADAPTED = (
@@ -49,6 +49,11 @@ class AdaptiveEstimate:
     def ends(self) -> tuple[str, str]:
         """The first and the last value."""
         return plain(float(self.values[0]), 3), plain(float(self.values[-1]), 3)
+
+    @property
+    def at_bound(self) -> Mask:
+        """Whether it is at a bound, shape (n,)."""
+        return (self.values <= self.lowest) | (self.values >= self.highest)
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -214,18 +219,21 @@ def adaptation_part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -
     runs = [(c, run) for c in conditions for run in c.runs if run.name == ADAPTIVE]
     if not runs:
         return None
-    rows = [row for condition, run in runs for row in _rows(condition.name, run, law)]
-    header = (
-        "parameter",
-        "condition",
-        "at the start",
-        "at the end",
-        "lower bound",
-        "upper bound",
-        "unit",
-        "time at a bound [%]",
-    )
-    table = table_of("Adapted parameters", header, rows)
+    rows = [
+        {
+            "parameter": it.symbol,
+            "condition": condition.name,
+            "at the start": it.ends[0],
+            "at the end": it.ends[1],
+            "lower bound": f"{it.lowest:g}",
+            "upper bound": f"{it.highest:g}",
+            "unit": it.unit,
+            "time at a bound [%]": f"{100.0 * float(np.mean(it.at_bound)):.0f}",
+        }
+        for condition, run in runs
+        for it in _estimates(run, law)
+    ]
+    table = table_by_column("Adapted parameters", rows)
     return Section(
         "tracking-adaptation",
         "Adapted parameters",
@@ -239,13 +247,6 @@ def _estimates(run: TrackedRun, law: Adaptive) -> Iterator[AdaptiveEstimate]:
     names = zip(ESTIMATES, _SYMBOLS, law.lowest, law.highest, strict=True)
     for column, (symbol, unit), lowest, highest in names:
         yield AdaptiveEstimate(symbol, unit, run.columns[column], lowest, highest)
-
-
-def _rows(condition: str, run: TrackedRun, law: Adaptive) -> Iterator[tuple[str, ...]]:
-    for it in _estimates(run, law):
-        at_bound = (it.values <= it.lowest) | (it.values >= it.highest)
-        share = f"{100.0 * float(np.mean(at_bound)):.0f}"
-        yield it.symbol, condition, *it.ends, f"{it.lowest:g}", f"{it.highest:g}", it.unit, share
 
 
 def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adaptive) -> Picture:
