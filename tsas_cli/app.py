@@ -10,27 +10,21 @@ from pathlib import Path
 import typer
 from typer.exceptions import TyperException
 
-from tsas_cli.commands.calibrate import calibrate
-from tsas_cli.commands.check import check
-from tsas_cli.commands.compare import compare
-from tsas_cli.commands.diagnose import diagnose
-from tsas_cli.commands.doctor import doctor
-from tsas_cli.commands.effects import effects
-from tsas_cli.commands.explain import explain
-from tsas_cli.commands.export import export
-from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
-from tsas_cli.commands.ingest import ingest
-from tsas_cli.commands.init import init
-from tsas_cli.commands.plan import plan
-from tsas_cli.commands.predict import predict
-from tsas_cli.commands.report import report
-from tsas_cli.commands.runs import runs
-from tsas_cli.commands.simulate import simulate
+from tsas_cli.commands.looking import effects, explain, report, view
+from tsas_cli.commands.models import (
+    calibrate,
+    compare,
+    diagnose,
+    export,
+    identify_harmonic_drive,
+    plan,
+    predict,
+    simulate,
+)
+from tsas_cli.commands.recordings import check, ingest, runs, upload, verify
+from tsas_cli.commands.setup import doctor, init
 from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
-from tsas_cli.commands.upload import upload
-from tsas_cli.commands.verify import verify
-from tsas_cli.commands.view import view
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.stopping import EXIT_CODE

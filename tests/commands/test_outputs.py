@@ -47,9 +47,9 @@ CALLS = {
 # Parameters that name no file, of any command that writes.
 NO_FILES = {"out", "force", "quiet", "as_json", "rrd", "live", "despite", "runs", "guess"}
 NO_FILES |= {"dynamics", "speed", "to", "sheath_length_mm", "total_bend_rad", "preload_n"}
-NO_FILES |= {"fit_own", "nodes", "controller", "compare", "disturb", "as_printed", "seeds", "seed"}
+NO_FILES |= {"fit_own", "nodes", "controllers", "compare", "disturb", "as_printed", "seeds", "seed"}
 NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
-NO_FILES |= {"tool", "what", "conditions", "salt"}
+NO_FILES |= {"tool", "what", "conditions", "salt", "first_seed"}
 FILES = {"sources", "map_path", "dataset", "model", "a", "b", "on", "path", "plant", "drive"}
 FILES |= {"given", "settings", "reference", "datasets", "options", "folders", "sealed", "entries"}
 WRITE_NO_FILE = {"verify", "view", "runs", "doctor", "effects", "explain"}

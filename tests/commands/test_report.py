@@ -8,7 +8,7 @@ import tsas_cli.stages.report as report_stage
 from tests.reporting import made_folders as by_hand
 from tests.reporting.test_page import commands_of
 from tsas_cli.reporting.pdf import PDF_MARK
-from tsas_cli.verifying.claims import sealed
+from tsas_cli.verifying.claims import claims_of
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +122,8 @@ def test_several_simulations_stand_beside_each_other_by_their_names(folder, here
     commands = commands_of(page)
     assert commands.count("tsas simulate") == 2
     assert f"{folder / 'simulated'} {folder / 'rough'} --out report.html" in commands
-    assert sealed(folder / "r.html").read[-1]["folder"] == "rough"
+    *_, last = claims_of(folder / "r.html")
+    assert last.path == folder / "rough" / "simulation.json"
     (folder / "rough" / "simulation.json").write_text("{}")
     refused(*pair, "--out", folder / "s.html", says=["rough"])
 

@@ -8,8 +8,8 @@ from tests.commands.documented import documented
 from tests.commands.test_track import QUICK
 from tests.reporting.test_page import Outline
 from tsas_cli.comparing import tracked
-from tsas_cli.comparing.tracked import are_tracked, compare_tracked, record_of, tables
-from tsas_cli.reporting.comparing.tracked import tracked_page
+from tsas_cli.comparing.tracked import are_tracked, compare_tracked, tables
+from tsas_cli.reporting.comparing import tracked_page
 from tsas_cli.stages.track import track
 from tsas_cli.support.errors import InputError
 
@@ -32,10 +32,10 @@ def it(root):
 
 
 def test_the_setting_that_differs_is_named_with_both_values(it):
-    known = {s.name: (s.a, s.b) for s in it.settings}
+    known = {s.name: (s.a, s.b) for s in it.record.settings}
     assert known.pop("settings.controllers.pid.proportional_rpm_per_mm") == (25.0, 2.0)
     assert set(known) == {"settings.file", "settings.sha256"}
-    assert it.other_task == []
+    assert not any("another one" in note for note in it.record.notes)
 
 
 def test_the_scores_stand_beside_each_other_and_turn_with_the_sides(root, it):
@@ -51,9 +51,9 @@ def test_the_scores_stand_beside_each_other_and_turn_with_the_sides(root, it):
 
 def test_the_same_folder_differs_in_nothing(root):
     it = compare_tracked(root / "usual", root / "usual")
-    assert it.settings == []
+    assert it.record.settings == ()
     assert it.followed[0].ratio("rmse_N") == 1.0
-    assert "Both were asked for the same." in record_of(it).notes
+    assert "Both were asked for the same." in it.record.notes
 
 
 def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, tmp_path):
@@ -62,8 +62,8 @@ def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, t
         track(**how, disturb=f"friction_coefficient={value}", out=tmp_path / name)
     it = compare_tracked(tmp_path / "one", tmp_path / "two")
     assert it.followed == []
-    assert [len(runs) for runs in it.alone.values()] == [1, 1]
-    assert any("In A alone" in note for note in record_of(it).notes)
+    alone = [note.partition(" alone")[0] for note in it.record.notes if " alone, " in note]
+    assert alone == ["In A", "In B"]
 
 
 def test_another_plant_is_another_task(root, tmp_path):
@@ -73,15 +73,14 @@ def test_another_plant_is_another_task(root, tmp_path):
     content["plant"] = {"file": "<b>.toml", "sha256": "0" * 64}
     path.write_text(json.dumps(content))
     it = compare_tracked(root / "usual", tmp_path / "usual")
-    assert it.other_task == ["plant.file", "plant.sha256"]
-    assert any("another one" in note for note in record_of(it).notes)
+    assert any("another one (plant.file, plant.sha256)" in note for note in it.record.notes)
     page = tracked_page(it)
     assert "&lt;b&gt;.toml" in page
     assert "<b>" not in page
 
 
 def test_everything_that_is_printed_is_in_the_json_whose_keys_are_documented(it):
-    content = record_of(it)
+    content = it.record
     assert set(content.content()) <= documented("compare.json")
     printed = {title: rows for title, _, rows in tables(it)}
     assert len(printed["scores"]) == len(content.scores) == 4

@@ -8,7 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.stages.calibrate import _stiffness, _tables, _theory
+from tsas_cli.stages.calibrate import CalibrationResult, _stiffness, _theory
 
 SHEET = {
     "friction_coefficient": 0.125,
@@ -82,7 +82,8 @@ def test_the_table_leaves_out_what_is_not_known():
     record = SimpleNamespace(
         stiffness=[stiffness(expected=None)], parameters=[], transfer=[], channels={}
     )
-    (_, header, (line,)), *others = _tables(record, "parameters")
+    result = CalibrationResult({}, None, record, None)
+    (_, header, (line,)), *others = result.tables()
     assert header[:2] == ("run", "phase")
     assert line == ("a", "contraction", "2.35 [2.326, 2.374]", "2.338", "")
     titles = [title for title, _, _ in others]

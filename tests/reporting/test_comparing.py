@@ -11,7 +11,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.reporting.comparing.page import comparison_page
+from tsas_cli.reporting.comparing import comparison_page
 
 HOSTILE = "<script>$x$"
 NOMINAL = (

@@ -28,6 +28,11 @@ HIDDEN = ExperimentPlan(
 )
 
 
+def tables(found):
+    record = plan_stage.record_of(found)
+    return list(plan_stage.PlanResult({}, None, record, found).tables())
+
+
 def test_a_plan_as_json():
     found = plan_stage.record_of(HIDDEN)
     first, second, third = found.effects
@@ -50,9 +55,10 @@ def test_a_plan_as_json():
 def test_a_size_that_is_found_however_small_is_any():
     """The preload of a second tendon: it pulls when the drive goes back, however slack it was."""
     (cause,) = (c for c in amplitudes_of(OF["antagonist"]) if c.shape["antagonist.f_in_share"])
-    record = plan_stage.record_of(ExperimentPlan((Visibility(cause, 1e-5, {}),), (), (), ()))
+    found = ExperimentPlan((Visibility(cause, 1e-5, {}),), (), (), ())
+    record = plan_stage.record_of(found)
     assert (record.effects[0].found_from, record.effects[0].named_from) == (0.0, 0.0)
-    (sizes,) = plan_stage._tables(record)
+    (sizes,) = tables(found)
     assert sizes[2][0][3:5] == ("any", "any")
 
 
@@ -65,7 +71,7 @@ def test_shapes_are_named_within_their_effect():
 
 
 def test_the_tables_of_a_plan():
-    sizes, groups, proposal = plan_stage._tables(plan_stage.record_of(HIDDEN))
+    sizes, groups, proposal = tables(HIDDEN)
     assert [row[3:] for row in sizes[2]] == [
         ("0.012", "0.05", MASS),
         ("0.5", "6", LENGTH),
@@ -79,5 +85,5 @@ def test_the_tables_of_a_plan():
     assert len(rows) == 4  # no more are printed
     assert rows[0] == (PLAY, "play_mm", "mm", "0.4", "0.1")
     never = ExperimentPlan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
-    (only,) = plan_stage._tables(plan_stage.record_of(never))
+    (only,) = tables(never)
     assert only[2][0][3:] == ("0.5", "never", PLAY)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tsas_cli.support.stopping import CLEANUP_S, Stopped, cleaned_up_when_stopped, until_stopped
+from tsas_cli.support.stopping import CLEANUP_S, Stopped, until_stopped
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -30,12 +30,6 @@ def test_other_errors_are_no_end():
         1 / 0  # noqa: B018
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_stage_that_is_stopped_has_not_done_its_work(number):
-    with pytest.raises(KeyboardInterrupt), cleaned_up_when_stopped():
-        signal.raise_signal(number)
-
-
 def ended(folder, program):
     """Return the exit code of a program that stops itself, run as a module."""
     (folder / "stopped.py").write_text(program)
@@ -46,10 +40,10 @@ def test_a_stop_while_text_is_executed_ends_with_the_exit_code_and_not_by_a_sign
     """A library that makes a class from text is at it when the signal comes."""
     program = """
 import signal, sys
-from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
+from tsas_cli.support.stopping import EXIT_CODE, stopped_once
+stopped_once()
 try:
-    with cleaned_up_when_stopped():
-        exec("signal.raise_signal(signal.SIGTERM)")
+    exec("signal.raise_signal(signal.SIGTERM)")
 except KeyboardInterrupt:
     sys.exit(EXIT_CODE)
 """

@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from datetime import timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands.completion import run_ids
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -23,6 +24,12 @@ if TYPE_CHECKING:
 
     from tsas_cli.records.result import Result
     from tsas_cli.reporting.stream.live import LiveStream
+
+
+def names(listed: str | None) -> list[str] | None:
+    """Return the comma-separated names of an option, or None without it."""
+    return None if listed is None else [name.strip() for name in listed.split(",")]
+
 
 ENDS = (
     "Ctrl-C: the search ends after this step, and what it has found is written; "
@@ -46,6 +53,7 @@ ChosenRuns = Annotated[
         metavar="IDS",
         help="Only these runs, comma-separated; default: all.",
         autocompletion=run_ids,
+        callback=names,
     ),
 ]
 Despite = Annotated[
@@ -119,9 +127,17 @@ class _Said(logging.Handler):
         self.bar.say(record.getMessage())
 
 
-def names(listed: str | None) -> list[str] | None:
-    """Return the comma-separated names of an option, or None without it."""
-    return None if listed is None else [name.strip() for name in listed.split(",")]
+def run(stage: str, *, rrd: bool = False, quiet: bool, as_json: bool, **given: Any) -> Any:
+    """Return the result of a stage, called under a progress bar, after printing it.
+
+    `given` are the arguments of its function; those that are None were not asked for. With `rrd`
+    the stage also writes `stream.rrd`.
+    """
+    asked = {name: value for name, value in given.items() if value is not None}
+    with progress(stage.replace("_", "-"), quiet=quiet) as step, with_stream(rrd, step):
+        result = getattr(tsas, stage)(**asked, step=step)
+    present(result, quiet=quiet, as_json=as_json)
+    return result
 
 
 def present(result: "Result", *, quiet: bool, as_json: bool) -> None:
@@ -180,17 +196,6 @@ def show(
             print(printable(sentence))
 
 
-def hint(text: str, *, quiet: bool, as_json: bool) -> None:
-    """Print a hint on standard error, if it is a terminal."""
-    if sys.stderr.isatty() and not (quiet or as_json):
-        print(text, file=sys.stderr)
-
-
-def not_shown(*run: object) -> None:
-    """Ignore a run."""
-    del run
-
-
 @contextmanager
 def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | None"]:
     """Open the viewer, yield its stream, and wait until it is closed; yield None without `live`.
@@ -202,9 +207,9 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
         return
     from tsas_cli.reporting.stream.live import live_stream
     from tsas_cli.reporting.viewer.open import has_screen, note_once, opened
-    from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
+    from tsas_cli.support.stopping import until_stopped
 
-    with cleaned_up_when_stopped(), opened(in_browser=not has_screen()) as viewer:
+    with opened(in_browser=not has_screen()) as viewer:
         _report(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
         computed, failure = False, None
         try:

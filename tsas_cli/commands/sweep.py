@@ -6,8 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-import tsas_cli as tsas
-from tsas_cli.commands.common import Json, OutFolder, Quiet, present, progress
+from tsas_cli.commands.common import Json, OutFolder, Quiet, run
 from tsas_cli.support.errors import InputError
 
 WRONG, DEFECT = 2, 1  # exit codes
@@ -48,16 +47,16 @@ def sweep(
 
     Completed tasks are kept: the same call again runs only pending or changed ones.
     """
-    with progress("sweep", quiet=quiet) as step:
-        result = tsas.sweep(
-            _plan(what, datasets or [], options or [], each_run=each_run),
-            out=out,
-            workers=workers,
-            cluster=cluster,
-            force=force,
-            step=step,
-        )
-    present(result, quiet=quiet, as_json=as_json)
+    result = run(
+        "sweep",
+        plan=_plan(what, datasets or [], options or [], each_run=each_run),
+        out=out,
+        workers=workers,
+        cluster=cluster,
+        force=force,
+        quiet=quiet,
+        as_json=as_json,
+    )
     if result.failed:
         raise typer.Exit(DEFECT if result.defects else WRONG)
 

@@ -5,9 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-import tsas_cli as tsas
-from tsas_cli.commands import common
-from tsas_cli.commands.completion import controllers, references
+from tsas_cli.commands import common, completion
 
 
 def track(
@@ -24,12 +22,14 @@ def track(
         Path | None,
         typer.Option(metavar="D.toml", help="The controller's drive model; default: r1, im."),
     ] = None,
-    controller: Annotated[
+    controllers: Annotated[
         str,
         typer.Option(
+            "--controller",
             metavar="NAMES",
             help="Names, comma-separated, or all.",
-            autocompletion=controllers,
+            autocompletion=completion.controllers,
+            callback=common.names,
         ),
     ] = "adaptive-sliding-mode",
     compare: Annotated[
@@ -40,7 +40,7 @@ def track(
         str,
         typer.Option(
             help="sine, two-frequency, steps, ramps, or a Parquet file (f_out_ref_N).",
-            autocompletion=references,
+            autocompletion=completion.references,
         ),
     ] = "sine",
     disturb: Annotated[
@@ -62,7 +62,7 @@ def track(
         typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="Number of noise seeds.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
+    first_seed: Annotated[int, typer.Option("--seed", min=0, help="The first noise seed.")] = 1,
     rrd: common.Rrd = False,
     live: common.Live = False,
     force: common.Force = False,
@@ -70,24 +70,6 @@ def track(
     as_json: common.Json = False,
 ) -> None:
     """Track a reference of the distal tension with controllers that measure x_in only."""
-    with common.watched(live, "tracking", quiet=quiet) as stream:
-        with common.progress("track", quiet=quiet) as step, common.with_stream(rrd, step):
-            result = tsas.track(
-                out=out,
-                model=model,
-                plant=plant,
-                drive=drive,
-                controllers=common.names(controller) or (),
-                compare=compare,
-                reference=reference,
-                disturb=disturb or (),
-                as_printed=as_printed,
-                dynamics=dynamics,
-                settings=settings,
-                seeds=seeds,
-                first_seed=seed,
-                force=force,
-                step=step,
-                each=stream.tracked if stream else common.not_shown,
-            )
-        common.present(result, quiet=quiet, as_json=as_json)
+    given = locals()
+    with common.watched(given.pop("live"), "tracking", quiet=quiet) as stream:
+        common.run("track", **given, each=stream.tracked if stream else None)

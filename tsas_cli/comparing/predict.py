@@ -4,7 +4,7 @@ Below it is what `tsas predict` writes and prints of that: tables and sentences.
 """
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import ascii_uppercase
@@ -21,7 +21,7 @@ from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.identification.repeatability import repeatability
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.records.base import number_text
+from tsas_cli.records.base import number_text, span_text
 from tsas_cli.records.prediction import (
     PredictedChannel,
     PredictingModel,
@@ -238,18 +238,10 @@ def _best(channel: str, rows: Sequence[PredictedChannel]) -> str:
     how = " alike" if len(best) > 1 else " best" if others else ""
     said = f"{channel}: {who}{how}, RMSE {least:.3g} {unit} over {runs} that no fit has seen"
     said += f" ({others})" if others else ""
-    noise, repeated = (
-        _span(getattr(row, name) for row in of) for name in ("normalised_residual", "repeatability")
-    )
+    noise = span_text(row.normalised_residual for row in of)
+    repeated = span_text(row.repeatability for row in of)
     said += f"; {noise} × the noise level" if noise else ""
     return f"{said}; repeatability {f'{repeated} {unit}' if repeated else 'unknown'}."
-
-
-def _span(values: Iterable[float | None]) -> str:
-    known = [value for value in values if value is not None]
-    if not known:
-        return ""
-    return " to ".join(dict.fromkeys(number_text(end) for end in (min(known), max(known))))
 
 
 def _outside(it: Predicted) -> Iterator[str]:
@@ -288,7 +280,10 @@ def notes(it: Predicted) -> Iterator[str]:
         if it.own_fitted
         else "Nothing is fitted to these runs."
     )
-    for unknown, who in _by_models(it, lambda n: _not_stated(it, n)):
+    lacking: dict[str, dict[str, None]] = {name: {} for name in it.models}
+    for row in it.ranges:
+        lacking[row.model] |= dict.fromkeys(row.not_stated)
+    for unknown, who in _by_models(it, lambda name: listed([*lacking[name]])):
         if unknown:
             yield f"Not known of the recordings behind {who}, and not compared: {unknown}."
     for name, side in it.models.items():
@@ -296,8 +291,3 @@ def notes(it: Predicted) -> Iterator[str]:
             yield f"{name} does not say what it was fitted to: it may have seen these runs."
         if side.not_converged:
             yield f"The fit of {name} did not converge ({side.not_converged.rstrip('.')})."
-
-
-def _not_stated(it: Predicted, model: str) -> str:
-    rows = [row for row in it.ranges if row.model == model]
-    return listed([*dict.fromkeys(quantity for row in rows for quantity in row.not_stated)])

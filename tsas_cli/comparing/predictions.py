@@ -114,24 +114,25 @@ def matched(a: list[ComparedRun], b: list[ComparedRun]) -> list[Both]:
 
 def error_rows(a: Side, b: Side, recordings: list[Both]) -> list[ErrorRow]:
     """Return the errors of every channel of every recording, in the order of the recordings."""
-    return [_error_row(a, b, both, name) for both in recordings for name in channels(both)]
-
-
-def _error_row(a: Side, b: Side, both: Both, channel: str) -> ErrorRow:
-    (run_a, run_b), compared = both.ids, both.a or both.b
-    rmse_a, rmse_b = (None if one is None else one.rmse(channel) for one in (both.a, both.b))
-    return ErrorRow(
-        run_a=run_a,
-        run_b=run_b,
-        channel=channel,
-        unit=BY_NAME[channel].unit,
-        rmse_a=rmse_a,
-        rmse_b=rmse_b,
-        noise=None if compared is None else compared.noise(channel),
-        fitted_a=a.has_seen(both.digest),
-        fitted_b=b.has_seen(both.digest),
-        ratio=rmse_b / rmse_a if rmse_a and rmse_b is not None else None,
-    )
+    rows = []
+    for both in recordings:
+        (run_a, run_b), compared = both.ids, both.a or both.b
+        for name in channels(both):
+            rmse_a, rmse_b = (None if one is None else one.rmse(name) for one in (both.a, both.b))
+            row = ErrorRow(
+                run_a=run_a,
+                run_b=run_b,
+                channel=name,
+                unit=BY_NAME[name].unit,
+                rmse_a=rmse_a,
+                rmse_b=rmse_b,
+                noise=None if compared is None else compared.noise(name),
+                fitted_a=a.has_seen(both.digest),
+                fitted_b=b.has_seen(both.digest),
+                ratio=rmse_b / rmse_a if rmse_a and rmse_b is not None else None,
+            )
+            rows.append(row)
+    return rows
 
 
 def channels(both: Both) -> list[str]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sides import FALSE_CLAIMS, rounded
 from tsas_cli.identification.prepared import CHANNELS
+from tsas_cli.records.base import span_text
 from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.records.diagnosis import INCOMPLETE
 from tsas_cli.support.wording import count_of
@@ -75,9 +76,7 @@ def _errors(it: Comparison) -> Iterator[str]:
     for channel in CHANNELS:
         ratios = [r.ratio for r in it.errors if r.channel == channel and r.ratio is not None]
         if ratios:
-            low, high = (f"{end(ratios):.3g}" for end in (min, max))
-            span = low if low == high else f"{low} to {high}"
-            runs = count_of(len(ratios), "run")
+            span, runs = span_text(ratios), count_of(len(ratios), "run")
             yield f"In {channel} the RMSE of B is {span} times that of A ({runs})."
 
 
@@ -92,7 +91,6 @@ def _held_out(it: Comparison) -> Iterator[str]:
         if not ratios:
             continue
         low, high = min(ratios), max(ratios)
-        times = f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"
         better = (
             "B is better"
             if high < 1.0 - ALIKE
@@ -102,7 +100,7 @@ def _held_out(it: Comparison) -> Iterator[str]:
             if low >= 1.0 - ALIKE and high <= 1.0 + ALIKE
             else "neither is better in all"
         )
-        said.append(f"in {channel} {better} (RMSE of B {times} times that of A)")
+        said.append(f"in {channel} {better} (RMSE of B {span_text(ratios)} times that of A)")
     if said:
         runs = count_of(len({r.run_b for r in rows}), "held-out run")
         yield f"On {runs}, which neither was fitted to: {'; '.join(said)}."

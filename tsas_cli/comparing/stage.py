@@ -3,7 +3,6 @@
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.sides import Side, rounded
-from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import (
     ComparedOn,
@@ -21,10 +20,14 @@ from tsas_cli.records.result import Table
 
 def record_of(it: Comparison) -> ModelComparison:
     """Return what `compare.json` says."""
+    on = None
+    if (data := it.on) is not None:
+        chosen = None if data.chosen is None else [run.id for run in data.runs]
+        on = ComparedOn(name=data.manifest.name, hashes=data.hashes(), chosen=chosen)
     return ModelComparison(
         a=_side(it.a),
         b=_side(it.b),
-        on=None if it.on is None else _on(it.on),
+        on=on,
         same_recordings=it.overlap,
         parameters=it.pairs,
         effects=effects(it),
@@ -47,11 +50,6 @@ def _side(side: Side) -> ModelSide:
         verdict=side.verdict or None,
         reason=side.reason or None,
     )
-
-
-def _on(dataset: Dataset) -> ComparedOn:
-    chosen = None if dataset.chosen is None else [run.id for run in dataset.runs]
-    return ComparedOn(name=dataset.manifest.name, hashes=dataset.hashes(), chosen=chosen)
 
 
 def effects(it: Comparison) -> list[EffectPlaces]:

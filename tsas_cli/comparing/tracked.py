@@ -40,21 +40,11 @@ class ControllerPair:
 
 @dataclass(frozen=True)
 class Tracks:
-    """Two folders of tracked runs: what differs in the call, and the results that both have.
-
-    `alone` holds, under A and B, the runs that the other one lacks.
-    """
+    """Two folders of tracked runs: what is said of both, and the results that both have."""
 
     paths: dict[str, Path]
-    checksums: dict[str, str]
-    settings: list[Setting]
+    record: TrackedComparison
     followed: list[ControllerPair]
-    alone: dict[str, list[str]]
-
-    @property
-    def other_task(self) -> list[str]:
-        """What differs of the task itself: the plant, or the wanted force."""
-        return [s.name for s in self.settings if s.name.startswith(TASK)]
 
 
 def are_tracked(a: Path, b: Path) -> bool:
@@ -83,16 +73,26 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
         {(r.controller, r.condition): r for r in side.results} for side in (one, other)
     )
     both = [key for key in first if key in second and key[1] in same]
-    return Tracks(
-        {"A": a, "B": b},
-        {name: sha256_of(path / TRACKING_FILE) for name, path in (("A", a), ("B", b))},
-        _settings(*raw),
-        [ControllerPair(first[key], second[key]) for key in both],
-        {
-            name: [result.run for key, result in side.items() if key not in both]
-            for name, side in (("A", first), ("B", second))
-        },
+    paths, settings = {"A": a, "B": b}, _settings(*raw)
+    followed = [ControllerPair(first[key], second[key]) for key in both]
+    alone = {
+        name: [result.run for key, result in side.items() if key not in both]
+        for name, side in (("A", first), ("B", second))
+    }
+    files = ({TRACKING_FILE: sha256_of(path / TRACKING_FILE)} for path in (a, b))
+    of_a, of_b = (
+        ComparedSide(path=path.as_posix(), kind="tracking", files=file)
+        for path, file in zip((a, b), files, strict=True)
     )
+    record = TrackedComparison(
+        a=of_a,
+        b=of_b,
+        settings=settings,
+        scores=_scores(followed),
+        findings=tuple(_findings(followed)),
+        notes=[*change_notes((a, b)), *_notes(settings, followed, alone)],
+    )
+    return Tracks(paths, record, followed)
 
 
 def _settings(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Setting]:
@@ -110,20 +110,7 @@ def _flat(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, A
             yield f"{prefix}{key}", value
 
 
-def record_of(it: Tracks) -> TrackedComparison:
-    """Return what `compare.json` says."""
-    a, b = (
-        ComparedSide(
-            path=path.as_posix(), kind="tracking", files={TRACKING_FILE: it.checksums[name]}
-        )
-        for name, path in it.paths.items()
-    )
-    return TrackedComparison(
-        a=a, b=b, settings=it.settings, scores=_scores(it), findings=findings(it), notes=notes(it)
-    )
-
-
-def _scores(it: Tracks) -> list[ScorePair]:
+def _scores(followed: list[ControllerPair]) -> list[ScorePair]:
     return [
         ScorePair(
             controller=both.a.controller,
@@ -134,50 +121,45 @@ def _scores(it: Tracks) -> list[ScorePair]:
             b=both.b.scores[score],
             ratio=both.ratio(score),
         )
-        for both in it.followed
+        for both in followed
         for score, unit in SCORES.items()
     ]
 
 
-def findings(it: Tracks) -> list[str]:
-    """Return the RMSE of B over that of A by controller, in a sentence for each condition."""
-    out = []
-    for condition in dict.fromkeys(both.a.condition for both in it.followed):
+def _findings(followed: list[ControllerPair]) -> Iterator[str]:
+    """Yield the RMSE of B over that of A by controller, in a sentence for each condition."""
+    for condition in dict.fromkeys(both.a.condition for both in followed):
         ratios = {
             both.a.controller: ratio
-            for both in it.followed
+            for both in followed
             if both.a.condition == condition and (ratio := both.ratio("rmse_N")) is not None
         }
         said = ", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items())
         if said:
-            out.append(f"RMSE of the force, {condition}, B over A: {said}.")
-    return out
+            yield f"RMSE of the force, {condition}, B over A: {said}."
 
 
-def notes(it: Tracks) -> list[str]:
-    """Return what to keep in mind, what could not be matched, and what would give more."""
-    return [*change_notes(it.paths.values()), *_notes(it)]
-
-
-def _notes(it: Tracks) -> Iterator[str]:
-    if it.other_task:
+def _notes(
+    settings: list[Setting], followed: list[ControllerPair], alone: dict[str, list[str]]
+) -> Iterator[str]:
+    """Yield what to keep in mind, what could not be matched, and what would give more."""
+    if other := [s.name for s in settings if s.name.startswith(TASK)]:
         yield (
-            f"The task is another one ({', '.join(it.other_task)}): the scores are not of the same "
+            f"The task is another one ({', '.join(other)}): the scores are not of the same "
             "plant and wanted force."
         )
-    if not it.settings:
+    if not settings:
         yield "Both were asked for the same."
-    for name, runs in it.alone.items():
+    for name, runs in alone.items():
         if runs:
             yield f"In {name} alone, by controller and condition: {', '.join(runs)}."
-    spreads = [both.a.scores["rmse_N"].sd for both in it.followed]
-    if any(sd is None for sd in spreads):
+    if any(both.a.scores["rmse_N"].sd is None for both in followed):
         yield "With one seed of noise nothing says how far the scores scatter: take `--seeds 10`."
 
 
 def tables(it: Tracks) -> list[Table]:
     """Return what the stage prints."""
-    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in it.settings]
+    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in it.record.settings]
     scores = [
         (
             one.controller,
@@ -188,7 +170,7 @@ def tables(it: Tracks) -> list[Table]:
             number_text(one.ratio),
             one.unit,
         )
-        for one in _scores(it)
+        for one in it.record.scores
     ]
     every: list[Table] = [
         ("what differs in the call", ("setting", "A", "B"), asked),

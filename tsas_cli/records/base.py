@@ -37,6 +37,17 @@ def number_text(value: float | None, form: str = ".3g") -> str:
     return f"{float(text):.0f}" if "e+0" in text else text
 
 
+def span_text(values: Iterable[float | None]) -> str:
+    """Return the lowest and the highest of the known values, or the one that both are.
+
+    >>> span_text([0.5, None, 1.25]), span_text([0.5]), span_text([None])
+    ('0.5 to 1.25', '0.5', '')
+    """
+    known = [value for value in values if value is not None]
+    ends = (min(known), max(known)) if known else ()
+    return " to ".join(dict.fromkeys(map(number_text, ends)))
+
+
 def check_interval(value: float | None, low: float | None, high: float | None) -> None:
     """Raise ValueError where an interval has one end, swapped ends, or its value outside."""
     if (low is None) != (high is None):

@@ -13,3 +13,10 @@ class CheckFile(OfDataset):
     stage: Literal["check"] = "check"
     findings: tuple[Finding, ...]
     not_checked: tuple[NotChecked, ...] = ()
+
+    def reasons(self) -> list[tuple[str, str, str]]:
+        """Return code, reason and runs of what could not be checked, each reason once."""
+        runs: dict[tuple[str, str], list[str]] = {}
+        for silent in self.not_checked:
+            runs.setdefault((silent.code, silent.reason), []).append(silent.run or "")
+        return [(*key, ", ".join(of)) for key, of in runs.items()]

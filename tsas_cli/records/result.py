@@ -1,12 +1,13 @@
 """What a stage hands back: the content of its JSON file, and the tables and sentences of it."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
+from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
 from tsas_cli.support.text_table import table_text
 
@@ -29,14 +30,14 @@ class Result(ABC):
     out: Path | None
 
     @abstractmethod
-    def tables(self) -> Sequence[Table]:
+    def tables(self) -> Iterable[Table]:
         """Return the tables that are printed: title, header and rows of each."""
 
-    def sentences(self) -> Sequence[str]:
+    def sentences(self) -> Iterable[str]:
         """Return the lines that are printed after the tables."""
         return ()
 
-    def intro(self) -> Sequence[str]:
+    def intro(self) -> Iterable[str]:
         """Return the lines that are printed before the tables."""
         return ()
 
@@ -54,6 +55,11 @@ class Result(ABC):
         intro = [f"<pre>{escape(line)}</pre>" for line in self.intro()]
         sentences = [f"<p>{escape(printable(sentence))}</p>" for sentence in self.sentences()]
         return "\n".join([*intro, *(_html(*table) for table in self.tables()), *sentences])
+
+
+def heading(stage: str) -> dict[str, Any]:
+    """Return what the JSON of a stage without a record begins with."""
+    return {"format": 1, "stage": stage, "version": __version__}
 
 
 def notes(sentences: Sequence[str]) -> list[str]:

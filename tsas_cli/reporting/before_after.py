@@ -18,7 +18,7 @@ from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.simulation import X_IN, diagnosed_models, rms
-from tsas_cli.support.arrays import Floats, Indices, Mask
+from tsas_cli.support.arrays import Floats, Indices
 
 _FEWEST = 10  # samples that make a picture
 _MATTERS = 1.0  # noise levels by which the residual of a second channel falls, to be shown
@@ -75,16 +75,12 @@ def pictures(inputs: Inputs) -> tuple[Picture, ...]:
     if found is None:
         return ()
     first, second = found
-    if second is not None and _stands_out(second):
-        return _picture(first, first), _picture(second, second)
+    if second is not None:
+        residual = rms(second.measured - second.models[0][2])
+        if residual > _VISIBLE * float(np.ptp(second.measured)):  # seen in the whole loop
+            return _picture(first, first), _picture(second, second)
     window = near(first)
     return _picture(first, first, mark=window), _picture(first, second, window=window)
-
-
-def _stands_out(fit: ShownFit) -> bool:
-    """Return whether the nominal model's residual can be seen in the whole loop."""
-    residual = rms(fit.measured - fit.models[0][2])
-    return residual > _VISIBLE * float(np.ptp(fit.measured))
 
 
 def _picture(
@@ -141,7 +137,8 @@ def draw_loop(
     curves = [("measured", "measured", fit.x, fit.measured)]
     curves += [(label, role, fit.driven, values) for label, role, values in fit.models]
     kept = _kept(fit) if window is None else _inside(fit, window)
-    gaps = False if window is None else _breaks(kept)
+    steps = np.diff(kept, prepend=kept[:1])  # where evenly chosen samples go on after a gap
+    gaps = False if window is None else steps > 2 * np.median(steps)
     for label, role, x, values in curves:
         width = 3.0 if role == "measured" else 1.3
         style = {"color": STAND_IN[role], "linewidth": width, "label": label}
@@ -181,12 +178,6 @@ def _inside(fit: ShownFit, window: Box) -> Indices:
     )
     at = np.flatnonzero(inside)
     return at[:: max(math.ceil(at.size / _POINTS), 1)]
-
-
-def _breaks(kept: Indices) -> Mask:
-    """Return where a curve of evenly chosen samples, shape (n,), goes on after a gap."""
-    steps = np.diff(kept, prepend=kept[:1])
-    return np.asarray(steps > 2 * np.median(steps))
 
 
 def best_fits(inputs: Inputs) -> tuple[ShownFit, ShownFit | None] | None:

@@ -1,7 +1,6 @@
 """What a calibration says: the stiffness of each phase, the transfer of tension, the parameters."""
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any, TypeVar
 
 from tsas_cli.identification.estimate import Estimate
@@ -11,7 +10,7 @@ from tsas_cli.records.base import ParameterValue
 from tsas_cli.records.calibration import CalibrationFile, Stiffness
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Section, Table, missing
+from tsas_cli.reporting.content import Picture, Section, Table, missing, table_of
 from tsas_cli.reporting.drawing import legend, picture, shortened
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import BY_KEY, PHASES, label_of
@@ -41,6 +40,7 @@ _WHY = (
     "The same line fitted to the calibrated model stands beside it: in a dead band the tension is "
     "curved, so that a linear fit misses the theory of a lumped tendon without any sensor's fault."
 )
+_EXPECTED = ("expected_N_per_mm", "theory_N_per_mm")
 _NAME_LENGTH = 14
 
 
@@ -76,12 +76,7 @@ def _table(rows: tuple[Stiffness, ...]) -> Table:
         "95 % interval",
         "strokes",
     )
-    return Table(
-        "Stiffness by run and phase",
-        header,
-        tuple(_row(row) for row in rows),
-        numeric=frozenset(range(2, 10)),
-    ).without_empty()
+    return table_of("Stiffness by run and phase", header, map(_row, rows))
 
 
 def _row(row: Stiffness) -> tuple[str, ...]:
@@ -105,55 +100,47 @@ def _notes(rows: tuple[Stiffness, ...]) -> tuple[str, ...]:
         if row.note:
             places.setdefault(row.note, []).append(f"{row.run} {label_of(row.phase)}")
     return tuple(
-        f"{_sentence(note)}." if len(found) == len(rows) else f"{note}: {', '.join(found)}"
+        f"{note[:1].upper()}{note[1:].rstrip('.')}."
+        if len(found) == len(rows)
+        else f"{note}: {', '.join(found)}"
         for note, found in places.items()
     )
 
 
-def _sentence(note: str) -> str:
-    return note[:1].upper() + note[1:].rstrip(".")
-
-
 def _picture(key: str, rows: list[Stiffness]) -> Picture:
-    label = label_of(key)
+    label, colour = label_of(key), STAND_IN[BY_KEY[key].colour]
+
+    def draw(figure: Any) -> None:
+        """Draw one line per run, the first on top, and the intervals where there are any."""
+        axes = figure.add_subplot()
+        km = [row.km for row in rows]
+        style = {"marker": "o", "markersize": 6, "color": colour, "label": "measured, 95 %"}
+        _draw_marks(axes, [one.value for one in km], **style)
+        for place, one in enumerate(km):
+            if one.interval_low is not None and one.interval_high is not None:
+                ends = [one.interval_low, one.interval_high]
+                axes.plot(ends, [place, place], marker="|", markersize=7, color=colour)
+        model, theory = ([getattr(row, name) for row in rows] for name in _EXPECTED)
+        _draw_marks(axes, model, marker="D", markersize=6, label="calibrated model")
+        _draw_marks(axes, theory, marker="|", markersize=11, label="theory")
+        axes.set_yticks(range(len(rows)), [shortened(row.run, _NAME_LENGTH) for row in rows])
+        axes.set_ylim(len(rows) - 0.4, -0.6)
+        axes.margins(x=0.12)
+        axes.set_xlabel(f"km in {label} [N/mm]")
+        legend(figure, ncols=3, handlelength=1.4)
+
     values = "; ".join(
         f"run {row.run} {plain(row.km.value)}, calibrated model "
         f"{plain(row.expected_N_per_mm)}, theory {plain(row.theory_N_per_mm)}"
         for row in rows
     )
     return picture(
-        partial(draw_stiffness, rows=rows),
+        draw,
         key=f"stiffness-{key}",
         alt=f"Stiffness km in {label}, in newton per millimetre: {values}.",
         caption=f"{label.capitalize()}.",
         height_in=1.5 + 0.28 * len(rows),
     )
-
-
-def draw_stiffness(figure: Any, rows: Sequence[Stiffness]) -> None:
-    """Draw the rows of one phase, one line per run, the first on top."""
-    axes = figure.add_subplot()
-    phase = BY_KEY[rows[0].phase]
-    _draw_measured(axes, rows, colour=STAND_IN[phase.colour])
-    model = [row.expected_N_per_mm for row in rows]
-    theory = [row.theory_N_per_mm for row in rows]
-    _draw_marks(axes, model, marker="D", markersize=6, label="calibrated model")
-    _draw_marks(axes, theory, marker="|", markersize=11, label="theory")
-    axes.set_yticks(range(len(rows)), [shortened(row.run, _NAME_LENGTH) for row in rows])
-    axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.margins(x=0.12)
-    axes.set_xlabel(f"km in {phase.label} [N/mm]")
-    legend(figure, ncols=3, handlelength=1.4)
-
-
-def _draw_measured(axes: Any, rows: Sequence[Stiffness], *, colour: str) -> None:
-    """Draw the fitted values, and their intervals where they have one."""
-    values = [row.km.value for row in rows]
-    _draw_marks(axes, values, marker="o", markersize=6, color=colour, label="measured, 95 %")
-    for place, km in enumerate(row.km for row in rows):
-        if km.interval_low is not None and km.interval_high is not None:
-            ends = [km.interval_low, km.interval_high]
-            axes.plot(ends, [place, place], marker="|", markersize=7, color=colour)
 
 
 def _draw_marks(axes: Any, values: Sequence[float | None], **style: Any) -> None:
@@ -171,12 +158,12 @@ def transfer_section(inputs: Inputs) -> Section:
         return missing("transfer", _TRANSFER_TITLE, what="calibration", stage="calibrate")
     if not calibration.transfer:
         return Section("transfer", _TRANSFER_TITLE, (_TRANSFER, _NO_TRANSFER))
-    rows = tuple(
+    rows = [
         (p.run or "all", p.name, *with_interval(p.value, p.interval_low, p.interval_high), p.unit)
         for p in calibration.transfer
-    )
+    ]
     header = ("runs", "what", "value", "95 % interval", "unit")
-    table = Table("Ratios and intercepts", header, rows, numeric=frozenset({2, 3}))
+    table = table_of("Ratios and intercepts", header, rows)
     return Section("transfer", _TRANSFER_TITLE, (_TRANSFER, _INTERCEPTS), tables=(table,))
 
 
@@ -229,4 +216,4 @@ def parameter_table(caption: str, parameters: Sequence[ParameterValue | Estimate
         for p in parameters
     )
     header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
-    return Table(caption, header, rows, numeric=frozenset({2, 3}))
+    return table_of(caption, header, rows)

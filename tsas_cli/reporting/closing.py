@@ -6,12 +6,12 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from tsas_cli.records.closing import ClosedCase, ClosingFile, Named, Row
+from tsas_cli.records.closing import ClosedCase, ClosingFile, Row
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, Table, table_of
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import as_printed, plain, with_spread
+from tsas_cli.reporting.numbers import as_printed, over_seeds, plain, with_spread
 from tsas_cli.support.wording import listed
 
 _HOW = (
@@ -53,8 +53,6 @@ _PANEL_IN = 0.34  # its title
 
 def table(closing: ClosingFile) -> Table:
     """Return the table, with its spread where there is more than one seed."""
-    seeds = closing.seeds[1] - closing.seeds[0] + 1
-    over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
     rows = tuple(
         (
             case.case,
@@ -66,17 +64,20 @@ def table(closing: ClosingFile) -> Table:
         for row in case.controllers
     )
     header = ("case", "controller", *(it.label for it in MODELS.values()), "extended / true")
-    numeric = frozenset(range(2, len(header)))
-    return Table(f"RMSE of the force [N] by model{over}", header, rows, numeric=numeric)
+    return table_of(f"RMSE of the force [N] by model{over_seeds(*closing.seeds)}", header, rows)
 
 
 def dots(closing: ClosingFile) -> Picture:
     """Return the picture of the same errors, one panel for each controller."""
     controllers = closing.of_controllers()
-    said = "; ".join(
-        f"{name}: {', '.join(_said(case, row) for case, row in rows.items())}"
+    sizes = {
+        name: ", ".join(
+            f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
+            for case, row in rows.items()
+        )
         for name, rows in controllers.items()
-    )
+    }
+    said = "; ".join(f"{name}: {of}" for name, of in sizes.items())
     return picture(
         partial(draw_dots, controllers=controllers),
         key="closing-rmse",
@@ -94,14 +95,13 @@ def worth(closing: ClosingFile) -> Iterator[str]:
         yield f"`{name}`: {_gain(rows)} {_limit(rows)}"
 
 
-def _said(case: str, row: Row) -> str:
-    return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
-
-
 def _gain(rows: dict[str, Row]) -> str:
     """Return in sentences how much the extended model lowers the error of the data sheet's."""
     middle = median(row.gain for row in rows.values())
-    said = f"the better model {_matters(middle)}. RMSE data sheet / extended is {plain(middle, 2)}"
+    matters = "hardly matters" if middle > 1.0 / NEAR else "does harm"
+    if middle > NEAR:
+        matters = "matters"
+    said = f"the better model {matters}. RMSE data sheet / extended is {plain(middle, 2)}"
     if len(rows) == 1:
         return f"{said}."
     gains = {case: row.gain for case, row in rows.items()}
@@ -109,12 +109,6 @@ def _gain(rows: dict[str, Row]) -> str:
     worse = [f"{case} ({plain(gain, 2)})" for case, gain in gains.items() if gain < 1.0 / NEAR]
     but = f"; the data sheet's is better by more than {_PERCENT} in {listed(worse)}"
     return f"{said} (median of {len(rows)} cases, {low} to {high}){but if worse else ''}."
-
-
-def _matters(gain: float) -> str:
-    if gain > NEAR:
-        return "matters"
-    return "hardly matters" if gain > 1.0 / NEAR else "does harm"
 
 
 def _limit(rows: dict[str, Row]) -> str:
@@ -186,7 +180,13 @@ def section(inputs: Inputs) -> Section | None:
         "closing",
         "Does a better model track better?",
         (_HOW, _SHARED),
-        tables=(_hidden_and_named(closing),),
+        tables=(
+            table_of(
+                "What was hidden in the plant, and what the diagnosis named",
+                ("case", "what differs", "hidden", "verdict", "named"),
+                map(_case, closing.cases),
+            ),
+        ),
         parts=(
             Section(
                 "closing-rmse",
@@ -200,20 +200,8 @@ def section(inputs: Inputs) -> Section | None:
     )
 
 
-def _hidden_and_named(closing: ClosingFile) -> Table:
-    """Return what was hidden and what was named, one row for each case."""
-    rows = tuple(
-        (case.case, case.title, _hidden(case), case.verdict, _named(case.named))
-        for case in closing.cases
-    )
-    header = ("case", "what differs", "hidden", "verdict", "named")
-    return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
-
-
-def _hidden(case: ClosedCase) -> str:
-    return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
-
-
-def _named(named: tuple[Named, ...]) -> str:
-    causes = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in named)
-    return ", ".join(causes) or "nothing"
+def _case(case: ClosedCase) -> tuple[str, ...]:
+    """Return what was hidden and what was named in a case."""
+    hidden = (f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
+    named = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in case.named)
+    return case.case, case.title, ", ".join(hidden), case.verdict, ", ".join(named) or "nothing"

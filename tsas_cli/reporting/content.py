@@ -2,7 +2,7 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
@@ -10,10 +10,11 @@ from importlib.resources import files
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from tsas_cli.records.result import Table as Printed
-from tsas_cli.reporting.numbers import ABSENT
+from tsas_cli.reporting.numbers import ABSENT, MINUS
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
+
+_NUMBER = re.compile(f"(?:[-{MINUS}]?\\d.{{0,22}}|{ABSENT}|none|)$")  # a cell among numbers
 
 
 @dataclass(frozen=True)
@@ -29,33 +30,28 @@ class Table:
     numeric: frozenset[int] = frozenset()
     notes: tuple[str, ...] = ()
 
-    @classmethod
-    def printed(cls, printed: Printed) -> "Table":
-        """Return a table as a command prints it, without the columns in which nothing stands."""
-        caption, header, rows = printed
-        cells = tuple(tuple(row) for row in rows)
-        numeric = (
-            column
-            for column in range(len(header))
-            if all(re.match(r"[-\d]", row[column]) for row in cells if row[column])
-        )
-        title = caption[:1].upper() + caption[1:]
-        return cls(title, tuple(header), cells, frozenset(numeric)).without_empty()
 
-    def without_empty(self) -> "Table":
-        """Return the table without the columns in which nothing stands."""
-        kept = [
-            column
-            for column in range(len(self.header))
-            if any(row[column] not in {"", ABSENT} for row in self.rows)
-        ]
-        return Table(
-            self.caption,
-            tuple(self.header[column] for column in kept),
-            tuple(tuple(row[column] for column in kept) for row in self.rows),
-            frozenset(place for place, column in enumerate(kept) if column in self.numeric),
-            self.notes,
-        )
+def table_of(
+    caption: str, header: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
+) -> Table:
+    """Return a table without the columns in which nothing stands; numbers stand to the right."""
+    cells = tuple(rows)
+    kept = [k for k in range(len(header)) if any(row[k] not in {"", ABSENT} for row in cells)]
+    shown = tuple(tuple(row[k] for k in kept) for row in cells)
+    return Table(
+        caption[:1].upper() + caption[1:],
+        tuple(header[k] for k in kept),
+        shown,
+        frozenset(k for k in range(1, len(kept)) if all(_NUMBER.match(row[k]) for row in shown)),
+        tuple(notes),
+    )
+
+
+def table_by_column(caption: str, rows: Iterable[Mapping[str, str]]) -> Table:
+    """Return a table of rows whose cells stand by the names of their columns."""
+    cells = list(rows)
+    header = list(dict.fromkeys(name for row in cells for name in row))
+    return table_of(caption, header, [[row.get(name, "") for name in header] for row in cells])
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import io
 import json
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -187,9 +188,9 @@ def _own(name: str, value: str, key: str) -> str:
     return value.replace("url(#", f"url(#{key}-")
 
 
-def line(axes: Any, time_s: Floats, values: Floats, *, points: int = POINTS, **style: Any) -> None:
+def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:
     """Draw values over time, with as many points as the plot can show."""
-    kept = kept_samples(values, points=points)
+    kept = kept_samples(values)
     axes.plot(time_s[kept], values[kept], **style)
 
 
@@ -212,6 +213,41 @@ def legend(figure: Any, axes: Any = None, *, ncols: int = 2, handlelength: float
     figure.legend(
         *named, loc="outside upper left", ncols=ncols, handlelength=handlelength, columnspacing=1.2
     )
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """One panel: its name at the axis, time [s], both residuals, shape (n,) each, and the noise."""
+
+    label: str
+    time_s: Floats
+    first: Floats
+    second: Floats
+    noise: float | None
+
+
+def height_in(panels: int) -> float:
+    """Return the height in inches that so many panels need."""
+    return 0.8 + 1.3 * panels
+
+
+def draw_two_residuals(
+    figure: Any, *, panels: Sequence[Residuals], names: tuple[str, str] = ("A", "B")
+) -> None:
+    """Draw panel below panel; the larger residual lies below the smaller one."""
+    rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, panel in zip(rows, panels, strict=True):
+        both = panel.first, panel.second
+        least = min(float(np.nanstd(values)) for values in both)
+        for name, values, role in zip(names, both, ("before", "after"), strict=True):
+            order = 2.2 if float(np.nanstd(values)) <= least else 2.1
+            style = {"color": STAND_IN[role], "linewidth": 0.7, "label": name, "zorder": order}
+            line(axes, panel.time_s, values, **style)
+        noise_bounds(axes, panel.noise)
+        axes.set_ylabel(panel.label)
+    rows[-1].set_xlabel("time [s]")
+    figure.align_ylabels()
+    legend(figure, rows[0], ncols=3)
 
 
 def kept_samples(*series: Floats, points: int = POINTS) -> Indices:
@@ -256,12 +292,8 @@ def kept_cells(x: Floats, y: Floats, *, cells: int = CELLS) -> Indices:
     `x` and `y` have shape (n,), without gaps; `cells` is how many there are along each axis of the
     curve's own range.
     """
-    places = [_cells(values, cells) for values in (x, y)]
-    enters = (np.diff(places[0]) != 0) | (np.diff(places[1]) != 0)
+    both = np.stack((x, y))
+    spans = np.ptp(both, axis=1, keepdims=True)
+    shares = (both - both.min(axis=1, keepdims=True)) / np.where(spans > 0.0, spans, 1.0)
+    enters = (np.diff(np.floor(shares * cells)) != 0).any(axis=0)
     return np.unique(np.concatenate(([0], np.flatnonzero(enters) + 1, [x.size - 1])))
-
-
-def _cells(values: Floats, cells: int) -> Indices:
-    span = float(np.ptp(values)) or 1.0
-    places: Indices = np.floor((values - values.min()) / span * cells).astype(np.int64)
-    return places

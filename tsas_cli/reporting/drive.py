@@ -1,20 +1,26 @@
 """The drive: its transfer function, the structures that were tried, and what Eq. (25) lacks."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from tsas_cli.drive.json import tables
-from tsas_cli.records.drive import BodeCurve, DriveFile, FrequencyResponses, MeasuredResponse, Pole
+from tsas_cli.records.drive import DriveFile, FrequencyResponses
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Section, Table
-from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.content import Picture, Section, table_of
+from tsas_cli.reporting.drawing import (
+    Residuals,
+    bound,
+    draw_two_residuals,
+    height_in,
+    legend,
+    picture,
+)
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import RAISED, plain, spanned
-from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -22,7 +28,7 @@ def section(inputs: Inputs) -> Section | None:
     drive = inputs.get(DriveFile)
     if drive is None:
         return None
-    printed = tuple(map(Table.printed, tables(drive, "The identified drive")))
+    printed = tuple(table_of(*table) for table in tables(drive, "The identified drive"))
     evidence = (drive.diagnosis.evidence.sentence, f"Next: {drive.diagnosis.next_experiment}")
     parts = (
         Section("drive-numbers", "What was found, in numbers", tables=printed),
@@ -59,18 +65,73 @@ def _response(drive: DriveFile) -> tuple[Picture, ...]:
     shown = (
         "" if band is None else f" The input shows {plain(band[0], 3)} to {plain(band[1], 3)} Hz."
     )
+    measured, fitted = response.measured, response.fitted
+
+    def draw_bode(figure: Any) -> None:
+        """Draw magnitude, phase and coherence; dots where the input tells."""
+        rows = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 1.5))
+        at, excited = np.array(measured.frequency_Hz), np.array(measured.excited, dtype=bool)
+        dots = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0, "markersize": 3.2}
+        for axes, seen, curve in (
+            (rows[0], measured.magnitude, fitted.magnitude),
+            (rows[1], measured.phase_deg, fitted.phase_deg),
+        ):
+            style = {"color": STAND_IN["measured"], "label": "measured", **dots}
+            axes.plot(at[excited], np.array(seen)[excited], **style)
+            axes.plot(fitted.frequency_Hz, curve, color=STAND_IN["simulated"], label="fitted")
+        rows[0].set(xscale="log", yscale="log", ylabel="|G| [mm/(rpm s)]")
+        rows[1].set_ylabel("phase [°]")
+        rows[2].plot(at, measured.coherence, color=STAND_IN["muted"], linewidth=0.9)
+        bound(rows[2], 0.8)
+        rows[2].set(ylim=(0.0, 1.05), ylabel="coherence", xlabel="frequency [Hz]")
+        if band is not None:
+            for axes in rows:
+                axes.axvspan(*band, color=STAND_IN["line"], alpha=0.5, linewidth=0.0, zorder=0)
+                for edge in band:
+                    axes.axvline(edge, color=STAND_IN["muted"], linewidth=0.5, zorder=0)
+        rows[0].set_xlim(at[0], at[-1])
+        # The page's text is no mathematics: powers of ten are written out.
+        rows[0].yaxis.set_major_formatter(_power)
+        rows[2].xaxis.set_major_formatter("{x:g}")
+        rows[2].xaxis.set_minor_formatter("")
+        figure.align_ylabels()
+        legend(figure, rows[0])
+
     bode = picture(
-        partial(draw_bode, measured=response.measured, fitted=response.fitted, band_Hz=band),
+        draw_bode,
         key="drive-bode",
         alt=f"From motor speed to x_in over frequency.{shown} {_bode_in_words(response)}",
         caption=f"From motor speed to x_in: measured where the coherence tells, and fitted.{shown}",
         height_in=5.0,
     )
+    said = "".join(
+        f"; {pole.kind} at {plain(pole.frequency_Hz, 3)} Hz"
+        + ("" if pole.in_band else ", outside of what the input shows")
+        for pole in drive.poles
+    )
+
+    def draw_poles(figure: Any) -> None:
+        """Draw the poles by their decay and their frequency; colours tell which are in band."""
+        axes = figure.subplots()
+        look = {"linestyle": "none", "markersize": 8, "markeredgewidth": 1.8}
+        for pole in drive.poles:
+            y = pole.imaginary_per_s / (2.0 * math.pi)
+            look["marker"] = "x" if pole.kind == "pole" else "D"
+            look["color"] = STAND_IN["after" if pole.in_band else "before"]
+            for place in dict.fromkeys((y, -y)):
+                axes.plot(pole.real_per_s, place, markerfacecolor="none", **look)
+        axes.plot(0.0, 0.0, **look | {"marker": "x", "color": STAND_IN["ink"]})
+        angle = np.linspace(0.5 * math.pi, 1.5 * math.pi, 100)
+        dashed = {"color": STAND_IN["muted"], "linewidth": 1.0, "linestyle": (0, (4, 3))}
+        for edge in band or ():
+            axes.plot(2.0 * math.pi * edge * np.cos(angle), edge * np.sin(angle), **dashed)
+        axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.8)
+        axes.set(xlabel="real part [1/s]", ylabel="imaginary part [Hz]")
+
     poles = picture(
-        partial(draw_poles, poles=drive.poles, band_Hz=band),
+        draw_poles,
         key="drive-poles",
-        alt=f"Poles of the fitted transfer function in the complex plane: one at 0"
-        f"{''.join(map(_pole_in_words, drive.poles))}.",
+        alt=f"Poles of the fitted transfer function in the complex plane: one at 0{said}.",
         caption="Poles of G(s), the integrator's at 0; between the dashed lines the input shows "
         "them. A diamond is 1/delay.",
         height_in=4.0,
@@ -91,11 +152,6 @@ def _bode_in_words(response: FrequencyResponses) -> str:
     )
     excited = sum(response.measured.excited)
     return f"Fitted magnitude and phase: {said}. Measured at {excited} frequencies with coherence."
-
-
-def _pole_in_words(pole: Pole) -> str:
-    where = "" if pole.in_band else ", outside of what the input shows"
-    return f"; {pole.kind} at {plain(pole.frequency_Hz, 3)} Hz{where}"
 
 
 def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
@@ -126,67 +182,5 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
     return (shown,)
 
 
-def draw_bode(
-    figure: Any,
-    measured: MeasuredResponse,
-    fitted: BodeCurve,
-    band_Hz: tuple[float, float] | None,
-) -> None:
-    """Draw magnitude, phase and coherence below each other; dots where the input does not tell."""
-    rows = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 1.5))
-    at, excited = np.array(measured.frequency_Hz), np.array(measured.excited, dtype=bool)
-    for axes, seen, curve in (
-        (rows[0], measured.magnitude, fitted.magnitude),
-        (rows[1], measured.phase_deg, fitted.phase_deg),
-    ):
-        dots = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0}
-        values = np.array(seen)
-        dots |= {"markersize": 3.2, "color": STAND_IN["measured"], "label": "measured"}
-        axes.plot(at[excited], values[excited], **dots)
-        axes.plot(fitted.frequency_Hz, curve, color=STAND_IN["simulated"], label="fitted")
-    rows[0].set(xscale="log", yscale="log", ylabel="|G| [mm/(rpm s)]")
-    rows[1].set_ylabel("phase [°]")
-    rows[2].plot(at, measured.coherence, color=STAND_IN["muted"], linewidth=0.9)
-    rows[2].axhline(0.8, color=STAND_IN["ink"], linewidth=1.0, linestyle=(0, (4, 3)))
-    rows[2].set(ylim=(0.0, 1.05), ylabel="coherence", xlabel="frequency [Hz]")
-    if band_Hz is not None:
-        for axes in rows:
-            axes.axvspan(*band_Hz, color=STAND_IN["line"], alpha=0.5, linewidth=0.0, zorder=0)
-            for edge in band_Hz:
-                axes.axvline(edge, color=STAND_IN["muted"], linewidth=0.5, zorder=0)
-    rows[0].set_xlim(at[0], at[-1])
-    # The page's text is no mathematics: powers of ten are written out.
-    rows[0].yaxis.set_major_formatter(_power)
-    rows[2].xaxis.set_major_formatter("{x:g}")
-    rows[2].xaxis.set_minor_formatter("")
-    figure.align_ylabels()
-    legend(figure, rows[0])
-
-
 def _power(value: float, _: object) -> str:
     return "10" + str(round(math.log10(value))).translate(RAISED) if value > 0.0 else ""
-
-
-def draw_poles(figure: Any, poles: Sequence[Pole], band_Hz: tuple[float, float] | None) -> None:
-    """Draw the poles by their decay and their frequency, open ones outside of the band."""
-    axes = figure.subplots()
-    for pole in poles:
-        real, imaginary = pole.real_per_s, pole.imaginary_per_s / (2.0 * math.pi)
-        mirror = (imaginary,) if imaginary == 0.0 else (imaginary, -imaginary)
-        for y in mirror:
-            axes.plot(
-                real, y, linestyle="none",
-                marker="x" if pole.kind == "pole" else "D", markersize=8, markeredgewidth=1.8,
-                markerfacecolor="none",
-                color=STAND_IN["after" if pole.in_band else "before"],
-            )  # fmt: skip
-    axes.plot(0.0, 0.0, linestyle="none", marker="x", markersize=8, markeredgewidth=1.8,
-              color=STAND_IN["ink"])  # fmt: skip
-    for edge in band_Hz or ():
-        angle = np.linspace(0.5 * math.pi, 1.5 * math.pi, 100)
-        axes.plot(
-            2.0 * math.pi * edge * np.cos(angle), edge * np.sin(angle),
-            color=STAND_IN["muted"], linewidth=1.0, linestyle=(0, (4, 3)),
-        )  # fmt: skip
-    axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.8)
-    axes.set(xlabel="real part [1/s]", ylabel="imaginary part [Hz]")

@@ -9,11 +9,11 @@ from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.records.drive import DriveDiagnosis, DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
-from tsas_cli.records.tracking import TrackingFile
+from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting import before_after
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import called, heading_of, title_of, within
+from tsas_cli.reporting.names import heading_of, in_words, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 from tsas_cli.support.wording import listed
 
@@ -63,7 +63,10 @@ def _of_diagnosis(
 ) -> Glance:
     named = diagnosis.named
     reason = diagnosis.reason[:1].upper() + diagnosis.reason[1:].rstrip(".")
-    verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, reason)
+    verdict = _NO_CAUSE.get(diagnosis.verdict, reason)
+    if named:
+        first, *more = map(heading_of, named)
+        verdict = listed([first, *map(within, more)])
     if isinstance(diagnosis, DiagnosisFile) and diagnosis.faults:
         verdict = _FAULT
     numbers = "RMS of the residual on held-out data"
@@ -78,17 +81,12 @@ def _of_diagnosis(
     return Glance(kind, verdict, numbers if shown else "", shown)
 
 
-def _causes(named: Sequence[NamedCause]) -> str:
-    first, *more = (heading_of(cause) for cause in named)
-    return listed([first, *map(within, more)])
-
-
 def _errors(channels: Mapping[str, HeldOut], *, extended: bool) -> Iterator[Fact]:
     for name, channel in channels.items():
         before, after = plain(channel.rmse_before, 3), plain(channel.rmse_after, 3)
         value = f"{after if extended else before} {channel.unit}"
         note = _normalised(channel, extended=extended)
-        yield Fact(called(name), value, note, before if extended else "")
+        yield Fact(in_words(name), value, note, before if extended else "")
 
 
 def _normalised(channel: HeldOut, *, extended: bool) -> str:
@@ -113,23 +111,20 @@ def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
 
 
 def _of_tracking(tracking: TrackingFile) -> Glance:
-    by_controller: dict[str, dict[str, str]] = {}
-    means: dict[str, float] = {}
+    by_controller: dict[str, list[TrackedResult]] = {}
     for result in tracking.results:
-        rmse = result.scores.rmse_N
-        shown = f"{plain(rmse.mean, 3)} N"
-        by_controller.setdefault(result.controller, {})[result.condition] = shown
-        if rmse.mean is not None and len(by_controller[result.controller]) == 1:
-            means[result.controller] = rmse.mean
-    first = tracking.results[0].condition
+        by_controller.setdefault(result.controller, []).append(result)
+    means = {name: of[0].scores.rmse_N.mean for name, of in by_controller.items()}
+    known = {name: mean for name, mean in means.items() if mean is not None}
     verdict = f"Followed by {listed(list(by_controller))}"
-    if len(means) > 1:
-        verdict = f"{min(means, key=lambda name: means[name]).capitalize()} follows best"
+    if len(known) > 1:
+        verdict = f"{min(known, key=lambda name: known[name]).capitalize()} follows best"
     facts = []
-    for name, by_condition in by_controller.items():
-        (_, value), *others = by_condition.items()
-        facts.append(Fact(name, value, "; ".join(f"{c}: {rmse}" for c, rmse in others)))
-    numbers = f"Root mean square error of the force, {first}"
+    for name, (first, *others) in by_controller.items():
+        sizes = [f"{plain(it.scores.rmse_N.mean, 3)} N" for it in (first, *others)]
+        more = zip(others, sizes[1:], strict=True)
+        facts.append(Fact(name, sizes[0], "; ".join(f"{it.condition}: {n}" for it, n in more)))
+    numbers = f"Root mean square error of the force, {tracking.results[0].condition}"
     return Glance("Tracking, simulated", verdict, numbers, tuple(facts))
 
 
@@ -162,7 +157,7 @@ def _of_simulation(simulation: SimulationFile) -> Glance | None:
     if not ratios:
         return None
     worst = max(map(max, ratios.values()))
-    facts = (Fact(called(name), ranged(found), "") for name, found in ratios.items())
+    facts = (Fact(in_words(name), ranged(found), "") for name, found in ratios.items())
     return Glance(
         "Simulation against measurement",
         f"Within {plain(worst, 2)} times the noise",

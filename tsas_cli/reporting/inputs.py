@@ -1,7 +1,7 @@
 """What the page is made from: the dataset, and what the stages wrote about it."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -42,23 +42,23 @@ Stage = TypeVar("Stage", bound=StageFile)
 
 @dataclass(frozen=True)
 class Inputs:
-    """The dataset, and by kind of stage what was given: its file's content, and its folder.
+    """The dataset, and what was given: each stage's file, and its folder.
 
     Without a dataset there is only what `tsas close-loop` wrote, which has one for each case.
-    `more_simulations` are those after the first.
     """
 
     dataset: Dataset | None
-    stages: Mapping[type[StageFile], StageFile]
-    folders: Mapping[type[StageFile], Path]
-    more_simulations: tuple[tuple[SimulationFile, Path], ...] = ()
+    given: tuple[tuple[StageFile, Path], ...]
+
+    @property
+    def folders(self) -> dict[type[StageFile], Path]:
+        """The folder of each kind of stage, of the first simulation."""
+        return {type(stage): folder for stage, folder in reversed(self.given)}
 
     @property
     def simulations(self) -> dict[str, tuple[SimulationFile, Path]]:
         """Each simulation with its folder, by the folder's name, its path where two share one."""
-        first = self.get(SimulationFile)
-        given = () if first is None else ((first, self.folders[SimulationFile]),)
-        every = (*given, *self.more_simulations)
+        every = [(one, path) for one, path in self.given if isinstance(one, SimulationFile)]
         names = [folder.name for _, folder in every]
         return {
             name if names.count(name) == 1 else str(folder): (record, folder)
@@ -68,8 +68,12 @@ class Inputs:
     @cached_property
     def check(self) -> CheckFile:
         """What the checks say of the dataset; they are run here where no folder holds them."""
-        given = self.get(CheckFile)
-        return _own_check(cast("Dataset", self.dataset)) if given is None else given
+        if given := self.get(CheckFile):
+            return given
+        dataset = cast("Dataset", self.dataset)
+        report = check_dataset(dataset)
+        found, silent = report.findings, report.not_checked
+        return CheckFile(**dataset.header(Path()), findings=found, not_checked=silent)
 
     @property
     def recordings(self) -> Iterable[Recording]:
@@ -78,7 +82,7 @@ class Inputs:
 
     def get(self, kind: type[Stage]) -> Stage | None:
         """Return what a stage wrote, or None where it was not given."""
-        return cast("Stage | None", self.stages.get(kind))
+        return next((stage for stage, _ in self.given if isinstance(stage, kind)), None)
 
     def noise(self, column: str) -> float | None:
         """Return the noise level of a channel over all runs, in its unit, None where unknown."""
@@ -145,30 +149,26 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     stage has read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders, {SimulationFile.FILE} if several else set())
-    given = [
+    given = tuple(
         (read_stage(kind, folder), folder)
         for kind in STAGES
         for folder in cast("list[Path]", by_file.get(kind.FILE, []))
-    ]
+    )
     named = (
         _dataset_of(stage, folder / stage.FILE)
         for stage, folder in given
         if not isinstance(stage, ClosingFile)
     )
-    first = {type(stage): (stage, folder) for stage, folder in reversed(given)}
-    stages = {kind: first[kind][0] for kind in STAGES if kind in first}
-    where = {kind: first[kind][1] for kind in stages}
     folder = by_file[MANIFEST_FILE][0] if MANIFEST_FILE in by_file else next(named, None)
     if folder is None:
-        return Inputs(None, stages, where)
+        return Inputs(None, given)
     dataset = read_dataset(folder).under(**_conditions(given))
     for stage, path in given:
         if isinstance(stage, OfDataset):
             _check_hashes(stage, dataset, path / stage.FILE)
         elif isinstance(stage, TrackingFile):
             _check_own(dataset, path / stage.FILE)
-    simulations = [(one, path) for one, path in given if isinstance(one, SimulationFile)]
-    return Inputs(dataset, stages, where, tuple(simulations[1:]))
+    return Inputs(dataset, given)
 
 
 def read_stage(kind: type[Stage], folder: Path) -> Stage:
@@ -235,15 +235,6 @@ def _dataset_of(stage: StageFile, path: Path) -> Location:
             remedy="give the dataset's folder to `tsas report` too",
         )
     return folder
-
-
-def _own_check(dataset: Dataset) -> CheckFile:
-    report = check_dataset(dataset)
-    return CheckFile(
-        **dataset.header(Path()),
-        findings=report.findings,
-        not_checked=report.not_checked,
-    )
 
 
 def _check_own(dataset: Dataset, path: Path) -> None:

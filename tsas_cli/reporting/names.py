@@ -73,41 +73,29 @@ def sentence_of(name: str) -> str:
     return EFFECT[name].sentence if name in EFFECT else ""
 
 
-def signal_in_words(name: str) -> str:
-    """Return what a signal is; a text that is no known name stays as it is."""
-    if name in _SIGNALS:
-        return _SIGNALS[name][0]
-    return called(name)
-
-
-def signal_at_axis(name: str) -> str:
-    """Return the words with the unit in brackets, where there is one."""
-    own = _SIGNALS[name][1] if name in _SIGNALS else ""
-    unit = own or (BY_NAME[name].unit if name in BY_NAME else "")
-    return signal_in_words(name) + (f" [{unit}]" if unit else "")
-
-
 def in_words(name: str) -> str:
-    """Return what a canonical column means, in a few words.
+    """Return what a column or a signal means in a few words; any other text as it is.
 
-    >>> in_words("f_in_N")
-    'tension at the drive'
+    >>> in_words("f_in_N"), in_words("direction"), in_words("my_column")
+    ('tension at the drive', 'direction of the drive', 'my_column')
     """
-    return BY_NAME[name].meaning.split(",")[0]
-
-
-def called(name: str) -> str:
-    """Return what a column means in a few words; of one that is not canonical its name."""
-    return in_words(name) if name in BY_NAME else name
+    return _meaning(name)[0]
 
 
 def at_axis(name: str) -> str:
-    """Return the words with the unit in brackets.
+    """Return the words with the unit in brackets, where there is one.
 
-    >>> at_axis("f_in_N")
-    'tension at the drive [N]'
+    >>> at_axis("f_in_N"), at_axis("phase")
+    ('tension at the drive [N]', 'phase of the cycle')
     """
-    return f"{in_words(name)} [{BY_NAME[name].unit}]"
+    words, unit = _meaning(name)
+    return f"{words} [{unit}]" if unit else words
+
+
+def _meaning(name: str) -> tuple[str, str]:
+    column = BY_NAME.get(name)
+    known = (name, "") if column is None else (column.meaning.split(",")[0], column.unit)
+    return _SIGNALS.get(name, known)
 
 
 def label_of(key: str) -> str:

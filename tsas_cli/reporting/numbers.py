@@ -26,6 +26,21 @@ def plain(value: float | None, digits: int = 4) -> str:
     return _fixed(value, digits - 1 - _exponent(value))
 
 
+def over(value: float | None, noise: float | None) -> str:
+    """Return a residual over the noise level; an en dash where one of them is not known.
+
+    >>> over(0.91, 0.1), over(None, 0.1), over(0.91, None)
+    ('9.10', '–', '–')
+    """
+    return ABSENT if value is None or not noise else plain(value / noise, 3)
+
+
+def over_seeds(first: int, last: int) -> str:
+    """Return what a table's title says of its spreads; nothing of a single seed."""
+    many = last - first + 1
+    return f", mean ± standard deviation over {many} seeds of noise" if many > 1 else ""
+
+
 def as_printed(value: float | None) -> str:
     """Return a number with the digits it has, five at most; an en dash where there is none.
 

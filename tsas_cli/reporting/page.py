@@ -74,15 +74,14 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
 
 def _sentences(inputs: Inputs) -> Iterator[str]:
     """Yield the sentences of the first paragraph; without a dataset, of what was changed alone."""
-    places = [*inputs.folders.values(), *(folder for _, folder in inputs.more_simulations)]
-    yield from change_notes(places)
+    yield from change_notes(folder for _, folder in inputs.given)
     if inputs.dataset is None:
         return
     manifest = inputs.dataset.manifest
     many = count_of(len(manifest.run), "recording")
     yield f"{manifest.name} holds {many}, {manifest.kind}."
     yield _findings(inputs.check)
-    of_data = [stage for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
+    of_data = [stage for stage, _ in inputs.given if isinstance(stage, OfDataset)]
     yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)
     if calibration and calibration.cannot_tell and inputs.get(DiagnosisFile) is None:

@@ -1,6 +1,6 @@
 """What the recordings are, what the checks say about them, and their loops by phase."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -9,16 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table
-from tsas_cli.reporting.drawing import POINTS, kept_samples, legend, picture, shared_points
+from tsas_cli.reporting.content import Group, Picture, Section, Table, table_by_column, table_of
+from tsas_cli.reporting.drawing import kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import PHASES, Phase, at_axis, in_words, phase_of_samples
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
@@ -40,62 +38,43 @@ def section(inputs: Inputs) -> Section | None:
     manifest = inputs.dataset.manifest
     kind = {"measured": "measured on a rig", "simulated": "simulated, not measured"}[manifest.kind]
     intro = [f"The dataset {manifest.name} holds {len(manifest.run)} recordings, {kind}."]
-    intro += [text for text in (manifest.description, _credit(manifest)) if text]
-    tables = [_runs(inputs.dataset)]
+    credit = [("Source", manifest.source), ("License", manifest.license)]
+    said = " ".join(f"{name}: {text.rstrip('.')}." for name, text in credit if text)
+    intro += [text for text in (manifest.description, said) if text]
+    tables = [table_by_column("The recordings", map(_run, inputs.dataset))]
     if inputs.check.findings:
         tables.append(_findings(inputs.check))
-    if inputs.check.not_checked:
-        tables.append(_not_checked(inputs.check))
+    if reasons := inputs.check.reasons():
+        header = ("code", "reason", "runs")
+        tables.append(table_of("What the checks could not tell", header, reasons))
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
 
 
-def _credit(manifest: Manifest) -> str:
-    parts = [("Source", manifest.source), ("License", manifest.license)]
-    return " ".join(f"{name}: {text.rstrip('.')}." for name, text in parts if text)
-
-
-def _runs(dataset: Dataset) -> Table:
-    more = list(dict.fromkeys(key for run in dataset.manifest.run for key in run.model_extra or {}))
-    header = (
-        "run",
-        "channels",
-        "samples",
-        "duration [s]",
-        "rate [Hz]",
-        "sheath length [mm]",
-        "total bend [rad]",
-        "preload [N]",
-        *more,
-        "started",
-        "load",
-    )
-    rows = tuple(_run(recording, more) for recording in dataset)
-    numeric = frozenset(range(2, 8 + len(more)))
-    return Table("The recordings", header, rows, numeric=numeric).without_empty()
-
-
-def _run(recording: Recording, more: Sequence[str]) -> tuple[str, ...]:
+def _run(recording: Recording) -> dict[str, str]:
+    """Return what a recording is, by column of the table."""
     run, time_s = recording.run, recording.time_s
     duration = float(time_s[-1] - time_s[0])
-    return (
-        run.id,
-        ", ".join(name for name in BY_NAME if name in recording.columns and name != TIME),
-        str(time_s.size),
-        plain(duration),
-        plain((time_s.size - 1) / duration),
-        plain(run.sheath_length_mm),
-        plain(run.total_bend_rad),
-        plain(run.preload_N),
-        *(str((run.model_extra or {}).get(key, ABSENT)) for key in more),
-        run.started.isoformat(" ") if run.started else ABSENT,
-        run.load,
-    )
+    channels = [name for name in BY_NAME if name in recording.columns and name != TIME]
+    row = {
+        "run": run.id,
+        "channels": ", ".join(channels),
+        "samples": str(time_s.size),
+        "duration [s]": plain(duration),
+        "rate [Hz]": plain((time_s.size - 1) / duration),
+        "sheath length [mm]": plain(run.sheath_length_mm),
+        "total bend [rad]": plain(run.total_bend_rad),
+        "preload [N]": plain(run.preload_N),
+    }
+    more = {key: str(value) for key, value in (run.model_extra or {}).items() if key not in row}
+    started = run.started.isoformat(" ") if run.started else ABSENT
+    return row | more | {"started": started, "load": run.load}
 
 
 def _findings(check: CheckFile) -> Table:
     """Return the findings, errors first; of many of one kind the first few, and whose they are."""
     kinds: dict[tuple[str, str], list[Finding]] = {}
-    for finding in sorted(check.findings, key=_rank):
+    rank = {severity: place for place, severity in enumerate(_SEVERITIES)}
+    for finding in sorted(check.findings, key=lambda finding: rank.get(finding.severity, -1)):
         kinds.setdefault((finding.severity, finding.code), []).append(finding)
     rows: list[tuple[str, ...]] = []
     for (severity, code), found in kinds.items():
@@ -109,19 +88,7 @@ def _findings(check: CheckFile) -> Table:
             more = f"{len(rest)} more of this kind; `tsas check` lists them"
             rows.append((severity, code, runs, ABSENT, more, ""))
     header = ("severity", "code", "run", "column", "what", "what to do")
-    return Table("What the checks found", header, tuple(rows)).without_empty()
-
-
-def _rank(finding: Finding) -> int:
-    return _SEVERITIES.index(finding.severity) if finding.severity in _SEVERITIES else -1
-
-
-def _not_checked(check: CheckFile) -> Table:
-    reasons: dict[tuple[str, str], list[str]] = {}
-    for silent in check.not_checked:
-        reasons.setdefault((silent.code, silent.reason), []).append(silent.run or ABSENT)
-    rows = tuple((code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items())
-    return Table("What the checks could not tell", ("code", "reason", "runs"), rows)
+    return table_of("What the checks found", header, rows)
 
 
 def loops_section(inputs: Inputs) -> Section | None:
@@ -156,58 +123,36 @@ def _pictures(
         if x is None or y is None or not np.isfinite(x + y).any():
             continue
         yield picture(
-            partial(
-                draw_loop,
-                x=x,
-                y=y,
-                phase=phase,
-                labels=(at_axis(_X), at_axis(column)),
-                points=points,
-            ),
+            partial(_draw_loop, x=x, y=y, phase=phase, column=column, points=points),
             key=f"loop-{number}-{column}",
             alt=_alt(recording.run.id, x, y, phase, column),
             caption=f"{in_words(column).capitalize()} over {in_words(_X)}.",
         )
 
 
-def _alt(run: str, x: Floats, y: Floats, phase: npt.NDArray[np.object_], column: str) -> str:
+def _alt(run: str, x: Floats, y: Floats, phase: Keys, column: str) -> str:
     whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
     shown = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
     each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in shown)
     return f"Loop of run {run}: {whole}. By phase: {each or 'unknown'}."
 
 
-def draw_loop(
-    figure: Any,
-    *,
-    x: Floats,
-    y: Floats,
-    phase: Keys,
-    labels: tuple[str, str],
-    points: int = POINTS,
-) -> None:
-    """Draw the loop of one run.
-
-    `x` [mm] and `y` [N] have shape (n,), NaN for gaps, and so has the key of the phase; `labels`
-    are the names of the two axes, with units.
-    """
+def _draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, column: str, points: int) -> None:
+    """Draw a tension over x_in, shape (n,) each, NaN for gaps, in the colours of the phases."""
     axes = figure.add_subplot()
     y = np.where(np.isfinite(x), y, np.nan)
     kept = kept_samples(x, y, points=points)
     for one in PHASES:
-        if (phase == one.key).any():
-            _draw_phase(axes, x[kept], y[kept], phase[kept] == one.key, one)
-            _number(axes, x, y, phase == one.key, one)
-    axes.set(xlabel=labels[0], ylabel=labels[1])
+        inside = phase == one.key
+        if inside.any():
+            joined = inside[kept]
+            joined[1:] |= joined[:-1].copy()  # up to the first sample of the next phase: no hole
+            style = {"color": STAND_IN[one.colour], "label": f"{one.number} {one.label}".strip()}
+            axes.plot(x[kept], np.where(joined, y[kept], np.nan), **style)
+            _number(axes, x, y, inside, one)
+    axes.set(xlabel=at_axis(_X), ylabel=at_axis(column))
     if (phase != "unknown").any():
         legend(figure)
-
-
-def _draw_phase(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:
-    joined = inside.copy()
-    joined[1:] |= inside[:-1]  # up to the first sample of the next phase: no hole between two
-    label = f"{one.number} {one.label}".strip()
-    axes.plot(x, np.where(joined, y, np.nan), color=STAND_IN[one.colour], label=label)
 
 
 def _number(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:

@@ -16,7 +16,7 @@ from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.content import Section, table_of
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.support import __version__
 from tsas_cli.support.files import sha256_of
@@ -43,10 +43,11 @@ def section(inputs: Inputs) -> Section:
     if prediction := inputs.get(PredictionFile):
         hashes |= {one.path: one.sha256 for one in prediction.models if one.sha256}
     if tracking := inputs.get(TrackingFile):
-        hashes |= files_read(tracking)
-    tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
+        named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
+        hashes |= {one.file: one.sha256 for one in named if one.sha256 is not None}
+    tables = [table_of("Versions", ("program", "version"), _versions(inputs))]
     if hashes:
-        tables.append(Table("Files read", ("file", "SHA-256"), tuple(hashes.items())))
+        tables.append(table_of("Files read", ("file", "SHA-256"), hashes.items()))
     return Section(
         "repeat",
         "How to repeat it",
@@ -70,7 +71,7 @@ def _intro(inputs: Inputs) -> Iterator[str]:
 
 def _in_memory(inputs: Inputs) -> bool:
     """Say whether a stage was given what no file holds."""
-    stages = inputs.stages.values()
+    stages = [stage for stage, _ in inputs.given]
     if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
         return True
     files = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
@@ -82,7 +83,7 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
     if closing := inputs.get(ClosingFile):
         yield ["tsas", "close-loop", *closing_options(closing), "--out", folder[ClosingFile]]
-    read = [*folder.values(), *(str(path) for _, path in inputs.more_simulations)]
+    read = [str(path) for _, path in inputs.given]
     if inputs.dataset is not None:
         read.insert(0, str(inputs.dataset.folder))
         yield from _of_dataset(inputs, read[0], folder)
@@ -197,9 +198,3 @@ def tracking_options(tracking: TrackingFile) -> Iterator[str]:
         yield from ("--settings", tracking.settings.file)
     first, last = tracking.seeds
     yield from ("--seeds", str(last - first + 1), "--seed", str(first))
-
-
-def files_read(tracking: TrackingFile) -> dict[str, str]:
-    """Return the checksums of models and reference by file, of those that were given."""
-    named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
-    return {one.file: one.sha256 for one in named if one.sha256 is not None}

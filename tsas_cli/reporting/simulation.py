@@ -3,7 +3,8 @@
 The models are those of a diagnosis, and each simulation by its name.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,16 +17,25 @@ from tsas_cli.recordings.columns import BY_NAME, nominal_name
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
-from tsas_cli.reporting.drawing import legend, line, noise_bounds, picture, shared_points
+from tsas_cli.reporting.content import (
+    Group,
+    Picture,
+    Section,
+    Table,
+    missing,
+    table_by_column,
+    table_of,
+)
+from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import in_words
-from tsas_cli.reporting.numbers import ABSENT, plain, spanned
+from tsas_cli.reporting.names import at_axis, in_words
+from tsas_cli.reporting.numbers import over, plain, spanned
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import sha256_of
 
 X_IN = "x_in_mm"
 NOMINAL, EXTENDED = "nominal model", "extended model"
+_LINES = ("-", "--", ":")
 _ROLES = ("simulated", "dead-band-up", "alike", "rest")
 _TITLE = "Simulation and measurement"
 _MOST_RUNS = 10
@@ -34,25 +44,29 @@ _POINTS = 50_000  # of all curves
 
 @dataclass(frozen=True)
 class Simulated:
-    """One model's predictions: its name on the page, its colour's role, and where they are."""
+    """One model's predictions: its name on the page, its colour's role, and where they are.
+
+    `named` says what a channel is called there.
+    """
 
     label: str
     role: str
     folder: Path
-    nominal: bool = False
+    named: Callable[[str], str] = str
 
     def driven(self, inputs: Inputs, recording: Recording) -> Floats | None:
         """Return x_in of a run as it drives the model [mm], shape (n,), None where it is not."""
-        if X_IN not in inputs.written_columns(recording.run.id, self.folder):
-            return None
-        return inputs.series(recording.run.id, recording.time_s.size, X_IN, self.folder)
+        return self._written(inputs, recording, X_IN)
 
     def predicted(self, inputs: Inputs, recording: Recording, column: str) -> Floats | None:
         """Return a channel of a run as predicted, shape (n,), None where it is not.
 
         InputError: the file cannot be read, or does not belong to this recording.
         """
-        name, run = nominal_name(column) if self.nominal else column, recording.run.id
+        return self._written(inputs, recording, self.named(column))
+
+    def _written(self, inputs: Inputs, recording: Recording, name: str) -> Floats | None:
+        run = recording.run.id
         if name not in inputs.written_columns(run, self.folder):
             return None
         return inputs.series(run, recording.time_s.size, name, self.folder)
@@ -60,7 +74,10 @@ class Simulated:
 
 @dataclass(frozen=True, eq=False)
 class ShownChannel:
-    """One channel of one run: time [s], measured and by model, shape (n,) each, and the noise."""
+    """One channel of one run: time [s], measured and by model, shape (n,) each, and the noise.
+
+    It is drawn over `x`, x_in as it drives the models [mm], over time without it.
+    """
 
     run: str
     channel: str
@@ -68,6 +85,7 @@ class ShownChannel:
     time_s: Floats
     measured: Floats
     by_model: Mapping[Simulated, Floats]
+    x: Floats | None = None
 
     @property
     def unit(self) -> str:
@@ -84,7 +102,7 @@ def section(inputs: Inputs) -> Section:
     models = simulated_models(inputs)
     if not models or inputs.dataset is None:
         return missing("simulation", _TITLE, what="simulation", stage="simulate")
-    compared = [c for one in inputs.recordings for c in _compared(inputs, one, models)]
+    compared = [c for one in inputs.recordings for c in channels_of(inputs, one, models)]
     runs = list(dict.fromkeys(one.run for one in compared))
     shown = [one for one in compared if one.run in runs[:_MOST_RUNS]]
     points = shared_points(sum(1 + 2 * len(one.by_model) for one in shown), _POINTS)
@@ -117,9 +135,10 @@ def _intro(inputs: Inputs) -> Iterator[str]:
     yield from (f"Inputs are cleaned first: {method}." for method in sorted(methods))
 
 
-def _compared(
+def channels_of(
     inputs: Inputs, recording: Recording, models: Sequence[Simulated]
 ) -> Iterator[ShownChannel]:
+    """Yield the channels of a run that are measured and predicted by a model."""
     for channel in CHANNELS:
         measured = recording.get(channel)
         if measured is None:
@@ -140,56 +159,38 @@ def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Tab
     rows = []
     for one in compared:
         sizes = [one.rmse(model) for model in models]
-        normalised = (_normalised(size, one.noise) for size in sizes)
+        normalised = (over(size, one.noise) for size in sizes)
         noise = plain(one.noise, 3)
         found = (*(plain(size, 3) for size in sizes), noise, one.unit, *normalised)
         rows.append((one.run, one.channel, *found))
     names = [model.label for model in models]
     header = ("run", "channel", *names, "noise level", "unit", *(f"{n}, normalised" for n in names))
-    numeric = frozenset(range(2, len(header))) - {3 + len(names)}
-    return Table("RMS of the residual", header, tuple(rows), numeric).without_empty()
-
-
-def _normalised(size: float | None, noise: float | None) -> str:
-    return ABSENT if size is None or not noise else plain(size / noise, 3)
+    return table_of("RMS of the residual", header, rows)
 
 
 def _inputs(inputs: Inputs) -> Iterator[Table]:
     """Yield how each run's inputs were cleaned, where it starts and what solved it."""
-    rows = tuple(
-        (
-            name,
-            run_id,
-            column,
-            plain(c.window_s, 3),
-            plain(c.noise, 3),
-            c.unit,
-            str(c.reversals),
-            run.start,
-            run.solver,
-            str(run.slack_samples),
-            str(run.unconverged_samples),
-        )
+    rows = [
+        {
+            "simulation": name,
+            "run": run_id,
+            "input": column,
+            "window [s]": plain(c.window_s, 3),
+            "noise level": plain(c.noise, 3),
+            "unit": c.unit,
+            "reversals": str(c.reversals),
+            "start": run.start,
+            "solver": run.solver,
+            "samples with slack": str(run.slack_samples),
+            "not converged": str(run.unconverged_samples),
+        }
         for name, (record, _) in inputs.simulations.items()
         for run_id, run in record.runs.items()
         for column, c in run.conditioning.items()
-    )
-    header = (
-        "simulation",
-        "run",
-        "input",
-        "window [s]",
-        "noise level",
-        "unit",
-        "reversals",
-        "start",
-        "solver",
-        "samples with slack",
-        "not converged",
-    )
+    ]
     if rows:
         caption = "How the measured inputs were made ready, and what solved the model"
-        yield Table(caption, header, rows, numeric=frozenset({3, 4, 6, 9, 10}))
+        yield table_by_column(caption, rows)
 
 
 def _picture(it: ShownChannel, number: int, points: int) -> Picture:
@@ -212,20 +213,28 @@ def _picture(it: ShownChannel, number: int, points: int) -> Picture:
 
 
 def draw_comparison(figure: Any, *, it: ShownChannel, points: int) -> None:
-    """Draw one channel of one run over time, and under it the residual of each model.
+    """Draw one channel of one run, and under it the residual of each model.
 
-    `points` is about how many are drawn of each curve.
+    `points` is about how many are drawn of each curve. A second model of a colour is dashed.
     """
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    style = {"color": STAND_IN["measured"], "linewidth": 2.6, "label": "measured"}
-    line(upper, it.time_s, it.measured, points=points, **style)
+    by_x = () if it.x is None else (it.x,)
+    at, label = (it.time_s, "time [s]") if it.x is None else (it.x, at_axis(X_IN))
+
+    def draw(axes: Any, values: Floats, **style: Any) -> None:
+        kept = kept_samples(*by_x, values, points=points)
+        axes.plot(at[kept], values[kept], **style)
+
+    draw(upper, it.measured, color=STAND_IN["measured"], linewidth=2.6, label="measured")
+    drawn = Counter[str]()
     for model, values in it.by_model.items():
-        style = {"color": STAND_IN[model.role]}
-        line(upper, it.time_s, values, points=points, linewidth=1.1, label=model.label, **style)
-        line(lower, it.time_s, it.measured - values, points=points, linewidth=0.7, **style)
+        style = {"color": STAND_IN[model.role], "linestyle": _LINES[drawn[model.role] % 3]}
+        draw(upper, values, linewidth=1.1, label=model.label, **style)
+        draw(lower, it.measured - values, linewidth=0.7, **style)
+        drawn[model.role] += 1
     upper.set_ylabel(f"{it.channel.rsplit('_', 1)[0]} [{it.unit}]")
     noise_bounds(lower, it.noise)
-    lower.set(xlabel="time [s]", ylabel=f"residual [{it.unit}]")
+    lower.set(xlabel=label, ylabel=f"residual [{it.unit}]")
     figure.align_ylabels()
     legend(figure, upper, ncols=3 if len(it.by_model) < 3 else 2)
 
@@ -237,21 +246,18 @@ def diagnosed_models(inputs: Inputs) -> tuple[Simulated, ...]:
         return ()
     folder = inputs.folders[DiagnosisFile]
     extended = (Simulated(EXTENDED, "after", folder),) if diagnosis.extended else ()
-    return Simulated(NOMINAL, "before", folder, nominal=True), *extended
+    return Simulated(NOMINAL, "before", folder, nominal_name), *extended
 
 
 def simulated_models(inputs: Inputs) -> tuple[Simulated, ...]:
     """Return the diagnosis's models and those of the simulations, but none twice."""
-    diagnosed = diagnosed_models(inputs)
-    return *diagnosed, *_simulations(inputs, known=bool(diagnosed))
-
-
-def _simulations(inputs: Inputs, *, known: bool) -> Iterator[Simulated]:
-    extended = inputs.folders[DiagnosisFile] / EXTENDED_MODEL if known else None
+    found = list(diagnosed_models(inputs))
+    extended = inputs.folders[DiagnosisFile] / EXTENDED_MODEL if found else None
     digest = sha256_of(extended) if extended is not None and extended.is_file() else None
     for number, (name, (record, folder)) in enumerate(inputs.simulations.items()):
         if digest is None or record.model.sha256 != digest:
-            yield Simulated(name, _ROLES[number % len(_ROLES)], folder)
+            found.append(Simulated(name, _ROLES[number % len(_ROLES)], folder))
+    return tuple(found)
 
 
 def rms(residual: Floats) -> float:

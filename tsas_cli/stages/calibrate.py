@@ -45,9 +45,36 @@ class CalibrationResult(Result):
         """The calibrated model: every parameter with its interval and unit."""
         return self.calibration.model
 
-    def tables(self) -> list[Table]:
-        """Return the slopes, the parameters and the errors."""
-        return list(_tables(self.record, self.titled("parameters", records.MODEL_FILE)))
+    def tables(self) -> Iterator[Table]:
+        """Yield the slopes, the parameters and the errors."""
+        slopes = [
+            (
+                row.run,
+                row.phase,
+                row.km.text(),
+                number_text(row.theory_N_per_mm, ".4g"),
+                number_text(row.expected_N_per_mm, ".4g"),
+            )
+            for row in self.record.stiffness
+        ]
+        header = ("run", "phase", "measured [95 %]", "theory", "distributed model")
+        yield "stiffness km [N/mm] by linear fit", header, slopes
+        transfer = [(p.run or "", p.name, p.text(), p.unit) for p in self.record.transfer]
+        if transfer:
+            about = "tension passed on in full slip, f_in = ratio f_out + intercept"
+            yield about, ("runs", "name", "value [95 %]", "unit"), transfer
+        parameters = [(p.name, p.run or "all", p.text(), p.unit) for p in self.record.parameters]
+        yield (
+            self.titled("parameters", records.MODEL_FILE),
+            ("name", "run", "value [95 %]", "unit"),
+            parameters,
+        )
+        errors = [
+            (run, name, number_text(c.rmse, ".4g"), number_text(c.noise, ".2g"))
+            for run, channels in self.record.channels.items()
+            for name, c in channels.items()
+        ]
+        yield "calibrated model against measurement", ("run", "channel", "RMSE", "noise"), errors
 
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
@@ -242,31 +269,3 @@ def _theory(rig: Rig, slope: Slope, run: Prepared) -> tuple[float | None, float 
     return kL * math.exp(direction * wrap), slip_stiffness(
         wrap, direction, kL, rig.sheath_length_mm, rig.tendon_stiffness_N
     )
-
-
-def _tables(record: records.CalibrationFile, title: str) -> Iterator[Table]:
-    """Yield the slopes, the parameters under their title, and the errors."""
-    slopes = [
-        (
-            row.run,
-            row.phase,
-            row.km.text(),
-            number_text(row.theory_N_per_mm, ".4g"),
-            number_text(row.expected_N_per_mm, ".4g"),
-        )
-        for row in record.stiffness
-    ]
-    header = ("run", "phase", "measured [95 %]", "theory", "distributed model")
-    yield "stiffness km [N/mm] by linear fit", header, slopes
-    transfer = [(p.run or "", p.name, p.text(), p.unit) for p in record.transfer]
-    if transfer:
-        about = "tension passed on in full slip, f_in = ratio f_out + intercept"
-        yield about, ("runs", "name", "value [95 %]", "unit"), transfer
-    parameters = [(p.name, p.run or "all", p.text(), p.unit) for p in record.parameters]
-    yield title, ("name", "run", "value [95 %]", "unit"), parameters
-    errors = [
-        (run, name, number_text(c.rmse, ".4g"), number_text(c.noise, ".2g"))
-        for run, channels in record.channels.items()
-        for name, c in channels.items()
-    ]
-    yield "calibrated model against measurement", ("run", "channel", "RMSE", "noise"), errors

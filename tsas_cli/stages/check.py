@@ -44,9 +44,16 @@ class CheckResult(Result):
         """Checks that could not tell, with the reason; this is not the same as passed."""
         return self.record.not_checked
 
-    def tables(self) -> list[Table]:
-        """Return what was found, what to do about it, and what could not be checked."""
-        return list(_tables(self.record))
+    def tables(self) -> Iterator[Table]:
+        """Yield what was found, what to do about it, and what could not be checked."""
+        found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in self.findings]
+        header = ("severity", "code", "run", "finding") if found else ()
+        yield f"the checks found {len(found) or 'nothing'}", header, found
+        remedies = dict.fromkeys((f.code, f.remedy) for f in self.findings)
+        if remedies:
+            yield "what to do", ("code", "remedy"), list(remedies)
+        if reasons := self.record.reasons():
+            yield "not checked", ("code", "reason", "runs"), reasons
 
 
 def check(
@@ -95,21 +102,6 @@ def check(
     return CheckResult(record.content(), folder, record)
 
 
-def _tables(report: CheckFile) -> Iterator[Table]:
-    found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
-    header = ("severity", "code", "run", "finding") if found else ()
-    yield f"the checks found {len(found) or 'nothing'}", header, found
-    remedies = dict.fromkeys((f.code, f.remedy) for f in report.findings)
-    if remedies:
-        yield "what to do", ("code", "remedy"), list(remedies)
-    reasons: dict[tuple[str, str], list[str]] = {}
-    for silent in report.not_checked:
-        reasons.setdefault((silent.code, silent.reason), []).append(silent.run or "")
-    if reasons:
-        rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
-        yield "not checked", ("code", "reason", "runs"), rows
-
-
 def accepted_errors(
     dataset: Dataset, despite: str | Iterable[str], step: Steps, further: Sequence[str] = ()
 ) -> tuple[Finding, ...]:
@@ -123,11 +115,15 @@ def accepted_errors(
         There is an error of another code, or `despite` holds what is no code of a check.
     """
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
-    found = check_runs(dataset, step).findings
+    found = [one for one in check_runs(dataset, step).findings if one.code in CODES]
+    runs: dict[tuple[str, str | None], set[str | None]] = {}
+    for one in found:
+        runs.setdefault((one.code, one.column), set()).add(one.run)
     errors = [
         one
         for one in found
-        if one.code in CODES and (one.severity == "error" or _in_most_runs(one, found, dataset))
+        if one.severity == "error"
+        or (one.code in _IN_MOST_RUNS and 2 * len(runs[one.code, one.column]) > len(dataset.runs))
     ]
     refused = [one for one in errors if one.code not in accepted]
     if refused:
@@ -141,12 +137,6 @@ def accepted_errors(
             remedy=f"{first.remedy}, or accept what `tsas check` finds with {options}",
         )
     return tuple(errors)
-
-
-def _in_most_runs(one: Finding, found: Sequence[Finding], dataset: Dataset) -> bool:
-    """Return whether a warning is of a kind that most runs have, on the same channel."""
-    same = {other.run for other in found if (other.code, other.column) == (one.code, one.column)}
-    return one.code in _IN_MOST_RUNS and 2 * len(same) > len(dataset.runs)
 
 
 def unrecorded(columns: Sequence[Container[str]]) -> Iterator[str]:

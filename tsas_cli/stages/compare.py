@@ -87,9 +87,7 @@ def compare(
     path = path_of(out)
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
-        record: ComparisonFile = (
-            tracked.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)
-        )
+        record: ComparisonFile = both.record if isinstance(both, Tracks) else stage.record_of(both)
         if folder is not None:
             record.write(folder)
             (folder / "report.html").write_text(_page(both, step), encoding="utf-8")
@@ -97,8 +95,7 @@ def compare(
 
 
 def _page(both: Comparison | Tracks, step: Steps) -> str:
-    from tsas_cli.reporting.comparing.page import comparison_page
-    from tsas_cli.reporting.comparing.tracked import tracked_page
+    from tsas_cli.reporting.comparing import comparison_page, tracked_page
 
     return tracked_page(both, step) if isinstance(both, Tracks) else comparison_page(both, step)
 

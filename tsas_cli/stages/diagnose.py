@@ -1,9 +1,9 @@
 """The diagnose stage: `diagnosis.json`, both models, and what each answers to the runs."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tsas_cli.diagnosis import found
 from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
@@ -18,7 +18,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.recordings.columns import nominal_name
+from tsas_cli.recordings.columns import BY_NAME, nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording
@@ -80,8 +80,6 @@ class DiagnosisResult(Result):
         InputError
             Nothing was fitted, or there is no such run or channel.
         """
-        from tsas_cli.stages.plotted import plot_loop
-
         judged = self.diagnosis.judged
         if judged is None:
             raise InputError("nothing was fitted, so that there is nothing to draw")
@@ -92,11 +90,44 @@ class DiagnosisResult(Result):
         models = {"nominal model": self.diagnosis.nominal}
         if self.record.extended:
             models["extended model"] = self.model
-        return plot_loop(runs[chosen], models, channel)
+        return _plot_loop(runs[chosen], models, channel)
 
-    def tables(self) -> list[Table]:
-        """Return what is named, the errors before and after, and the ranking."""
-        return list(_tables(self.record, self.titled("causes", records.EXTENDED_MODEL)))
+    def tables(self) -> Iterator[Table]:
+        """Yield what is named or not proven, the errors before and after, and the ranking."""
+        columns = ("effect", "parameter", "value [95 %]", "unit")
+        for heading, last, causes in (
+            (self.titled("causes", records.EXTENDED_MODEL), "rivals", self.record.named),
+            ("what gains and is not proven", "why", self.record.stand_ins),
+        ):
+            rows = [
+                (c.effect, name, v.text(), v.unit, "; ".join(c.failed) or ", ".join(c.rivals))
+                for c in causes
+                for name, v in c.parameters.items()
+            ]
+            if causes:
+                yield heading, (*columns, last), rows
+        errors = [
+            (
+                name,
+                *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)),
+                c.unit,
+            )
+            for name, c in self.record.channels.items()
+        ]
+        header = ("channel", "before", "after", "noise", "attainable", "unit")
+        if errors:
+            yield "error on held-out data", header, errors
+        ranking = [
+            (
+                " + ".join(row.effects),
+                number_text(row.gain_percent, ".1f"),
+                number_text(row.test_statistic, ".1f"),
+                "" if row.converged else "not converged",
+            )
+            for row in self.record.candidates[:SHOWN]
+        ]
+        if ranking:
+            yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
 
     def sentences(self) -> list[str]:
         """Return the verdict, what to measure next, and what the recordings do not say."""
@@ -230,40 +261,34 @@ def _predictions(run: Prepared, extended: Model, nominal: Model) -> Recording:
     return Recording(run.run, columns)
 
 
-def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
-    """Yield what is named, what is not proven, the errors before and after, and the ranking."""
-    columns = ("effect", "parameter", "value [95 %]", "unit")
-    for heading, last, causes in (
-        (title, "rivals", record.named),
-        ("what gains and is not proven", "why", record.stand_ins),
-    ):
-        if causes:
-            yield heading, (*columns, last), list(_parameter_rows(causes))
-    errors = [
-        (name, *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)))
-        for name, c in record.channels.items()
-    ]
-    units = [c.unit for c in record.channels.values()]
-    header = ("channel", "before", "after", "noise", "attainable", "unit")
-    rows = [(*row, unit) for row, unit in zip(errors, units, strict=True)]
-    if rows:
-        yield "error on held-out data", header, rows
-    ranking = [
-        (
-            " + ".join(row.effects),
-            number_text(row.gain_percent, ".1f"),
-            number_text(row.test_statistic, ".1f"),
-            "" if row.converged else "not converged",
-        )
-        for row in record.candidates[:SHOWN]
-    ]
-    if ranking:
-        yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
+def _plot_loop(run: Prepared, models: Mapping[str, Model], channel: str) -> "tuple[Axes, Axes]":
+    """Draw a channel over x_in, and the residual of each model below; return the two axes.
 
+    InputError: the run has no such channel.
+    """
+    from matplotlib import pyplot as plt
 
-def _parameter_rows(causes: Iterable[records.NamedCause]) -> Iterator[tuple[str, ...]]:
-    """Yield each parameter of each cause, with its rivals, or what it does not prove."""
-    for cause in causes:
-        last = "; ".join(cause.failed) or ", ".join(cause.rivals)
-        for name, value in cause.parameters.items():
-            yield cause.effect, name, value.text(), value.unit, last
+    from tsas_cli.reporting.colours import schemes
+
+    measured = run.measured.get(channel)
+    if measured is None:
+        remedy = nearest(channel, list(run.measured))
+        raise InputError(f"run {run.run.id} has no measured {channel}", remedy=remedy)
+    light, _ = schemes()
+    figure, (loop, below) = plt.subplots(2, sharex=True, height_ratios=(3, 1), layout="constrained")
+    style: dict[str, Any] = {"linewidth": 1.0}
+    for number, (name, model) in enumerate(models.items()):
+        found = compare(run, model)
+        x_in = found.response.x_in_mm
+        if number == 0:
+            loop.plot(x_in, measured, label="measured", color=light["measured"], **style)
+        colour = light[("before", "after")[number]]
+        loop.plot(x_in, found.channels[channel], label=name, color=colour, **style)
+        below.plot(x_in, measured - found.channels[channel], color=colour, **style)
+    unit = BY_NAME[channel].unit
+    short = channel.rpartition("_")[0]
+    loop.set(title=f"Run {run.run.id}", ylabel=f"{short} [{unit}]")
+    below.set(xlabel="x_in [mm]", ylabel=f"residual [{unit}]")
+    loop.legend()
+    figure.align_ylabels()
+    return loop, below

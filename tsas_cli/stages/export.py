@@ -5,7 +5,8 @@ import io
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -19,9 +20,8 @@ from tsas_cli.physics.response import mechanics_of, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.records.base import number_text
-from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import Named, file_of, one_of, path_of
-from tsas_cli.stages.mujoco import mjcf
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import json_text, new_file
@@ -31,6 +31,13 @@ FORMATS: tuple[Format, ...] = get_args(Format)
 MARKS = {"json": b'"stage": "export"', "csv": b"name,run,value", "mujoco": b"tsas export"}
 STROKE_MM = 10.0  # where the model's file does not say what it was fitted to
 STROKES, SAMPLES = 4, 400  # of the motion by which models are compared; samples of a stroke
+STEP_S = 1e-4
+LEAST_MASS_KG = 0.01  # of a point, which has to have one
+LOAD_DAMPING_N_S_PER_M = 5.0  # where the model has none: else the load spring rings
+_PER_M = 1e3  # of something per mm
+_NO_PUSH_M = -1e3  # a length so short that the tendon never pushes
+# Default friction constraints creep: these hold within a step or two.
+_HOLDS = f'solreffriction="{2.0 * STEP_S:g} 1" solimpfriction="0.999 0.9999 0.001"'
 _ALWAYS_LOST = (
     "friction that grows with the tension (it is constant, that at the mean tension)",
     "friction along the sheath (it acts on the tendon's middle)",
@@ -38,14 +45,7 @@ _ALWAYS_LOST = (
 )
 
 
-@dataclass(frozen=True)
-class Difference:
-    """RMS and largest difference of a channel from the model's prediction, its range, its unit."""
-
-    rms: float
-    largest: float
-    span: float
-    unit: str
+Differences = dict[str, dict[str, Any]]  # by channel: rms, largest, span and unit
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -114,7 +114,7 @@ def export(
     found = model_of(given)
     fitted = read_fitted_to(given) if isinstance(given, Path) else None
     inputs = [given] if isinstance(given, Path) else []
-    errors: dict[str, Difference] = {}
+    errors: Differences = {}
     lost: tuple[str, ...] = ()
     if kind == "mujoco":
         conditions = {
@@ -124,44 +124,35 @@ def export(
         }
         text, errors, lost = _mujoco(found, fitted or FittedTo(), conditions, path.stem)
     else:
-        text = _json(found) if kind == "json" else _csv(found)
+        head = {"stage": "export", "version": __version__}
+        content = head | {"parameters": [asdict(e) for e in found.estimates]}
+        text = json_text(content) if kind == "json" else _csv(found)
     with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    summary = {
-        "format": 1,
-        "stage": "export",
-        "version": __version__,
+    summary = heading("export") | {
         "format_of_model": kind,
-        "errors": {name: asdict(one) for name, one in errors.items()},
+        "errors": errors,
         "lost": lost,
     }
     return ExportResult(summary, path, lost)
 
 
-def _json(model: Model) -> str:
-    head = {"stage": "export", "version": __version__}
-    return json_text(head | {"parameters": [asdict(e) for e in model.estimates]})
-
-
 def _csv(model: Model) -> str:
-    rows = [asdict(e) | {"run": _no_formula(e.run)} for e in model.estimates]
-    first = ("name", "run", "value", "unit")
-    header = [*first, *(key for key in rows[0] if key not in first)] if rows else first
+    rows = [asdict(e) for e in model.estimates]
+    for row in rows:
+        if row["run"] and row["run"][0] in "=+-@":  # which a spreadsheet would compute
+            row["run"] = f"'{row['run']}"
+    header = dict.fromkeys(("name", "run", "value", "unit", *(rows[0] if rows else ())))
     text = io.StringIO()
-    writer = csv.DictWriter(text, header, lineterminator="\n")
+    writer = csv.DictWriter(text, list(header), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue()
 
 
-def _no_formula(run: str | None) -> str | None:
-    """Return a run's id so that no spreadsheet computes it."""
-    return f"'{run}" if run and run[0] in "=+-@" else run
-
-
 def _mujoco(
     model: Model, fitted: FittedTo, conditions: dict[str, float | None], name: str
-) -> tuple[str, dict[str, Difference], tuple[str, ...]]:
+) -> tuple[str, Differences, tuple[str, ...]]:
     """Return the model file, its errors by channel, and what it does not hold."""
     known = {key: _condition(key, value, fitted) for key, value in conditions.items()}
     if known["preload_N"] is None:
@@ -178,13 +169,16 @@ def _mujoco(
         f"Sheath {rig.sheath_length_mm:g} mm, bend {rig.total_bend_rad:g} rad.",
         f"Strokes of {stroke:g} mm that pull from a preload of {rig.preload_N:g} N.",
         *(
-            f"{channel}: differs from the model by {number_text(one.rms)} {one.unit} (RMS), "
-            f"{number_text(one.largest)} at most, in a range of {number_text(one.span)}."
+            f"{channel}: differs from the model by {number_text(one['rms'])} {one['unit']} (RMS), "
+            f"{number_text(one['largest'])} at most, in a range of {number_text(one['span'])}."
             for channel, one in errors.items()
         ),
         *(f"Not held: {sentence}." for sentence in lost),
     ]
-    return mjcf(name, lumped, said, gear=_gear(fitted)), errors, lost
+    ratio, radius = (fitted.ranges.get(n) for n in ("gear_ratio", "turntable_radius_mm"))
+    # Tension per torque of the motor [1/m], 1 where the gear is not known.
+    gear = 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
+    return _mjcf(name, lumped, said, gear=gear), errors, lost
 
 
 def _condition(name: str, given: float | None, fitted: FittedTo) -> float | None:
@@ -203,14 +197,11 @@ def _condition(name: str, given: float | None, fitted: FittedTo) -> float | None
     return 0.5 * (low + high)
 
 
-def _gear(fitted: FittedTo) -> float:
-    """Return the tension per torque of the motor [1/m], 1 where the gear is not known."""
-    ratio, radius = (fitted.ranges.get(n) for n in ("gear_ratio", "turntable_radius_mm"))
-    return 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
+def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> Differences:
+    """Return how far the lumped tendon is from the rig after the first stroke, by channel.
 
-
-def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> dict[str, Difference]:
-    """Return the differences between the lumped tendon and the rig, after the first stroke."""
+    `rms` and `largest` are of the difference, `span` is the channel's range in the rig.
+    """
     phase = np.pi * np.arange(STROKES * SAMPLES + 1) / SAMPLES
     x_in = 0.5 * stroke_mm * (1.0 - np.cos(phase))
     drive = DriveInput(x_in)
@@ -224,12 +215,12 @@ def _errors(rig: Rig, lumped: Lumped, stroke_mm: float) -> dict[str, Difference]
         ("x_out_mm", "mm", true.x_out_mm, x_out),
     ):
         difference = (other - ours)[SAMPLES:]
-        out[name] = Difference(
-            float(np.sqrt(np.mean(difference**2))),
-            float(np.abs(difference).max()),
-            float(np.ptp(ours)),
-            unit,
-        )
+        out[name] = {
+            "rms": float(np.sqrt(np.mean(difference**2))),
+            "largest": float(np.abs(difference).max()),
+            "span": float(np.ptp(ours)),
+            "unit": unit,
+        }
     return out
 
 
@@ -243,3 +234,67 @@ def _effects_left_out(effects: Effects) -> Sequence[str]:
         and e.acts_on != "sensor"
         and getattr(effects, e.name) != getattr(neutral, e.name)
     ]
+
+
+def _mjcf(name: str, lumped: Lumped, comments: Sequence[str], *, gear: float) -> str:
+    """Return a model file of MuJoCo, in N, m, kg and s.
+
+    `gear` is the tension at the drive [N] per unit of control. Joints drive, sheath and load are
+    x_in, the tendon in the middle of the sheath, and x_out, 0 at the preload; each tendon's force
+    is the tension, that of `proximal` f_in, of `distal` f_out.
+    """
+    drive = _joint(
+        "drive",
+        lumped.drive_friction_N,
+        lumped.drive_damping_N_s_per_mm * _PER_M,
+        f' stiffness="{lumped.beside_N_per_mm * _PER_M:.9g}"' if lumped.beside_N_per_mm else "",
+    )
+    sheath = _joint("sheath", lumped.sheath_friction_N, lumped.sheath_damping_N_s_per_mm * _PER_M)
+    load = _joint(
+        "load",
+        lumped.load_friction_N,
+        lumped.load_damping_N_s_per_mm * _PER_M or LOAD_DAMPING_N_S_PER_M,
+        f' stiffness="{lumped.load_N_per_mm * _PER_M:.9g}"'
+        f' springref="{-lumped.preload_N / lumped.load_N_per_mm / _PER_M:.9g}"',
+    )
+    said = "\n".join(f"  {line.replace('--', '- -')}" for line in comments)
+    return f"""<mujoco model={quoteattr(name)}>
+  <!--
+{said}
+  -->
+  <option timestep="{STEP_S:g}" gravity="0 0 0" integrator="implicitfast"/>
+  <worldbody>
+    {_body("drive", 0.0, drive, lumped.drive_mass_kg)}
+    {_body("sheath", 0.1, sheath, 0.0)}
+    {_body("load", 0.2, load, lumped.load_mass_kg)}
+  </worldbody>
+  <tendon>
+    {_tendon("proximal", "drive", "sheath", lumped.proximal_N_per_mm, lumped.preload_N)}
+    {_tendon("distal", "sheath", "load", lumped.distal_N_per_mm, lumped.preload_N)}
+  </tendon>
+  <actuator>
+    <motor name="drive" joint="drive" gear="{gear:.9g}"/>
+  </actuator>
+</mujoco>
+"""
+
+
+def _joint(name: str, friction_N: float, damping_N_s_per_m: float, more: str = "") -> str:
+    friction = f' frictionloss="{friction_N:.9g}" {_HOLDS}' if friction_N else ""
+    damping = f' damping="{damping_N_s_per_m:.9g}"' if damping_N_s_per_m else ""
+    return f'<joint name="{name}" type="slide" axis="1 0 0"{friction}{damping}{more}/>'
+
+
+def _body(name: str, x_m: float, joint: str, mass_kg: float) -> str:
+    mass = max(mass_kg, LEAST_MASS_KG)
+    geom = f'<geom type="sphere" size="0.005" mass="{mass:.9g}" contype="0" conaffinity="0"/>'
+    return f'<body name="{name}" pos="{x_m:g} 0 0">{joint}{geom}</body>'
+
+
+def _tendon(name: str, near: str, far: str, stiffness_N_per_mm: float, preload_N: float) -> str:
+    rest_m = -preload_N / stiffness_N_per_mm / _PER_M
+    return (
+        f'<fixed name="{name}" stiffness="{stiffness_N_per_mm * _PER_M:.9g}" '
+        f'springlength="{_NO_PUSH_M:g} {rest_m:.9g}">'
+        f'<joint joint="{near}" coef="1"/><joint joint="{far}" coef="-1"/></fixed>'
+    )

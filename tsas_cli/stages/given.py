@@ -1,5 +1,6 @@
 """What a caller may hand over: a dataset or its folder, a path or its text, a word of a few."""
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -8,7 +9,6 @@ from typing import Any, TypeVar
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
-from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 
 NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS and Windows allow less
@@ -76,29 +76,16 @@ def one_of(words: Sequence[Word], given: str, name: str) -> Word:
     )
 
 
-def at_least(least: int, given: int, name: str) -> int:
-    """Return a whole number that is no less than the least one.
+def at_least(least: int, given: int, name: str, *, most: float = math.inf) -> int:
+    """Return a whole number that is no less than the least one, and no more than the most.
 
-    InputError: it is less.
+    InputError: it is.
     """
     if of_kind((int,), given) < least:
         raise InputError(f"{name} is {given}", expected=f"{least} or more")
+    if given > most:
+        raise InputError(f"{name} is {given}", expected=f"at most {most}")
     return given
-
-
-def number_of_seeds(given: int) -> int:
-    """Return how many seeds are asked for.
-
-    InputError: there is none, or there are more than anyone waits for.
-    """
-    if at_least(1, given, "seeds") > limits.SEEDS:
-        raise InputError(f"seeds is {given}", expected=f"at most {limits.SEEDS}")
-    return given
-
-
-def text_of(given: str) -> str:
-    """Return text as it is; InputError where it is of another kind."""
-    return str(of_kind((str,), given))
 
 
 def listed(words: str | Iterable[str]) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tsas_cli.drive import json as drive_json
 from tsas_cli.drive.diagnosis import diagnose_drive
-from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of
+from tsas_cli.drive.estimates import drive_sheet, estimates_of
 from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
 from tsas_cli.drive.json import tables
@@ -19,7 +19,6 @@ from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
@@ -35,6 +34,7 @@ SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
 
 STAGE = "identify-harmonic-drive"
+_OF_SHEET = ("turntable_radius_mm", "gear_ratio", "inertia_N_mm_s2")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -134,7 +134,10 @@ def identify_harmonic_drive(
         fitted = estimates_of(trial, numbered, sheet, by_run=folds.by_run)
         nominal, found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, nominal)
-        known = fitted | _given(sheet)
+        known = dict(fitted)
+        for name in _OF_SHEET:
+            if (stated := getattr(sheet, name)) is not None:
+                known[name] = Estimate(name, stated, UNITS[name], "data sheet")
         record = DriveFile(
             **counted.dataset.header(path),
             hold=hold,
@@ -152,7 +155,13 @@ def identify_harmonic_drive(
         notes = (*counted.notes, *cannot_tell(record, sheet, final, known.values()))
         record = record.model_copy(update={"cannot_tell": notes})
         step()
-        simulated = _recordings(counted.dataset.runs, search, by_fit, by_nominal)
+        each = zip(counted.dataset.runs, search.bench.runs, by_fit, by_nominal, strict=True)
+        simulated = {
+            entry.id: Recording(
+                entry, {"time_s": run.time_s, "x_in_mm": fit, "x_in_nominal_mm": of_nominal}
+            )
+            for entry, run, fit, of_nominal in each
+        }
         if folder is not None:
             record.write(folder)
             structure, of = {"name": name_of(final), "hold": hold}, record.dataset.content()
@@ -161,32 +170,7 @@ def identify_harmonic_drive(
     return DriveResult(record.content(), path, record, known, simulated)
 
 
-def _given(sheet: DataSheet) -> dict[str, Estimate]:
-    stated = {
-        "turntable_radius_mm": sheet.turntable_radius_mm,
-        "gear_ratio": sheet.gear_ratio,
-        "inertia_N_mm_s2": sheet.inertia_N_mm_s2,
-    }
-    return {
-        name: Estimate(name, value, UNITS[name], "data sheet")
-        for name, value in stated.items()
-        if value is not None
-    }
-
-
 def _simulated(search: DriveSearch, terms: Terms) -> list[Floats]:
     """Return x_in of every run by a set of terms."""
     values = search.trial(terms).values
     return [search.bench.simulated(r, values) for r in range(len(search.bench.runs))]
-
-
-def _recordings(
-    entries: list[Run], search: DriveSearch, fitted: list[Floats], nominal: list[Floats]
-) -> dict[str, Recording]:
-    """Return the simulated runs."""
-    simulated = {}
-    each = zip(entries, search.bench.runs, fitted, nominal, strict=True)
-    for entry, run, by_fit, by_nominal in each:
-        columns = {"time_s": run.time_s, "x_in_mm": by_fit, "x_in_nominal_mm": by_nominal}
-        simulated[entry.id] = Recording(entry, columns)
-    return simulated

@@ -8,9 +8,8 @@ from tsas_cli.recordings.guess.proposal import MapProposal, propose
 from tsas_cli.recordings.guess.text import MAP_MARK, content, map_text, tables
 from tsas_cli.recordings.ingest import Ingested, find_files, ingest_files
 from tsas_cli.recordings.ingest_map import read_map
-from tsas_cli.records.result import Result, Table
+from tsas_cli.records.result import Result, Table, heading
 from tsas_cli.stages.given import Named, file_of, path_of, paths_of
-from tsas_cli.support import __version__
 from tsas_cli.support.files import new_file, new_folder
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -96,10 +95,7 @@ def ingest(
     files = find_files(paths_of(sources), mapping.read.files)
     with new_folder(folder, stage="ingest", inputs=[*files, map_path], force=force) as written:
         runs = ingest_files(files, mapping, map_path, written, step=step)
-    summary = {
-        "format": 1,
-        "stage": "ingest",
-        "version": __version__,
+    summary = heading("ingest") | {
         "dataset": {"name": mapping.dataset.name, "folder": str(folder)},
         "runs": [vars(run) | {"source": str(run.source)} for run in runs],
     }

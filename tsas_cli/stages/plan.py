@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility
+from tsas_cli.diagnosis.amplitudes import Amplitude
 from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import TINY
@@ -29,9 +29,24 @@ class PlanResult(Result):
     record: RunPlan  # what `plan.json` holds
     plan: ExperimentPlan
 
-    def tables(self) -> list[Table]:
-        """Return each effect, the pairs, the proposals."""
-        return list(_tables(self.record))
+    def tables(self) -> Iterator[Table]:
+        """Yield each effect, the pairs, the proposals."""
+        rows = [
+            (
+                row.effect,
+                row.parameter,
+                row.unit,
+                _size(row.found_from, "not shown"),
+                _size(row.named_from, "" if row.found_from is None else "never"),
+                ", ".join(row.hidden_in) or row.nearest or "",
+            )
+            for row in self.record.effects
+        ]
+        header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
+        yield "smallest size of each effect, less its neutral value", header, rows
+        if self.record.groups:
+            yield "indistinguishable", ("effect", "and"), self.record.groups
+        yield from map(_proposal_table, self.record.proposals)
 
     def sentences(self) -> list[str]:
         """Return what the runs do not show, and why."""
@@ -98,23 +113,22 @@ def record_of(plan: ExperimentPlan, **of: object) -> RunPlan:
     """Return what `plan.json` says of a plan, and what it is `of`: a dataset or a rig file."""
     return RunPlan(
         **of,
-        effects=[_size_of(seen) for seen in plan.seen],
+        effects=[
+            EffectSize(
+                effect=seen.cause.effect.name,
+                parameter=seen.cause.parameter.name,
+                unit=seen.cause.parameter.unit,
+                shape={name.split(".")[1]: value for name, value in seen.cause.shape.items()},
+                found_from=_or_any(seen.cause, seen.found),
+                named_from=_or_any(seen.cause, seen.named),
+                nearest=seen.nearest,
+                hidden_in=seen.hidden_in,
+            )
+            for seen in plan.seen
+        ],
         groups=plan.groups,
         proposals=[_proposal(proposal) for proposal in plan.proposals],
         cannot_tell=plan.cannot_tell,
-    )
-
-
-def _size_of(seen: Visibility) -> EffectSize:
-    return EffectSize(
-        effect=seen.cause.effect.name,
-        parameter=seen.cause.parameter.name,
-        unit=seen.cause.parameter.unit,
-        shape={name.split(".")[1]: value for name, value in seen.cause.shape.items()},
-        found_from=_or_any(seen.cause, seen.found),
-        named_from=_or_any(seen.cause, seen.named),
-        nearest=seen.nearest,
-        hidden_in=seen.hidden_in,
     )
 
 
@@ -139,26 +153,6 @@ def _proposal(proposal: FurtherRun) -> RunProposal:
             for better in proposal.better
         ],
     )
-
-
-def _tables(record: RunPlan) -> Iterator[Table]:
-    """Yield each effect, the pairs, the proposals."""
-    rows = [
-        (
-            row.effect,
-            row.parameter,
-            row.unit,
-            _size(row.found_from, "not shown"),
-            _size(row.named_from, "" if row.found_from is None else "never"),
-            ", ".join(row.hidden_in) or row.nearest or "",
-        )
-        for row in record.effects
-    ]
-    header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
-    yield "smallest size of each effect, less its neutral value", header, rows
-    if record.groups:
-        yield "indistinguishable", ("effect", "and"), record.groups
-    yield from map(_proposal_table, record.proposals)
 
 
 def _proposal_table(proposal: RunProposal) -> Table:

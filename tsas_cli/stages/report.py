@@ -10,7 +10,7 @@ from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.storage import Location
 from tsas_cli.records.result import Result, Table
 from tsas_cli.records.simulation import SimulationFile
-from tsas_cli.reporting.inputs import Inputs, read_inputs
+from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.reporting.pdf import PDF_MARK, browser, print_page
 from tsas_cli.stages.given import Named, file_of, places_of
@@ -79,30 +79,24 @@ def report(
         )
         inputs = read_inputs(places, several=True)
         step.ahead(len(SECTIONS))
-        text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
+        # The files that say what was read, by which all else is found.
+        files: list[tuple[Location, str]] = [(folder, one.FILE) for one, folder in inputs.given]
+        if inputs.dataset is not None:
+            files.insert(0, (inputs.dataset.folder, MANIFEST_FILE))
+        text = with_seal(page(inputs, step), files, pages[0])
         html.write_text(text, encoding="utf-8")
         for path in printed:
             print_page(text, path)
     read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
-    read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
-    if inputs.more_simulations:
+    read |= {stage.FILE: str(folder) for stage, folder in inputs.given}
+    if len(every := inputs.simulations) > 1:
         del read[SimulationFile.FILE]
-        every = inputs.simulations.items()
-        read |= {f"{SimulationFile.FILE}, {name}": str(path) for name, (_, path) in every}
+        read |= {f"{SimulationFile.FILE}, {name}": str(path) for name, (_, path) in every.items()}
     sizes = {str(path): path.stat().st_size for path in pages}
     summary = {"stage": "report", "page": str(out), "bytes": sizes[str(pages[0])], "read": read}
     if pdf:
         summary["pdf"] = str(pages[1])
     return ReportResult(summary, pages[0], sizes)
-
-
-def _files_of(inputs: Inputs) -> list[tuple[Location, str]]:
-    """Return the files that say what was read, by which all else is found."""
-    stages: list[tuple[Location, str]] = [
-        (folder, kind.FILE) for kind, folder in inputs.folders.items()
-    ]
-    stages += [(folder, SimulationFile.FILE) for _, folder in inputs.more_simulations]
-    return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST_FILE), *stages]
 
 
 def _beside(out: Path) -> Path:

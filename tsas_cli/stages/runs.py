@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import index_of
 from tsas_cli.collection.query import QueryResult, connected, run_query
-from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import at_least, listed, paths_of, text_of
-from tsas_cli.support import __version__
+from tsas_cli.records.result import Result, Table, heading, notes
+from tsas_cli.stages.given import at_least, listed, of_kind, paths_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 if TYPE_CHECKING:
@@ -115,17 +114,14 @@ def runs(
     InputError
         The query is no condition on these columns, a folder is none, or duckdb is not installed.
     """
-    named, condition = paths_of(folders), text_of(query)
+    named, condition = paths_of(folders), of_kind((str,), query)
     if limit is not None:
         at_least(0, limit, "limit")
     shown, order = tuple(listed(columns)), tuple(listed(sort))
     with connected() as connection:
         index = index_of([Path(folder) for folder in named], connection, step)
         found = run_query(connection, index, condition, columns=shown, sort=order, limit=limit)
-    summary = {
-        "format": 1,
-        "stage": "runs",
-        "version": __version__,
+    summary = heading("runs") | {
         "query": query,
         "folders": [str(folder) for folder in named],
         "limit": limit,

@@ -4,16 +4,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from tsas_cli.identification.base_fit import with_own_values
-from tsas_cli.identification.comparison import Compared, compare
+from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.long_simulation import simulate_long
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import model_of, source_of, write_model
 from tsas_cli.identification.phases import segment, segment_records
-from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
@@ -24,7 +22,6 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, of_kind, one_of, path_of
-from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -155,7 +152,9 @@ def simulate(
                 entry.id, summary.record(run), segment_records(run, segment(run))
             )
             if long is None:
-                predicted = Recording(entry, _columns(run, compared))
+                x_in = compared.response.x_in_mm
+                columns = {"time_s": run.time_s, "x_in_mm": x_in, **compared.channels}
+                predicted = Recording(entry, {n: v.astype(float) for n, v in columns.items()})
                 if folder is None:
                     kept[entry.id] = predicted
                 else:  # many runs need no more memory than one
@@ -192,9 +191,3 @@ def _notes(runs: Mapping[str, records.SimulatedRun]) -> tuple[str, ...]:
         note if len(ids) == len(runs) else f"run {', '.join(ids)}: {note}"
         for note, ids in of.items()
     )
-
-
-def _columns(run: Prepared, compared: Compared) -> dict[str, Floats]:
-    """Return time, the conditioned or simulated x_in, and the answers."""
-    columns = {"time_s": run.time_s, "x_in_mm": compared.response.x_in_mm, **compared.channels}
-    return {name: values.astype(np.float64) for name, values in columns.items()}

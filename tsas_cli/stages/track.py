@@ -23,9 +23,10 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, one_of, path_of
+from tsas_cli.stages.given import Named, at_least, listed, one_of, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
+from tsas_cli.support.limits import SEEDS
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import Condition, disturbed, printed_rmse, proximal_spring
 from tsas_cli.tracking.recorded import (
@@ -79,8 +80,21 @@ class TrackingResult(Result):
         return recording_of(self.runs, run)
 
     def tables(self) -> list[Table]:
-        """Return the scores, one row for each controller and condition."""
-        return [_table(self.record.results, self.titled("tracking"))]
+        """Return the scores of each controller and condition, beside those of the paper's Table 5.
+
+        These are left out where they do not apply.
+        """
+        results = self.record.results
+        header = ["controller", "condition", *(name for name, _ in COLUMNS)]
+        rows = [
+            [row.controller, row.condition, *(row.scores[key].text() for _, key in COLUMNS)]
+            for row in results
+        ]
+        if any(row.printed_rmse_N is not None for row in results):
+            header.insert(3, "Table 5 [N]")
+            for cells, row in zip(rows, results, strict=True):
+                cells.insert(3, number_text(row.printed_rmse_N, "g"))
+        return [(self.titled("tracking"), header, rows)]
 
     def sentences(self) -> list[str]:
         """Return what of the runs is not to be trusted or not to be reached, and why."""
@@ -162,13 +176,16 @@ def track(
         asked = [Condition("undisturbed"), *(asked or [proximal_spring()])]
     changes = asked or [Condition("undisturbed")]
     names = CONTROLLERS if compare else _known_controllers(listed(controllers))
-    many = (COMPARED_SEEDS if compare else 1) if seeds is None else number_of_seeds(seeds)
+    many = COMPARED_SEEDS if compare else 1
+    if seeds is not None:
+        many = at_least(1, seeds, "seeds", most=SEEDS)
     numbers = range(at_least(0, first_seed, "first_seed"), first_seed + many)
     given, path = path_of(settings, Mapping), path_of(out)
     models = path_of(model, Model), path_of(plant, Model), path_of(drive, IdentifiedDrive)
     one_of(DYNAMICS, dynamics, "dynamics")
     read = printed_gains(read_settings(given)) if as_printed else read_settings(given)
     known, real = what_is_known(read, *models)
+    followed = Path(str(reference))  # a shape is the name of no file
     wanted = reference_of(str(reference), read.reference, read.step_s)
     drive_path = plan(wanted, known, read)
     made = partial(
@@ -178,7 +195,9 @@ def track(
         drive=source_of(models[2], path, DRIVE_FILE, without="kinematics"),
         settings=read.model_dump(mode="json", by_alias=True)
         | ({} if given is None else source_of(given, path)),
-        reference=_reference_of(Path(str(reference)), path),
+        reference=read_from(followed, path or Path())
+        if followed.is_file()
+        else {"shape": str(reference)},
         dynamics=dynamics,
         gains="as printed" if as_printed else "default",
         seeds=(numbers[0], numbers[-1]),
@@ -186,7 +205,7 @@ def track(
     )
     follow = partial(run_loop, wanted, drive_path, known, dynamics=dynamics, relay=as_printed)
     results, tables = list[records.TrackedResult](), dict[str, pa.Table]()
-    inputs = (*models, given, Path(str(reference)))  # a shape is the name of no file
+    inputs = (*models, given, followed)
     with folder_if(path, stage="track", inputs=inputs, force=force) as folder:
         step.ahead(len(names) * len(changes) * many)
         for condition in changes:
@@ -224,10 +243,6 @@ def _known_controllers(named: Sequence[str]) -> Sequence[str]:
         if name not in CONTROLLERS:
             raise InputError(f"unknown controller {name}", remedy=nearest(name, CONTROLLERS))
     return list(dict.fromkeys(named))
-
-
-def _reference_of(reference: Path, out: Path | None) -> dict[str, str]:
-    return read_from(reference, out or Path()) if reference.is_file() else {"shape": str(reference)}
 
 
 def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:
@@ -277,18 +292,3 @@ def _result(
         relay=any(run.is_relay for run in runs),
         unsettled_steps=sum(run.unsettled for run in runs),
     )
-
-
-def _table(results: Sequence[records.TrackedResult], title: str) -> Table:
-    """Return the scores; what Table 5 of the paper prints stands beside them where it applies."""
-    header = ["controller", "condition", *(name for name, _ in COLUMNS)]
-    rows = [
-        [row.controller, row.condition, *(row.scores[key].text() for _, key in COLUMNS)]
-        for row in results
-    ]
-    printed = [row.printed_rmse_N for row in results]
-    if any(value is not None for value in printed):
-        header.insert(3, "Table 5 [N]")
-        for row, value in zip(rows, printed, strict=True):
-            row.insert(3, number_text(value, "g"))
-    return title, header, rows

@@ -7,9 +7,8 @@ from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Run
 from tsas_cli.recordings.parquet_files import changed, local_file
 from tsas_cli.recordings.storage import Address
-from tsas_cli.records.result import Result, Table
+from tsas_cli.records.result import Result, Table, heading
 from tsas_cli.stages.given import Named, place_of
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -90,10 +89,7 @@ def upload(
             error.what, where=error.where, expected=error.expected, remedy=remedy
         ) from error
     files[MANIFEST_FILE] = len(content)
-    summary = {
-        "format": 1,
-        "stage": "upload",
-        "version": __version__,
+    summary = heading("upload") | {
         "folder": str(source),
         "address": str(target),
         "files": files,

@@ -4,9 +4,8 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from tsas_cli.records.result import Result, Table
+from tsas_cli.records.result import Result, Table, heading
 from tsas_cli.stages.given import Named, file_of, paths_of
-from tsas_cli.support import __version__
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.verifying.verify import Verified, verify_all
 
@@ -65,10 +64,7 @@ def verify(
     """
     files = verify_all(file_of(path), paths_of(raw, least=0), step)
     found = Counter[str](one.state for one in files)
-    summary = {
-        "format": 1,
-        "stage": "verify",
-        "version": __version__,
+    summary = heading("verify") | {
         "path": str(path),
         "counts": {state: found[state] for state in STATES},
         "files": [asdict(one) for one in files],

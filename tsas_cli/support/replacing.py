@@ -80,7 +80,11 @@ def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: boo
         return
     if not force:
         raise exists(path)
-    if path.exists() and mark not in _head(path):
+    if not path.exists():
+        return
+    with path.open("rb") as stream:
+        written = mark in stream.read(_HEAD_BYTES)
+    if not written:
         raise InputError(
             "is not an earlier output of this command",
             where=path,
@@ -195,8 +199,3 @@ def _of_ingest(folder: Path) -> set[str] | None:
         return {_DATASET} | {run["file"] for run in content["run"] if run["id"] in ingested}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-
-
-def _head(path: Path) -> bytes:
-    with path.open("rb") as stream:
-        return stream.read(_HEAD_BYTES)

@@ -46,18 +46,9 @@ class Endable(Steps):
 
     def __init__(self, shown: Steps) -> None:
         self._shown = shown
-
-    def ahead(self, pieces: int) -> None:
-        """Add steps to the known total."""
-        self._shown.ahead(pieces)
-
-    def doing(self, what: str) -> None:
-        """Pass on what the stage does."""
-        self._shown.doing(what)
-
-    def say(self, sentence: str) -> None:
-        """Pass on a sentence."""
-        self._shown.say(sentence)
+        self.ahead = shown.ahead  # type: ignore[method-assign]
+        self.doing = shown.doing  # type: ignore[method-assign]
+        self.say = shown.say  # type: ignore[method-assign]
 
     def __call__(self) -> None:
         """Count one completed step."""

@@ -5,7 +5,7 @@ import math
 import signal
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
@@ -30,18 +30,13 @@ class Interrupted(KeyboardInterrupt):
 @contextmanager
 def until_stopped() -> Iterator[None]:
     """Run the block until it ends or a stop signal arrives; the caller sees no difference."""
-    try:
-        with _raising(Stopped):
+    with suppress(Stopped):
+        before = _handle(Stopped)
+        try:
             yield
-    except Stopped:
-        pass
-
-
-@contextmanager
-def cleaned_up_when_stopped() -> Iterator[None]:
-    """Handle every stop signal in the block like Ctrl-C, so that its resources are closed."""
-    with _raising(Interrupted):
-        yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
 
 
 def stopped_once() -> None:
@@ -73,17 +68,6 @@ def asked_first(ask: Callable[[], None]) -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-@contextmanager
-def _raising(kind: type[BaseException]) -> Iterator[None]:
-    """Raise `kind` at a signal in the block, and leave the handlers as they were."""
-    before = _handle(kind)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 class _Received:

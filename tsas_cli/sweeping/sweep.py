@@ -1,10 +1,9 @@
 """Run the pending tasks of a sweep, and write the results of all."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.records.result import Result, Table
-from tsas_cli.support import __version__
+from tsas_cli.records.result import Result, Table, heading
 from tsas_cli.support.files import own_file, write_json
 from tsas_cli.support.steps import Steps
 from tsas_cli.sweeping.folder import (
@@ -34,6 +32,7 @@ if TYPE_CHECKING:
 
 MOST_SHOWN = 20  # failed tasks in the printed table; the file holds all
 ENDS = ("_low", "_high", "_sd")  # of figures that are in the file only
+_OF = {"run": "of_run"}  # of a parameter, in its table
 COUNTED = ("verdict", "causes", "codes")  # results that are words, whose frequencies are printed
 Pool = Callable[[Sequence[str]], Iterator[tuple[int, TaskOutcome]]]
 
@@ -115,57 +114,45 @@ def _written(
     out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]
 ) -> Row:
     """Return the summary, after writing the tables and the summary itself."""
-    rows = rows_of(tasks, outcomes)
-    summary = {
-        "format": 1,
-        "stage": "sweep",
-        "version": __version__,
-        "versions": versions(),
-        "plan": plan.model_dump(mode="json", by_alias=True, exclude_defaults=True),
-        "varied": list(dict.fromkeys(name for task in tasks for name in task.point)),
-        "counts": counts(outcomes),
-        "tasks": rows,
-    }
-    found = parameter_rows(tasks, outcomes)
-    tables = {TABLE: partial(write_rows, rows=rows)}
-    tables |= {PARAMETERS: partial(write_rows, rows=found)} if found else {}
-    if not found:
-        (out / PARAMETERS).unlink(missing_ok=True)  # of an earlier plan
-    for name, write in {**tables, SUMMARY: partial(write_json, content=summary)}.items():
-        with own_file(out / name) as path:
-            write(path)
-    seal(out)
-    return summary
-
-
-def rows_of(tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]) -> list[Row]:
-    """Return one row per task: its name, input, state and results."""
-    return [
+    both = list(zip(tasks, outcomes, strict=True))
+    rows = [
         {
-            "task": task.key,
-            **({"dataset": task.source.name} if task.source else {}),
+            **_named(task),
             **({"run": task.source.run} if task.source and task.source.run else {}),
             **task.point,
             "state": outcome["state"],
             "error": outcome.get("error"),
             **outcome.get("results", {}),
         }
-        for task, outcome in zip(tasks, outcomes, strict=True)
+        for task, outcome in both
     ]
-
-
-def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]) -> list[Row]:
-    """Return one row for each parameter of each task, with interval, unit and bound flag."""
-    return [
-        {
-            "task": task.key,
-            **({"dataset": task.source.name} if task.source else {}),
-            **task.point,
-            **{key if key != "run" else "of_run": value for key, value in parameter.items()},
-        }
-        for task, outcome in zip(tasks, outcomes, strict=True)
+    found = [
+        {**_named(task), **task.point, **{_OF.get(key, key): v for key, v in parameter.items()}}
+        for task, outcome in both
         for parameter in outcome.get("parameters", [])
     ]
+    states = Counter(outcome["state"] for outcome in outcomes)
+    summary = heading("sweep") | {
+        "versions": versions(),
+        "plan": plan.model_dump(mode="json", by_alias=True, exclude_defaults=True),
+        "varied": list(dict.fromkeys(name for task in tasks for name in task.point)),
+        "counts": {state: states[state] for state in ("done", "failed")},
+        "tasks": rows,
+    }
+    for name, table in ((TABLE, rows), (PARAMETERS, found)):
+        if table:
+            with own_file(out / name) as path:
+                write_rows(path, table)
+        else:
+            (out / name).unlink(missing_ok=True)  # of an earlier plan
+    with own_file(out / SUMMARY) as path:
+        write_json(path, summary)
+    seal(out)
+    return summary
+
+
+def _named(task: Task) -> Row:
+    return {"task": task.key} | ({"dataset": task.source.name} if task.source else {})
 
 
 def write_rows(path: Path, rows: Sequence[Row]) -> None:
@@ -198,15 +185,13 @@ def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Tabl
     failed = [row for row in rows if row["state"] == "failed"]
     if failed:
         more = f", the first {MOST_SHOWN}" if len(failed) > MOST_SHOWN else ""
-        shown = [(_input(row, varied), row["error"]) for row in failed[:MOST_SHOWN]]
+        shown = []
+        for row in failed[:MOST_SHOWN]:  # by the dataset, run and values that identify the task
+            source = [str(row[name]) for name in ("dataset", "run") if name in row]
+            values = [f"{name}={row[name]}" for name in varied if name in row]
+            shown.append((", ".join([*source, *values]), row["error"]))
         tables.append((f"failed {len(failed)}{more}", ("input", "error"), shown))
     return tables
-
-
-def _input(row: Row, varied: Iterable[str]) -> str:
-    """Return the dataset, run and values that identify a task."""
-    source = [str(row[name]) for name in ("dataset", "run") if name in row]
-    return ", ".join([*source, *(f"{name}={row[name]}" for name in varied if name in row)])
 
 
 def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:
@@ -219,9 +204,3 @@ def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:
         return None
     ends = (min(numbers), float(np.median(numbers)), max(numbers))
     return (name, str(len(numbers)), *(f"{value:.4g}" for value in ends))
-
-
-def counts(outcomes: Iterable[TaskOutcome]) -> Mapping[str, int]:
-    """Return the numbers of completed and failed tasks."""
-    states = Counter(outcome["state"] for outcome in outcomes)
-    return {state: states[state] for state in ("done", "failed")}

@@ -80,17 +80,15 @@ def tasks_of(plan: SweepPlan, base: Path, options: Options) -> list[Task]:
 def _task(
     stage: str, source: SweepSource | None, point: Row, values: Values, *, named: bool
 ) -> Task:
-    options = dict(values.options)
     inputs: Row = {"stage": stage, "versions": versions()}
-    places = {name: str(path.resolve()) for name, path in values.files.items()}
+    places = {name: str(path.resolve()) for name, path in values.paths.items()}
+    runs: Row = {}
     if source is not None:
         inputs["dataset"] = {"name": source.name, "sha256": source.sha256}
         places["dataset"] = str(source.folder.resolve())
         if source.run is not None:
-            options["runs"] = [source.run]
-    inputs |= {"options": options, "files": values.sums}
-    inputs |= {"conditions": values.conditions, "settings": values.settings}
-    inputs |= {"model": values.model, "plant": values.plant}
+            runs = {"runs": [source.run]}
+    inputs |= values.kinds | {"options": values.kinds["options"] | runs}
     digest = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()[:10]
     words = ",".join(_words(source, point, named=named)) or stage
     return Task(f"{words[:LONGEST]}-{digest}", source, point, inputs, places)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, sha256_of
 from tsas_cli.tracking.settings import RigSettings, read_settings
 
+KINDS = ("options", "files", "conditions", "settings", "model", "plant")
 PLANT, SETTINGS = "plant.", "settings."
 FILES = {"model": MODEL_FILE, "plant": MODEL_FILE, "drive": DRIVE_FILE, "settings": ""}
 BITS = 64  # of an integer, the limit of Parquet and TOML
@@ -27,19 +28,16 @@ Options = Mapping[str, TypeAdapter[Any]]
 
 @dataclass(frozen=True)
 class Values:
-    """The values of one task, by kind.
+    """The values of one task by kind, and the paths of the files among them.
 
-    Those of model and plant replace those of its file or the data sheet, conditions those of every
-    run in the manifest.
+    The kinds are those of a task's inputs: `options`, keywords of the stage's call; `files`, the
+    checksums of those that are files; `model` and `plant`, which replace values of their file or
+    of the data sheet; `conditions`, which replace those of every run in the manifest; `settings` of
+    the closed loop, by dotted keys.
     """
 
-    options: Raw = field(default_factory=dict)  # keywords of the stage's call
-    files: dict[str, Path] = field(default_factory=dict)  # paths of the files among them
-    sums: dict[str, dict[str, str]] = field(default_factory=dict)  # their checksums, by keyword
-    model: dict[str, float] = field(default_factory=dict)
-    plant: dict[str, float] = field(default_factory=dict)
-    conditions: dict[str, float] = field(default_factory=dict)
-    settings: Raw = field(default_factory=dict)  # of the closed loop, by dotted keys
+    kinds: dict[str, Raw]
+    paths: dict[str, Path]
 
 
 def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Values:
@@ -49,7 +47,8 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
 
     InputError: a name is unknown, a value is invalid, or a file does not exist.
     """
-    found, of_runs = Values(), "model" in options and "plant" not in options
+    kinds: dict[str, Raw] = {kind: {} for kind in KINDS}
+    paths, of_runs = dict[str, Path](), "model" in options and "plant" not in options
     for name, value in given.items():
         if isinstance(value, int) and value.bit_length() >= BITS:
             raise InputError(
@@ -58,29 +57,29 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
                 expected=f"at most {BITS}, as in TOML",
             )
         if name in FILES and name in options:
-            path, found.sums[name] = _file(name, value, base)
-            found.files[name] = path
+            paths[name], kinds["files"][name] = _file(name, value, base)
         elif name in options:
-            found.options[name] = _option(name, value, options[name])
+            kinds["options"][name] = _option(name, value, options[name])
         elif name in CONDITIONS and of_runs:
-            found.conditions[name] = _condition(name, value)
+            kinds["conditions"][name] = _condition(name, value)
             if name in QUANTITIES:  # a calibrated model has a preload of each run
-                found.model[name] = _quantity(name, value, name)
+                kinds["model"][name] = _quantity(name, value, name)
         elif name in QUANTITIES and "model" in options:
-            found.model[name] = _quantity(name, value, name)
+            kinds["model"][name] = _quantity(name, value, name)
         elif name.removeprefix(PLANT) in QUANTITIES and "plant" in options:
-            found.plant[name.removeprefix(PLANT)] = _quantity(name, value, name.removeprefix(PLANT))
+            own = name.removeprefix(PLANT)
+            kinds["plant"][own] = _quantity(name, value, own)
         elif name.startswith(SETTINGS) and "settings" in options:
-            found.settings[name.removeprefix(SETTINGS)] = value
+            kinds["settings"][name.removeprefix(SETTINGS)] = value
         else:
             raise InputError(f"unknown name {name}", where="the plan", remedy=_hint(name, options))
-    if found.settings:
-        read_settings(with_settings(found.files.get("settings"), found.settings))
-    reference = found.options.get("reference")
+    if kinds["settings"]:
+        read_settings(with_settings(paths.get("settings"), kinds["settings"]))
+    reference = kinds["options"].get("reference")
     if isinstance(reference, str) and (base / reference).is_file():
-        del found.options["reference"]
-        found.files["reference"], found.sums["reference"] = _file("reference", reference, base)
-    return found
+        del kinds["options"]["reference"]
+        paths["reference"], kinds["files"]["reference"] = _file("reference", reference, base)
+    return Values(kinds, paths)
 
 
 def _hint(name: str, options: Options) -> str:

@@ -31,15 +31,6 @@ _INPUTS = ("model", "plant", "drive", "settings", "reference")  # keys of a stag
 
 
 @dataclass(frozen=True)
-class Seal:
-    """The recorded and the actual checksum of a page, and its input files."""
-
-    sha256: str
-    found: str
-    read: tuple[Any, ...]
-
-
-@dataclass(frozen=True)
 class Claim:
     """A recorded checksum of a file, and the file that recorded it.
 
@@ -135,11 +126,28 @@ def _of_file(path: Path, record: object) -> Iterator[Claim]:
 
 
 def _of_page(path: Path) -> Iterator[Claim]:
-    seal = sealed(path)
-    if seal is None:
+    """Yield the checksum of a page, and those of its inputs; none if it is no page of tsas.
+
+    InputError: the page cannot be read, or what it ends with is broken.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+    if not any(mark in content for mark in _MARKS):
         return
-    yield Claim(path, path.name, seal.sha256, path, seal.found)
-    for record in seal.read:
+    body, line = content[:-_LENGTH], content[-_LENGTH:]
+    checksum = _PAGE_SUM.fullmatch(line)
+    if checksum is None:
+        raise InputError("its last line is not the checksum of its seal", where=path)
+    listed = body.rpartition(_READ.encode())[2].rstrip()
+    try:
+        read = json.loads(listed.removesuffix(b"-->"))
+    except ValueError as error:
+        raise InputError("does not list its inputs", where=path) from error
+    found = hashlib.sha256(body).hexdigest()
+    yield Claim(path, path.name, checksum[1].decode(), path, found)
+    for record in read if isinstance(read, list) else ():
         yield from _of_file(path, record)
 
 
@@ -171,30 +179,6 @@ def with_seal(text: str, files: Iterable[tuple[Location, str]], page: Path) -> s
     marked = text.replace(_TYPE, _TYPE + _HEAD, 1)
     body = f"{marked.rstrip()}\n{_READ}{listed} -->\n"
     return f"{body}<!-- sha256 of all above: {hashlib.sha256(body.encode()).hexdigest()} -->\n"
-
-
-def sealed(path: Path) -> Seal | None:
-    """Return the seal of a page, or None if it is no page of tsas.
-
-    InputError: the page cannot be read, or its seal is broken.
-    """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    if not any(mark in content for mark in _MARKS):
-        return None
-    body, line = content[:-_LENGTH], content[-_LENGTH:]
-    checksum = _PAGE_SUM.fullmatch(line)
-    if checksum is None:
-        raise InputError("its last line is not the checksum of its seal", where=path)
-    listed = body.rpartition(_READ.encode())[2].rstrip()
-    try:
-        read = json.loads(listed.removesuffix(b"-->"))
-    except ValueError as error:
-        raise InputError("does not list its inputs", where=path) from error
-    found = hashlib.sha256(body).hexdigest()
-    return Seal(checksum[1].decode(), found, tuple(read) if isinstance(read, list) else ())
 
 
 def change_notes(given: Iterable[object]) -> list[str]:

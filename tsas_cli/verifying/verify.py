@@ -132,7 +132,9 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
         walk.claimed.add(path.resolve())
         if (claim.found or _sum(path, walk)) == claim.sha256:
             return Verified(_shown(path), "fits", by)
-        return Verified(_shown(path), "changed", by, _why(claim))
+        own = claim.by.name in {SUMS, MANIFEST_FILE} or claim.by == path
+        why = f"has changed since it was {'written' if own else 'read'}"
+        return Verified(_shown(path), "changed", by, why)
     known = walk.known.get((claim.file, claim.sha256)) if path is None else None
     if known is None and claim.by.name != SUMS:
         known = _in_raw(claim, walk)
@@ -143,12 +145,6 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
         why = "is on object storage" if is_address(claim.file) else "its location is not recorded"
         return Verified(claim.file, "cannot tell", by, why)
     return Verified(_shown(path), "missing", by, "does not exist")
-
-
-def _why(claim: Claim) -> str:
-    if claim.by.name in {SUMS, MANIFEST_FILE} or claim.by == claim.path:
-        return "has changed since it was written"
-    return "has changed since it was read"
 
 
 def _in_raw(claim: Claim, walk: _Walk) -> Path | None:

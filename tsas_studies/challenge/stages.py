@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Literal
 
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.given import Named, at_least, number_of_seeds, one_of, path_of, text_of
+from tsas_cli.stages.given import Named, at_least, of_kind, one_of, path_of
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if, stage_folder, write_json
+from tsas_cli.support.limits import SEEDS
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_studies.challenge import cases
 from tsas_studies.challenge.cases import Kind
@@ -82,7 +83,7 @@ def make_set(
     InputError
         No case is left, the salt is no number, or `out` exists and `force` is not set.
     """
-    first, count = at_least(0, seed, "seed"), number_of_seeds(seeds)
+    first, count = at_least(0, seed, "seed"), at_least(1, seeds, "seeds", most=SEEDS)
     grain = secrets.randbits(128) if salt is None else _grain(salt)
     listed = [case for each in range(first, first + count) for case in cases.cases(each, grain)]
     if small:
@@ -114,7 +115,7 @@ def make_set(
 
 
 def _grain(salt: str) -> int:
-    if not re.fullmatch("[0-9a-fA-F]{1,32}", text_of(salt)):
+    if not re.fullmatch("[0-9a-fA-F]{1,32}", of_kind((str,), salt)):
         raise InputError(f"salt is {salt!r}", expected="1 to 32 hexadecimal digits")
     return int(salt, 16)
 

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from tsas_cli.records.closing import HIDDEN, ClosingFile
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, path_of
+from tsas_cli.stages.given import Named, at_least, listed, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import stage_folder
+from tsas_cli.support.limits import SEEDS
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import read_settings
@@ -95,7 +96,7 @@ def close_loop(
     wanted = chosen(None if cases is None else listed(cases), listed(hide))
     given, path = path_of(settings, Mapping), Path(out)
     read, first = read_settings(given), at_least(0, first_seed, "first_seed")
-    taken = range(first, first + number_of_seeds(seeds))
+    taken = range(first, first + at_least(1, seeds, "seeds", most=SEEDS))
     with stage_folder(path, stage="close-loop", inputs=[given], force=force) as folder:
         step.ahead(STEPS * len(wanted))
         found = [close(case, read, folder / case.name, taken, step) for case in wanted]

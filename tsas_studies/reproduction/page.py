@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from tsas_cli.paper import Paper
-from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, rendered
+from tsas_cli.reporting.content import Fact, Glance, Picture, Section, rendered, table_of
 from tsas_cli.reporting.content import Group as Fold
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import ABSENT, as_printed, plain, spanned
@@ -22,7 +22,6 @@ _HOW = (
     "it, and in brackets where the paper says it. Where the paper is held against itself, ours is "
     "what follows from its other numbers. No value of ours is fitted to its results."
 )
-NUMERIC = frozenset({1, 2, 3})
 
 
 def reproduction_page(paper: Paper, groups: Sequence[Group]) -> str:
@@ -52,7 +51,7 @@ def _overview(paper: Paper, groups: Sequence[Group]) -> Section:
         "What is compared",
         (cited, _HOW),
         commands=("tsas reproduce --out reports/paper",),
-        tables=(Table("Verdicts", header, tuple(rows), numeric=frozenset(range(1, len(header)))),),
+        tables=(table_of("Verdicts", header, rows),),
     )
 
 
@@ -60,18 +59,14 @@ def _section(group: Group) -> Section:
     folds: dict[str, list[Picture]] = {}
     for figure in group.figures:
         folds.setdefault(figure.part, []).append(_picture(figure))
-    table = Table(
-        "The paper's values and ours",
-        HEADER,
-        tuple(_cells(row) for row in group.rows),
-        numeric=NUMERIC,
-        notes=tuple(_note(row) for row in group.rows),
-    )
+    rows = group.rows
+    caption = "The paper's values and ours"
+    table = table_of(caption, HEADER, map(_cells, rows), notes=map(_note, rows))
     return Section(
         group.anchor,
         group.title,
         group.intro,
-        tables=(table.without_empty(),),
+        tables=(table,),
         pictures=tuple(folds.pop("", ())),
         groups=tuple(Fold(part, tuple(pictures)) for part, pictures in folds.items()),
         closing=group.closing,

@@ -27,13 +27,20 @@ def parts(causes: Iterable[NamedCause], inputs: Inputs) -> Iterator[Section]:
     for cause in causes:
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
         equation = cause.equation or law
+        failed = [f"It {failure}." for failure in cause.failed]
+        differs = f"Its law differs from this {cause.law_differs}." if cause.law_differs else ""
+        rivals = (
+            "In these recordings it is indistinguishable from "
+            f"{within(title_of(rival))} (`{rival}`). {sentence_of(rival)}"
+            for rival in cause.rivals
+        )
         yield Section(
             anchor("diagnosis", cause.effect),
             f"Not proven: {within(heading_of(cause))}" if cause.failed else heading_of(cause),
-            tuple(text for text in (sentence_of(cause.effect), *_failed(cause)) if text),
+            tuple(filter(None, (sentence_of(cause.effect), *failed, differs))),
             equations=tuple(equation.split(",  ")) if equation else (),
             points=tuple(parameters_of(cause.parameters, inputs)),
-            closing=(*_rivals(cause), *_gain(cause)),
+            closing=(*rivals, *_gain(cause)),
             folded=bool(cause.failed),
         )
 
@@ -46,21 +53,6 @@ def parameters_of(parameters: Mapping[str, Value], inputs: Inputs) -> Iterator[s
             said = f"`{name}` {value} {p.unit or ''}".removesuffix(" 1").rstrip()
             said += "" if interval == ABSENT else f", 95 % interval {interval}"
             yield f"{said}, at its bound" if p.at_bound else said
-
-
-def _failed(cause: NamedCause) -> Iterator[str]:
-    for failure in cause.failed:
-        yield f"It {failure}."
-    if cause.law_differs:
-        yield f"Its law differs from this {cause.law_differs}."
-
-
-def _rivals(cause: NamedCause) -> Iterator[str]:
-    for rival in cause.rivals:
-        yield (
-            "In these recordings it is indistinguishable from "
-            f"{within(title_of(rival))} (`{rival}`). {sentence_of(rival)}"
-        )
 
 
 def _gain(cause: NamedCause) -> Iterator[str]:

@@ -10,7 +10,7 @@ from tsas_cli.records.diagnosis import Bin, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import legend, picture
-from tsas_cli.reporting.names import label_of, signal_at_axis, signal_in_words
+from tsas_cli.reporting.names import at_axis, in_words, label_of
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.wording import listed
 
@@ -91,10 +91,10 @@ def _size(bins: tuple[Bin, ...]) -> float:
 
 def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, str]) -> Picture:
     seen = [panel for panel in panels if _strength(panel) > _SEEN]
-    words = signal_in_words(signal)
-    said = "; ".join(_in_words(panel, names) for panel in seen)
+    words = in_words(signal)
+    said = "; ".join(_said(panel, names) for panel in seen)
     return picture(
-        partial(draw_residual_map, panels=seen, label=signal_at_axis(signal), names=names),
+        partial(draw_residual_map, panels=seen, label=at_axis(signal), names=names),
         key=f"{key}-{signal}",
         alt=f"Mean residual over the {words}, in units of noise. {said}.",
         caption=f"{listed([p.channel for p in seen])} over the {words}.",
@@ -102,7 +102,7 @@ def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, s
     )
 
 
-def _in_words(panel: Panel, names: tuple[str, str]) -> str:
+def _said(panel: Panel, names: tuple[str, str]) -> str:
     if not panel.after:
         return f"{panel.channel}: {_range(panel.before)}"
     both = zip(names, (panel.before, panel.after), strict=True)

@@ -7,12 +7,12 @@ from typing import Any
 
 from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause, TriedHypothesis
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Section, Table, missing
+from tsas_cli.reporting.content import Section, Table, missing, table_by_column, table_of
 from tsas_cli.reporting.diagnosis import causes, maps, similarity
 from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import called, signal_in_words
-from tsas_cli.reporting.numbers import ABSENT, fixed, plain
+from tsas_cli.reporting.names import in_words
+from tsas_cli.reporting.numbers import ABSENT, fixed, over, plain
 from tsas_cli.support.wording import listed
 
 _BOUNDS = (
@@ -35,6 +35,7 @@ def section(inputs: Inputs) -> Section:
     diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
+    reason = diagnosis.reason
     evidence = (
         gains_part(diagnosis, inputs.held_out),
         maps.part(diagnosis),
@@ -44,7 +45,7 @@ def section(inputs: Inputs) -> Section:
     return Section(
         "diagnosis",
         _TITLE,
-        (_verdict(diagnosis),),
+        (f"Undecided: {reason}" if diagnosis.verdict == "undecided" else reason,),
         parts=(
             *causes.parts(diagnosis.named, inputs),
             *causes.law_parts(diagnosis, inputs),
@@ -53,11 +54,6 @@ def section(inputs: Inputs) -> Section:
             *(replace(part, folded=True) for part in evidence if part is not None),
         ),
     )
-
-
-def _verdict(diagnosis: DiagnosisFile) -> str:
-    undecided = diagnosis.verdict == "undecided"
-    return f"Undecided: {diagnosis.reason}" if undecided else diagnosis.reason
 
 
 def closing(diagnosis: DiagnosisFile) -> Iterator[Section]:
@@ -88,7 +84,7 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
         yield "There is structure in it that no effect of the catalogue accounts for."
     yield from (noise.text(name) for name, noise in left.slow_noise.items())
     if left.depends_on:
-        signals = listed([signal_in_words(name) for name in left.depends_on])
+        signals = listed([in_words(name) for name in left.depends_on])
         yield f"What is left depends on {signals}."
 
 
@@ -102,19 +98,9 @@ def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
     standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
     shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
     of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
-    header = (
-        "effects",
-        "reduction [%]",
-        "test statistic",
-        "convincing",
-        "remark",
-    )
-    table = Table(
-        f"Hypotheses{of}",
-        header,
-        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
-        numeric=frozenset({1, 2}),
-    ).without_empty()
+    header = ("effects", "reduction [%]", "test statistic", "convincing", "remark")
+    rows = (_row(c, standing[frozenset(c.effects)]) for c in shown)
+    table = table_of(f"Hypotheses{of}", header, rows)
     return Section("diagnosis-candidates", _TRIED, (_HYPOTHESES,), tables=(table,))
 
 
@@ -169,42 +155,26 @@ def _judged(diagnosis: DiagnosisFile) -> str:
 
 def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
     """Return the residuals in numbers, in the channel's unit and over its noise level."""
-    rows = tuple(
-        (
-            name,
-            plain(c.rmse_before, 3),
-            plain(c.rmse_after, 3) if named else ABSENT,
-            plain(c.attainable, 3),
-            plain(c.noise_floor, 3),
-            c.unit,
-            _normalised(c.rmse_before, c),
-            _normalised(c.rmse_after, c) if named else ABSENT,
-        )
+    rows = (
+        {
+            "channel": name,
+            "nominal model": plain(c.rmse_before, 3),
+            "extended model": plain(c.rmse_after, 3) if named else ABSENT,
+            "attainable": plain(c.attainable, 3),
+            "noise level": plain(c.noise_floor, 3),
+            "unit": c.unit,
+            "nominal, normalised": over(c.rmse_before, c.noise_floor),
+            "extended, normalised": over(c.rmse_after, c.noise_floor) if named else ABSENT,
+        }
         for name, c in channels.items()
     )
-    header = (
-        "channel",
-        "nominal model",
-        "extended model",
-        "attainable",
-        "noise level",
-        "unit",
-        "nominal, normalised",
-        "extended, normalised",
-    )
-    caption = "RMS of the residual on held-out data"
-    numeric = frozenset({1, 2, 3, 4, 6, 7})
-    return Table(caption, header, rows, numeric=numeric).without_empty()
-
-
-def _normalised(rms: float | None, channel: HeldOut) -> str:
-    return ABSENT if rms is None or not channel.noise_floor else plain(rms / channel.noise_floor, 3)
+    return table_by_column("RMS of the residual on held-out data", rows)
 
 
 def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
     after = f", extended model {plain(channel.rmse_after, 3)}" if named else ""
     return (
-        f"{called(name)}: nominal model {plain(channel.rmse_before, 3)}"
+        f"{in_words(name)}: nominal model {plain(channel.rmse_before, 3)}"
         f"{after}, attainable {plain(channel.attainable, 3)}, noise level "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )

@@ -31,22 +31,27 @@ _CORNERS = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, 
 
 def part(diagnosis: DiagnosisFile) -> Section | None:
     """Return the part, None where no signatures were compared."""
+    from scipy.cluster.hierarchy import leaves_list, linkage
+
     names = np.array(diagnosis.signatures.effects, dtype=object)
     if names.size < 2:
         return None
     similarity = np.array(diagnosis.signatures.similarity, dtype=float)
     visible = np.array(diagnosis.signatures.visible, dtype=float) >= _VISIBLE
+    hidden = listed([f"`{name}`" for name in names[~visible]])
     others = np.where(np.eye(names.size) > 0.0, 0.0, similarity)
     points = (
         *_alike(names[visible], similarity[np.ix_(visible, visible)]),
-        *_hidden(names, np.array(diagnosis.signatures.visible, dtype=float)),
+        *([f"These inputs hardly show {hidden} at a size that is plausible."] if hidden else []),
     )
     shown = visible & (others[:, visible] >= _RESEMBLES).any(axis=1)
     title = "Which effects these inputs can tell apart"
     if shown.sum() < 2:
         alone = "No two effects that these inputs show resemble each other."
         return Section("diagnosis-similarity", title, (_WHAT, alone), points=points)
-    order = np.flatnonzero(shown)[_neighbours(similarity[np.ix_(shown, shown)])]
+    # Effects that look alike stand together.
+    near = linkage(_apart(similarity[np.ix_(shown, shown)]), "average")
+    order = np.flatnonzero(shown)[leaves_list(near)]
     matrix = picture(
         partial(
             draw_similarity,
@@ -62,13 +67,6 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
         height_in=0.5 + _ROW_IN * int(shown.sum()),
     )
     return Section("diagnosis-similarity", title, (_WHAT,), points=points, pictures=(matrix,))
-
-
-def _neighbours(similarity: Floats) -> npt.NDArray[np.int64]:
-    """Return an order in which effects that look alike stand together."""
-    from scipy.cluster.hierarchy import leaves_list, linkage
-
-    return np.asarray(leaves_list(linkage(_apart(similarity), "average")))
 
 
 def _alike(names: npt.NDArray[np.object_], similarity: Floats) -> Iterator[str]:
@@ -91,12 +89,6 @@ def _alike(names: npt.NDArray[np.object_], similarity: Floats) -> Iterator[str]:
 def _apart(similarity: Floats) -> Floats:
     """Return the distances above the diagonal, row by row, as scipy's clustering takes them."""
     return 1.0 - similarity[np.triu_indices(len(similarity), 1)]
-
-
-def _hidden(names: npt.NDArray[np.object_], visible: Floats) -> Iterator[str]:
-    hidden = [f"`{name}`" for name in names[visible < _VISIBLE]]
-    if hidden:
-        yield f"These inputs hardly show {listed(hidden)} at a size that is plausible."
 
 
 def draw_similarity(

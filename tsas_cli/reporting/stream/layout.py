@@ -32,9 +32,13 @@ _LINKED = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)  # all show th
 
 def layout_of(runs: Sequence[SeenRun]) -> Blueprint:
     """Return the tabs; what was tracked opens on it, all else on the overview."""
+    words = rrb.TextDocumentView(name="Overview", contents=f"+ {path_of(OVERVIEW)}")
+    beside = _by_run(runs, _run, last=_all_runs(runs))
     made = {
-        "Overview": _overview(runs),
-        "Residuals": _by_run(runs, _residuals),
+        "Overview": Horizontal(words, beside, column_shares=(1.0, 3.0)) if beside else words,
+        "Residuals": _by_run(
+            runs, lambda run: _over_phases(run, residuals_of(run), "measured less simulated, ")
+        ),
         "Tendon": _by_run(runs, view_of_tendon),
         "Tracking": _tracking(runs),
     }
@@ -64,12 +68,6 @@ def series(name: str, entities: Sequence[Entity]) -> View:
     )
 
 
-def _overview(runs: Sequence[SeenRun]) -> Part:
-    words = rrb.TextDocumentView(name="Overview", contents=f"+ {path_of(OVERVIEW)}")
-    beside = _by_run(runs, _run, last=_all_runs(runs))
-    return words if beside is None else Horizontal(words, beside, column_shares=(1.0, 3.0))
-
-
 def _by_run(
     runs: Sequence[SeenRun],
     make: Callable[[SeenRun], Part | None],
@@ -93,10 +91,6 @@ def _run(run: SeenRun) -> Part | None:
     if rows is None or not beside:
         return rows
     return Horizontal(rows, Vertical(*beside), column_shares=(3.0, 2.0))
-
-
-def _residuals(run: SeenRun) -> Part | None:
-    return _over_phases(run, residuals_of(run), "measured less simulated, ")
 
 
 def _over_phases(

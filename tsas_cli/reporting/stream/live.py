@@ -52,13 +52,7 @@ class LiveStream:
         write_result(self.folder / "runs", predicted)
         fitted = stage.dataset.content()
         write_model(self.folder / MODEL_FILE, model, version=stage.version, dataset=fitted)
-        self._show(
-            Inputs(
-                dataset.only([predicted.run.id]),
-                {SimulationFile: stage},
-                {SimulationFile: self.folder},
-            )
-        )
+        self._show(Inputs(dataset.only([predicted.run.id]), ((stage, self.folder),)))
 
     def tracked(self, stage: TrackingFile, run: str, table: pa.Table) -> None:
         """Show a run of the closed loop; `stage` says of the runs so far."""
@@ -66,7 +60,7 @@ class LiveStream:
         folder = self.folder / run
         folder.mkdir()
         write_dataset(folder, manifest((run,), Settings.model_validate(stated)), {run: table})
-        self._show(Inputs(read_dataset(folder), {TrackingFile: stage}, {TrackingFile: folder}))
+        self._show(Inputs(read_dataset(folder), ((stage, folder),)))
 
     def lay_out(self) -> None:
         """Give every run so far its place in the viewer."""

@@ -171,7 +171,7 @@ def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
     """
     check = inputs.get(CheckFile)
     broken = {f.run for f in check.findings if f.code in _BROKEN} if check else set()
-    chosen = [stage.chosen for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
+    chosen = [stage.chosen for stage, _ in inputs.given if isinstance(stage, OfDataset)]
     taken = {name for names in chosen for name in names or ()}
     every = not chosen or None in chosen
     return [run for run in dataset.runs if (every or run.id in taken) and run.id not in broken]

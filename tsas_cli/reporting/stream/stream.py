@@ -61,7 +61,7 @@ class Stream:
 def stream_of(inputs: Inputs) -> Stream:
     """Return what there is to see of what the stages wrote."""
     dataset = "tsas" if inputs.dataset is None else inputs.dataset.manifest.name
-    stages = [kind.FILE.removesuffix(".json") for kind in inputs.folders]
+    stages = dict.fromkeys(stage.FILE.removesuffix(".json") for stage, _ in inputs.given)
     return Stream(", ".join([dataset, *stages]), overview(inputs), tuple(seen_runs(inputs)))
 
 
@@ -141,7 +141,8 @@ def shown_stream(
     if isinstance(first, Path) and not others:
         stream = first / STREAM_FILE if first.is_dir() else first
         if stream.is_file():
-            yield stream, _end_notes(stream)
+            why = "its writer was stopped, or it is cut off; all it holds is shown"
+            yield stream, [] if is_finished(stream) else [f"{stream} has no end: {why}"]
             return
     for path in local:
         if not path.is_dir():
@@ -154,9 +155,3 @@ def shown_stream(
         stream = Path(folder) / STREAM_FILE
         write_stream(read_inputs(paths), stream, step=step)
         yield stream, []
-
-
-def _end_notes(stream: Path) -> list[str]:
-    if is_finished(stream):
-        return []
-    return [f"{stream} has no end: its writer was stopped, or it is cut off; all it holds is shown"]

@@ -136,44 +136,23 @@ def record_tendons(
         name = rr.Points3D([line[0]], labels=[text], colors=colour, radii=0.0, show_labels=True)
         recorder.static((*mine, "name"), name)
         shades = _shades(0.5 * (tension[:, 1:] + tension[:, :-1]), low, high)
-        _record_line(recorder, (*mine, "tendon"), times, line, frames, shades=shades, size=size)
-        _record_front(recorder, (*mine, "front"), times, raised, frames)
-
-
-def _record_line(
-    recorder: Recorder,
-    entity: Entity,
-    times: Times,
-    line: Floats,
-    frames: Frames,
-    *,
-    shades: npt.NDArray[np.uint32],
-    size: float,
-) -> None:
-    """Record the tendon in pieces: their colours, and thick where they slip."""
-    pieces = np.stack((line[:-1], line[1:]), axis=1).astype(np.float32)
-    recorder.static(entity, rr.LineStrips3D(pieces))
-    radii = size * np.where(np.isin(frames.slip, (1, -1)), THICK, THIN)
-    columns = rr.LineStrips3D.columns(colors=shades.ravel(), radii=radii.ravel())
-    recorder.columns(entity, times, columns.partition(np.full(len(radii), len(pieces))))
-
-
-def _record_front(
-    recorder: Recorder,
-    entity: Entity,
-    times: Times,
-    raised: npt.NDArray[np.float32],
-    frames: Frames,
-) -> None:
-    """Record the front where it runs, as a point on the tension."""
-    runs = (frames.front > 0.0) & (frames.front < 1.0)
-    places = [
-        [np.interp(front, frames.places, axis) for axis in now.T]
-        for front, now in zip(frames.front[runs], raised[runs], strict=True)
-    ]
-    recorder.static(entity, rr.Points3D.from_fields(colors=dark("ink"), radii=-6.0))
-    points = rr.Points3D.columns(positions=np.array(places).reshape(-1, 3))
-    recorder.columns(entity, times, points.partition(runs.astype(np.int64)))
+        # The tendon in pieces, thick where they slip.
+        pieces = np.stack((line[:-1], line[1:]), axis=1).astype(np.float32)
+        recorder.static((*mine, "tendon"), rr.LineStrips3D(pieces))
+        radii = size * np.where(np.isin(frames.slip, (1, -1)), THICK, THIN)
+        columns = rr.LineStrips3D.columns(colors=shades.ravel(), radii=radii.ravel())
+        counts = np.full(len(radii), len(pieces))
+        recorder.columns((*mine, "tendon"), times, columns.partition(counts))
+        # The front where it runs, as a point on the tension.
+        runs = (frames.front > 0.0) & (frames.front < 1.0)
+        places = [
+            [np.interp(front, frames.places, axis) for axis in now.T]
+            for front, now in zip(frames.front[runs], raised[runs], strict=True)
+        ]
+        look = rr.Points3D.from_fields(colors=dark("ink"), radii=-6.0)
+        recorder.static((*mine, "front"), look)
+        points = rr.Points3D.columns(positions=np.array(places).reshape(-1, 3))
+        recorder.columns((*mine, "front"), times, points.partition(runs.astype(np.int64)))
 
 
 def view_of_tendon(run: SeenRun) -> rrb.View | None:

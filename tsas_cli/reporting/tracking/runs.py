@@ -1,6 +1,6 @@
 """The runs that the plots show, each controller's with the first seed, and their curves."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -17,6 +17,7 @@ from tsas_cli.reporting.numbers import plain, spanned
 from tsas_cli.support.arrays import Floats
 
 _OUTSIDE = 0.02
+_NO_NOISE = "The true force is that at the load, without its sensor's noise."
 _SCALES = (
     "Wanted less true force at the load. Each panel has a scale of its own; the dashed lines, "
     "where they are in view, are 2 % of the wanted force's range."
@@ -98,59 +99,74 @@ def read_conditions(inputs: Inputs, tracking: TrackingFile) -> tuple[RunsUnderCo
     )
 
 
-def curve_parts(conditions: tuple[RunsUnderCondition, ...]) -> tuple[Section, Section, Section]:
-    """Return the parts of force, error and control effort, one picture for each condition."""
-
-    def part(name: str, title: str, intro: str, make: Callable[..., Picture]) -> Section:
-        pictures = tuple(map(make, conditions))
-        return Section(f"tracking-{name}", title, (intro,), pictures=pictures)
-
-    without_noise = "The true force is that at the load, without its sensor's noise."
-    return (
-        part("force", "Wanted and true force", without_noise, _force),
-        part("error", "Tracking error", _SCALES, _error),
-        part("effort", "Control effort", _EFFORT, _effort),
-    )
+def curve_parts(conditions: tuple[RunsUnderCondition, ...]) -> Iterator[Section]:
+    """Yield the parts of force, error and control effort, one picture for each condition."""
+    for key, title, intro, make in (
+        ("force", "Wanted and true force", _NO_NOISE, _force),
+        ("error", "Tracking error", _SCALES, _error),
+        ("effort", "Control effort", _EFFORT, _effort),
+    ):
+        pictures = tuple(make(condition, f"tracking-{key}") for condition in conditions)
+        yield Section(f"tracking-{key}", title, (intro,), pictures=pictures)
 
 
-def _force(condition: RunsUnderCondition) -> Picture:
+def _force(condition: RunsUnderCondition, key: str) -> Picture:
     wanted = condition.runs[0].columns[WANTED]
-    curves = [TimeCurve(run.name, run.name, run.columns[TRUE]) for run in condition.runs]
+
+    def draw(
+        figure: Any, time_s: Floats, curves: Sequence[TimeCurve], change_s: float | None
+    ) -> None:
+        """Draw what is wanted, wide and grey, and all curves over it."""
+        axes = figure.add_subplot()
+        line(axes, time_s, wanted, color=STAND_IN["measured"], linewidth=3.2, label="wanted")
+        for curve in curves:
+            colour = of_controller(curve.controller)
+            line(axes, time_s, curve.values, color=colour, linewidth=1.1, label=curve.label)
+        mark_change(axes, change_s)
+        axes.set(xlabel="time [s]", ylabel="force at the load [N]")
+        legend(figure)
+
     return _picture(
         condition,
-        curves,
-        partial(draw_together, wanted=wanted, label="force at the load [N]"),
-        key="force",
+        [TimeCurve(run.name, run.name, run.columns[TRUE]) for run in condition.runs],
+        draw,
+        key=key,
         what=("Force at the load", f"newton: wanted {spanned(wanted)}"),
         caption="wanted force, and what each controller gives",
         height_in=3.5,
     )
 
 
-def _error(condition: RunsUnderCondition) -> Picture:
+def _error(condition: RunsUnderCondition, key: str) -> Picture:
     band = _OUTSIDE * float(np.ptp(condition.runs[0].columns[WANTED]))
-    curves = [_error_curve(run) for run in condition.runs]
+    rmse = (plain(float(np.sqrt(np.mean(run.error**2))), 3) for run in condition.runs)
     return _picture(
         condition,
-        curves,
+        [
+            TimeCurve(f"{run.name}, RMSE {size} N", run.name, run.error)
+            for run, size in zip(condition.runs, rmse, strict=True)
+        ],
         partial(draw_panels, label="error [N]", band=band),
-        key="error",
+        key=key,
         what=("Tracking error", "newton"),
         caption="wanted less true force over time",
-        height_in=panels_in(len(curves)),
+        height_in=_panels_in(condition),
     )
 
 
-def _effort(condition: RunsUnderCondition) -> Picture:
-    curves = [_effort_curve(run) for run in condition.runs]
+def _effort(condition: RunsUnderCondition, key: str) -> Picture:
+    chatter = (plain(run.result.scores.chatter_rpm_per_s.mean, 3) for run in condition.runs)
     return _picture(
         condition,
-        curves,
+        [
+            TimeCurve(f"{run.name}, chatter {rate} rpm/s", run.name, run.columns[ASKED])
+            for run, rate in zip(condition.runs, chatter, strict=True)
+        ],
         partial(draw_panels, label="u [rpm]", same_scale=True),
-        key="effort",
+        key=key,
         what=("Motor speed asked for", "rpm"),
         caption="motor speed asked for over time",
-        height_in=panels_in(len(curves)),
+        height_in=_panels_in(condition),
     )
 
 
@@ -165,53 +181,21 @@ def _picture(
     height_in: float,
 ) -> Picture:
     """Return a condition's curves; `what` is shown, and in which unit."""
-    drawn = partial(
-        draw, time_s=condition.runs[0].time_s, curves=curves, change_s=condition.change_s
-    )
     said = "; ".join(f"{curve.label}, {spanned(curve.values)}" for curve in curves)
+    time_s, change_s = condition.runs[0].time_s, condition.change_s
     return picture(
-        drawn,
-        key=f"tracking-{key}-{condition.number}",
+        partial(draw, time_s=time_s, curves=curves, change_s=change_s),
+        key=f"{key}-{condition.number}",
         alt=f"{what[0]} over time, {condition.name}, in {what[1]}: {said}.",
         caption=f"{condition.name.capitalize()}: {caption}.",
         height_in=height_in,
     )
 
 
-def _error_curve(run: TrackedRun) -> TimeCurve:
-    error = run.error
-    rmse = plain(float(np.sqrt(np.mean(error**2))), 3)
-    return TimeCurve(f"{run.name}, RMSE {rmse} N", run.name, error)
-
-
-def _effort_curve(run: TrackedRun) -> TimeCurve:
-    chatter = plain(run.result.scores.chatter_rpm_per_s.mean, 3)
-    return TimeCurve(f"{run.name}, chatter {chatter} rpm/s", run.name, run.columns[ASKED])
-
-
-def panels_in(panels: int) -> float:
-    """Return the height in inches that so many panels need."""
+def _panels_in(condition: RunsUnderCondition) -> float:
+    """Return the height in inches that a panel for each run needs."""
+    panels = len(condition.runs)
     return 0.6 + (1.15 * panels if panels > 1 else 2.4)
-
-
-def draw_together(
-    figure: Any,
-    *,
-    time_s: Floats,
-    wanted: Floats,
-    curves: Sequence[TimeCurve],
-    label: str,
-    change_s: float | None = None,
-) -> None:
-    """Draw what is wanted, wide and grey, and all curves over it; `label` names the axis."""
-    axes = figure.add_subplot()
-    line(axes, time_s, wanted, color=STAND_IN["measured"], linewidth=3.2, label="wanted")
-    for curve in curves:
-        colour = of_controller(curve.controller)
-        line(axes, time_s, curve.values, color=colour, linewidth=1.1, label=curve.label)
-    mark_change(axes, change_s)
-    axes.set(xlabel="time [s]", ylabel=label)
-    legend(figure)
 
 
 def draw_panels(

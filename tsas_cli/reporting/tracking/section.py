@@ -1,32 +1,59 @@
 """How well a wanted force is followed, by whom, and at what cost."""
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.base import ModelFile
-from tsas_cli.records.tracking import Spread, StatedSettings, TrackingFile
+from tsas_cli.records.tracking import ADAPTIVE, Adaptive, Spread, StatedSettings, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
-from tsas_cli.reporting.content import Picture, Section, Table
-from tsas_cli.reporting.drawing import kept_cells, picture
+from tsas_cli.reporting.content import Picture, Section, Table, table_by_column, table_of
+from tsas_cli.reporting.drawing import bound, kept_cells, line, picture
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import ABSENT, plain, with_spread
-from tsas_cli.reporting.tracking import adaptation
+from tsas_cli.reporting.numbers import ABSENT, over_seeds, plain, with_spread
 from tsas_cli.reporting.tracking.runs import (
+    ESTIMATES,
     WANTED,
     X_IN,
     X_INV,
     RunsUnderCondition,
     TrackedRun,
     curve_parts,
+    mark_change,
     read_conditions,
 )
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Mask
 
 _ACROSS = 2
+_ADAPTED = (
+    "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "
+    "bounds. They serve the sliding surface; they need not come to the drive's true values."
+)
+_SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
+
+
+@dataclass(frozen=True)
+class AdaptiveEstimate:
+    """One parameter: symbol, unit, values over time, shape (n,), and bounds."""
+
+    symbol: str
+    unit: str
+    values: Floats
+    lowest: float
+    highest: float
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """The first and the last value."""
+        return plain(float(self.values[0]), 3), plain(float(self.values[-1]), 3)
+
+    @property
+    def at_bound(self) -> Mask:
+        """Whether it is at a bound, shape (n,)."""
+        return (self.values <= self.lowest) | (self.values >= self.highest)
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -37,7 +64,7 @@ def section(inputs: Inputs) -> Section | None:
     conditions = read_conditions(inputs, tracking)
     force, error, effort = curve_parts(conditions)
     portrait = portraits_part(conditions, tracking.settings)
-    adapted = adaptation.part(conditions, tracking.settings.controllers.adaptive)
+    adapted = adaptation_part(conditions, tracking.settings.controllers.adaptive)
     return Section(
         "tracking",
         "Tracking",
@@ -108,29 +135,21 @@ _COLUMNS = (
 
 def _scores(tracking: TrackingFile) -> Table:
     """Return the scores, with their spread where there is more than one seed."""
-    seeds = tracking.seeds[1] - tracking.seeds[0] + 1
-    over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
     rows = tuple(
         (
             result.controller,
             result.condition,
             *(_cell(getattr(result.scores, key)) for _, key in _COLUMNS),
-            _limit(result.scores.at_limit_percent),
+            _cell(limit) if (limit := result.scores.at_limit_percent).mean else ABSENT,
         )
         for result in tracking.results
     )
     header = ("controller", "condition", *(title for title, _ in _COLUMNS), "at its limit [%]")
-    numeric = frozenset(range(2, len(header)))
-    return Table(f"Scores{over}", header, rows, numeric=numeric).without_empty()
+    return table_of(f"Scores{over_seeds(*tracking.seeds)}", header, rows)
 
 
 def _cell(number: Spread) -> str:
     return with_spread(number.mean, number.sd)
-
-
-def _limit(number: Spread) -> str:
-    """Return how long the motor is at its speed limit; nothing where it never is."""
-    return _cell(number) if number.mean else ABSENT
 
 
 def portraits_part(conditions: tuple[RunsUnderCondition, ...], settings: StatedSettings) -> Section:
@@ -151,12 +170,32 @@ def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture
         f"{name} error up to {plain(_most(x), 3)} mm, rate up to {plain(_most(y), 3)} mm/s"
         for name, x, y in orbits
     )
+    across = min(_ACROSS, len(orbits))
+    down = -(-len(orbits) // across)
+
+    def draw(figure: Any) -> None:
+        """Draw each error and its rate in a panel with its own scales, zero as a cross."""
+        panels = figure.subplots(down, across, squeeze=False)
+        for axes in panels.flat[len(orbits) :]:
+            axes.set_axis_off()
+        for axes, (name, x, y) in zip(panels.flat, orbits, strict=False):
+            axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+            axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.9)
+            kept = kept_cells(x, y)
+            axes.plot(x[kept], y[kept], color=of_controller(name), linewidth=0.8)
+            axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
+            axes.locator_params(nbins=5)
+        for axes in panels[-1]:
+            axes.set_xlabel("e [mm]")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("de/dt [mm/s]")
+
     return picture(
-        partial(draw_portraits, orbits=orbits),
+        draw,
         key=f"tracking-phase-{condition.number}",
         alt=f"Phase portraits of the drive's error, {condition.name}: {said}.",
         caption=f"{condition.name.capitalize()}: rate of the drive's error over the error.",
-        height_in=portraits_in(len(orbits)),
+        height_in=0.5 + 2.0 * down if len(orbits) > 1 else 3.5,
     )
 
 
@@ -175,25 +214,68 @@ def _most(values: Floats) -> float:
     return float(np.abs(values).max())
 
 
-def portraits_in(orbits: int) -> float:
-    """Return the height in inches that so many panels need."""
-    return 0.5 + 2.0 * -(-orbits // _ACROSS) if orbits > 1 else 3.5
+def adaptation_part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -> Section | None:
+    """Return the part, None where no controller adapts."""
+    runs = [(c, run) for c in conditions for run in c.runs if run.name == ADAPTIVE]
+    if not runs:
+        return None
+    rows = [
+        {
+            "parameter": it.symbol,
+            "condition": condition.name,
+            "at the start": it.ends[0],
+            "at the end": it.ends[1],
+            "lower bound": f"{it.lowest:g}",
+            "upper bound": f"{it.highest:g}",
+            "unit": it.unit,
+            "time at a bound [%]": f"{100.0 * float(np.mean(it.at_bound)):.0f}",
+        }
+        for condition, run in runs
+        for it in _estimates(run, law)
+    ]
+    table = table_by_column("Adapted parameters", rows)
+    return Section(
+        "tracking-adaptation",
+        "Adapted parameters",
+        (_ADAPTED,),
+        tables=(table,),
+        pictures=tuple(_estimates_picture(condition, run, law) for condition, run in runs),
+    )
 
 
-def draw_portraits(figure: Any, *, orbits: Sequence[tuple[str, Floats, Floats]]) -> None:
-    """Draw each controller's error and its rate in a panel with its own scales, zero as a cross."""
-    across = min(_ACROSS, len(orbits))
-    panels = figure.subplots(-(-len(orbits) // across), across, squeeze=False)
-    for axes in panels.flat[len(orbits) :]:
-        axes.set_axis_off()
-    for axes, (name, x, y) in zip(panels.flat, orbits, strict=False):
-        axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
-        axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.9)
-        kept = kept_cells(x, y)
-        axes.plot(x[kept], y[kept], color=of_controller(name), linewidth=0.8)
-        axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
-        axes.locator_params(nbins=5)
-    for axes in panels[-1]:
-        axes.set_xlabel("e [mm]")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("de/dt [mm/s]")
+def _estimates(run: TrackedRun, law: Adaptive) -> Iterator[AdaptiveEstimate]:
+    names = zip(ESTIMATES, _SYMBOLS, law.lowest, law.highest, strict=True)
+    for column, (symbol, unit), lowest, highest in names:
+        yield AdaptiveEstimate(symbol, unit, run.columns[column], lowest, highest)
+
+
+def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adaptive) -> Picture:
+    estimates = tuple(_estimates(run, law))
+    said = "; ".join(
+        f"{it.symbol} from {' to '.join(it.ends)} {it.unit}, "
+        f"bounds {it.lowest:g} and {it.highest:g}"
+        for it in estimates
+    )
+
+    def draw(figure: Any) -> None:
+        """Draw a panel for each estimate, its axis in powers of ten where all is positive."""
+        rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, it in zip(rows, estimates, strict=True):
+            line(axes, run.time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
+            for value in (it.lowest, it.highest):
+                bound(axes, value)
+            if min(it.lowest, float(it.values.min())) > 0.0:
+                axes.set_yscale("log")
+                axes.yaxis.set_major_formatter("{x:g}")
+                axes.yaxis.set_minor_formatter("")
+            mark_change(axes, condition.change_s)
+            axes.set_title(f"{it.symbol} [{it.unit}]", loc="left", fontsize=9.0, pad=3.0)
+        rows[-1].set_xlabel("time [s]")
+
+    return picture(
+        draw,
+        key=f"tracking-adaptation-{condition.number}",
+        alt=f"Adapted parameters over time, {condition.name}: {said}.",
+        caption=f"{condition.name.capitalize()}: estimates over time, bounds dashed.",
+        height_in=4.2,
+    )

@@ -190,17 +190,14 @@ def drawn_with() -> str:
         except subprocess.TimeoutExpired as error:
             raise InputError(f"the viewer draws nothing within {LONGEST_S:g} s") from error
         if ended.returncode or not picture.is_file():
-            raise InputError("the viewer finds nothing to draw with", remedy=_remedy())
+            raise InputError(
+                "the viewer finds nothing to draw with",
+                remedy="install a driver for Vulkan (without a graphics card on Debian: `apt "
+                "install mesa-vulkan-drivers libvulkan1`), or use `tsas view --web`",
+            )
     log = (ended.stdout + ended.stderr).decode(errors="replace")
     found = ADAPTER.search(log)
     if found is None:
         return "yes"
     backend, kind, name = found.groups()
     return f"{backend} on {name}" + (", in software" if kind == "Cpu" else "")
-
-
-def _remedy() -> str:
-    return (
-        "install a driver for Vulkan (without a graphics card on Debian: "
-        "`apt install mesa-vulkan-drivers libvulkan1`), or use `tsas view --web`"
-    )

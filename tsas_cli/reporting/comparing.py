@@ -1,4 +1,7 @@
-"""The page of `tsas compare`: what differs, how sure that is, and where it shows."""
+"""The page of `tsas compare`: what differs, how sure that is, and where it shows.
+
+It is of two models, or of two folders of tracked runs.
+"""
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
@@ -7,18 +10,20 @@ from typing import Any
 
 import numpy as np
 
+from tsas_cli.comparing import tracked
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.predictions import Both, channels
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.stage import differs, tables
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.records.comparison import ParameterPair, shared_name
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table, rendered
+from tsas_cli.reporting.content import Group, Picture, Section, rendered, table_of
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
-from tsas_cli.reporting.drawing import legend, picture
-from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
+from tsas_cli.reporting.drawing import Residuals, draw_two_residuals, height_in, legend, picture
+from tsas_cli.reporting.numbers import plain, with_spread
+from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 
 _MOST = 8  # strips of a picture
 _SAID = 3  # findings that stand in the summary
@@ -41,11 +46,11 @@ def comparison_page(it: Comparison, advance: Callable[[], None] = lambda: None) 
 
 
 def _sections(it: Comparison) -> Iterator[Section]:
-    printed = {table[0]: Table.printed(table) for table in tables(it)}
+    printed = {table[0]: table_of(*table) for table in tables(it)}
     points = (*findings(it)[_SAID:], *notes(it))
     yield Section("sides", "What is compared", points=points, tables=(printed["sides"],))
     if "parameters" in printed:
-        shown = tuple(value_pictures(it))
+        shown = tuple(_value_pictures(it))
         how = (_VALUES,) if it.tested else ()
         yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
     if "effects" in printed:
@@ -82,16 +87,16 @@ def _repeat(it: Comparison) -> Section:
     )
     if it.on is not None:
         files += tuple(("", file, digest) for file, digest in it.on.hashes().items())
-    return repeat_section(command, files)
+    return _repeated(command, files)
 
 
-def repeat_section(command: Sequence[str], files: tuple[tuple[str, str, str], ...]) -> Section:
+def _repeated(command: Sequence[str], files: tuple[tuple[str, str, str], ...]) -> Section:
     """Return the command that makes the page, and the checksums of what both sides read."""
     return Section(
         "repeat",
         "How to repeat it",
         ("This command makes the same page from the same files.",),
-        tables=(Table("Files read", ("side", "file", "SHA-256"), files),),
+        tables=(table_of("Files read", ("side", "file", "SHA-256"), files),),
         commands=(shlex.join([*command, "--out", "compared"]),),
     )
 
@@ -163,7 +168,7 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
     )
 
 
-def value_pictures(it: Comparison) -> Iterator[Picture]:
+def _value_pictures(it: Comparison) -> Iterator[Picture]:
     """Yield the picture of fitted values, differing ones first, those of single runs last."""
     shown = [p for p in it.pairs if p.a and p.b and "fitted" in (p.a.origin, p.b.origin)]
     shown.sort(key=lambda pair: (pair not in it.differing, pair.run != "all"))
@@ -178,7 +183,7 @@ def value_pictures(it: Comparison) -> Iterator[Picture]:
     )
     star = " A star marks a difference beyond both uncertainties." if it.tested else ""
     yield picture(
-        partial(draw_values, strips=strips),
+        partial(_draw_values, strips=strips),
         key="values",
         alt=f"Values of A and B with 95 % intervals, each on its own axis. {said}.",
         caption=f"Values of A and B with their 95 % intervals, each on its own axis.{star}",
@@ -190,27 +195,18 @@ def _label(pair: ParameterPair) -> str:
     return pair.name.rpartition(".")[2] + ("" if pair.run == "all" else f"\nrun {pair.run}")
 
 
-def draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
+def _draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
     """Draw the strips below each other, A above B in each; a star marks those that differ."""
+    look = {"marker": "o", "markersize": 5, "capsize": 3, "elinewidth": 1.6, "linestyle": "none"}
     rows = figure.subplots(len(strips), 1, squeeze=False)[:, 0]
     for axes, pair in zip(rows, strips, strict=True):
         for name, side, role, y in (("A", pair.a, "before", 1.0), ("B", pair.b, "after", 0.0)):
-            if side is None or side.value is None:
-                continue
-            ends = side.interval_low, side.interval_high
-            low, high = (side.value if end is None else end for end in ends)
-            axes.errorbar(
-                side.value,
-                y,
-                xerr=[[side.value - low], [high - side.value]],
-                marker="o",
-                markersize=5,
-                capsize=3,
-                elinewidth=1.6,
-                linestyle="none",
-                color=STAND_IN[role],
-                label=name,
-            )
+            if side is not None and side.value is not None:
+                ends = side.interval_low, side.interval_high
+                low, high = (side.value if end is None else end for end in ends)
+                reach = [[side.value - low], [high - side.value]]
+                style = {"color": STAND_IN[role], "label": name, **look}
+                axes.errorbar(side.value, y, xerr=reach, **style)
         axes.set(ylim=(-0.6, 1.6), yticks=[])
         axes.margins(x=0.08)
         axes.locator_params(axis="x", nbins=4)
@@ -219,3 +215,53 @@ def draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
         axes.set_ylabel(_label(pair) + star, rotation=0, ha="right", va="center")
         axes.spines["left"].set_visible(False)
     legend(figure, rows[0])
+
+
+def tracked_page(it: tracked.Tracks, advance: Callable[[], None] = lambda: None) -> str:
+    """Return the whole page as HTML; `advance` is called after each section.
+
+    InputError: a run cannot be read.
+    """
+    return rendered(
+        name="A and B, side by side",
+        about=" and ".join(str(path) for path in it.paths.values()),
+        summary=" ".join(it.record.findings)
+        or "There is no controller and condition that both have.",
+        sections=_tracked_sections(it),
+        advance=advance,
+    )
+
+
+def _tracked_sections(it: tracked.Tracks) -> Iterator[Section]:
+    sides = table_of("Folders", ("", "path"), [(n, str(p)) for n, p in it.paths.items()])
+    printed = [table_of(*table) for table in tracked.tables(it)]
+    yield Section("sides", "What is compared", points=it.record.notes, tables=(sides, *printed))
+    if pictures := tuple(_error_pictures(it)):
+        what = "Wanted less true force at the load, with the first seed of noise."
+        yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
+    sides_read = {"A": it.record.a, "B": it.record.b}
+    files = tuple((n, *read) for n, side in sides_read.items() for read in side.files.items())
+    yield _repeated(["tsas", "compare", *map(str, it.paths.values())], files)
+
+
+def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
+    """Yield the errors over time of each pair whose runs have the same clock."""
+    for number, both in enumerate(it.followed):
+        a, b = (
+            columns_of(result_file(path, result.run), ("time_s", WANTED, TRUE))
+            for path, result in zip(it.paths.values(), (both.a, both.b), strict=True)
+        )
+        if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
+            continue
+        first, second = (side[WANTED] - side[TRUE] for side in (a, b))
+        panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
+        sizes = (with_spread(r.scores.rmse_N.mean, r.scores.rmse_N.sd) for r in (both.a, both.b))
+        in_a, in_b = sizes
+        words = f"{both.a.controller}, {both.a.condition}: RMSE {in_a} N in A, {in_b} N in B."
+        yield picture(
+            partial(draw_two_residuals, panels=[panel]),
+            key=f"tracked-{number}",
+            alt=f"Wanted less true force at the load over time, of A and of B. {words}",
+            caption=words,
+            height_in=height_in(1) + 0.6,
+        )

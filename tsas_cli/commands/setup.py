@@ -1,18 +1,53 @@
-"""`tsas doctor`: check the installation."""
+"""Setting up: `tsas init` creates a project, `tsas doctor` checks the installation."""
 
 import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from tsas_cli.commands.common import Json, Quiet, progress, show
+from tsas_cli.records.result import heading
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError, printable
 
 if TYPE_CHECKING:
     from tsas_cli.installation.machine import Ability
     from tsas_cli.installation.packages import Extra, Package
 
-_Rows = Sequence[tuple[str, ...]]
+
+def init(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The project's folder; nothing is overwritten.")
+    ],
+    sources: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--from", metavar="SOURCE", help="Recordings to copy and to propose a map for."
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Create a project: a map, a folder for recordings, and a Makefile from them to a report."""
+    from tsas_cli.project.start import MAP, start
+
+    files, proposal = start(folder, sources or [])
+    questions = proposal.questions if proposal else {}
+    summary = heading("init") | {
+        "folder": str(folder),
+        "files": files,
+        "questions": questions,
+    }
+    tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
+    show(summary, tables, quiet=quiet, as_json=as_json)
+    if not quiet and not as_json:
+        todo = questions or not proposal
+        first = f"answer the questions in {folder / MAP}, then " if todo else ""
+        print(printable(f"Next: {first}`make -C {shlex.quote(str(folder))}`"))
 
 
 def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
@@ -20,9 +55,6 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
 
     The exit code is 2 if a required package is missing; anything else is only reported.
     """
-    from tsas_cli.support import __version__
-    from tsas_cli.support.errors import InputError
-
     try:
         from tsas_cli.installation.packages import core_packages, extras
     except ModuleNotFoundError as error:
@@ -32,10 +64,7 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
     with progress("looking", quiet=quiet):
         core, more, machine = list(core_packages()), extras(), list(abilities())
     python = sys.version.split()[0]
-    summary = {
-        "format": 1,
-        "stage": "doctor",
-        "version": __version__,
+    summary = heading("doctor") | {
         "python": {"version": python, "program": sys.executable},
         "packages": [asdict(package) for package in core],
         "extras": [
@@ -57,7 +86,7 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
 
 def _tables(
     title: str, core: Sequence["Package"], more: Sequence["Extra"], machine: Sequence["Ability"]
-) -> Iterator[tuple[str, tuple[str, ...], _Rows]]:
+) -> Iterator[tuple[str, tuple[str, ...], Sequence[tuple[str, ...]]]]:
     rows = [(p.name, p.asked, p.found or "", p.problem or "installed") for p in core]
     yield title, ("package", "required", "found", "state"), rows
     rows = [(e.name, e.purpose, ", ".join(e.missing) or "none", _install(e)) for e in more]

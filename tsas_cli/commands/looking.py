@@ -1,14 +1,38 @@
-"""`tsas view`: show recordings and results of stages in the viewer."""
+"""To look at: `tsas report` and `view`; to look up: `tsas effects` and `explain`."""
 
 import sys
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Json, Quiet, progress, show
+import tsas_cli as tsas
+from tsas_cli.commands.common import Force, Json, Quiet, present, progress, run, show
+from tsas_cli.commands.completion import effect_names
 
 _HOW_TO_END = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
+
+
+def report(
+    folders: Annotated[list[str], typer.Argument(metavar="DIR", help="Output folders of stages.")],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The HTML page to write.")],
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Also print the page to PDF; requires Chromium.")
+    ] = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
+
+    Each DIR is a dataset or an output of `tsas check`, `calibrate`, `simulate` or `diagnose`. An
+    output of `tsas track`, `close-loop` or `identify-harmonic-drive` has a page of its own. Several
+    simulations stand beside each other, each by the name of its folder.
+
+    With `--pdf`, report.html is also printed to report.pdf.
+    """
+    run("report", **locals())
 
 
 def view(
@@ -50,3 +74,26 @@ def view(
             print(viewer.page)
         sys.stdout.flush()
         viewer.child.wait()
+
+
+def effects(quiet: Quiet = False, as_json: Json = False) -> None:
+    """List the effects by which a real rig differs from the nominal model."""
+    present(tsas.catalogue(), quiet=quiet, as_json=as_json)
+    if sys.stderr.isatty() and not (quiet or as_json):
+        print("`tsas explain NAME` describes an effect", file=sys.stderr)
+
+
+def explain(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME",
+            help="An effect of `tsas effects`.",
+            autocompletion=effect_names,
+        ),
+    ],
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Describe an effect: its signature, equation, parameters and isolating experiment."""
+    present(tsas.explain(name), quiet=quiet, as_json=as_json)
