@@ -8,35 +8,9 @@ import math
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT
+from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.balance import balance
-from tsas_cli.physics.lugre.state import (
-    DAMPING,
-    DEFLECTION,
-    DEFLECTION_1,
-    DEFLECTION_HISTORY,
-    DEFLECTION_NEW,
-    INCREMENT,
-    LOAD_STATE,
-    LOAD_STATE_1,
-    LOAD_STATE_HISTORY,
-    LOAD_STATE_NEW,
-    POSITION,
-    POSITION_1,
-    POSITION_2,
-    POSITION_HISTORY,
-    POSITION_NEW,
-    RATE,
-    RATE_PREDICTED,
-    SPEED,
-    SPEED_1,
-    SPEED_HISTORY,
-    STIFFNESS,
-    TENSION_HISTORY,
-    TENSION_SLOPE,
-    Formula,
-    LugreLaws,
-    Step,
-)
+from tsas_cli.physics.lugre.state import Formula, LugreLaws, Step
 from tsas_cli.physics.lugre.tridiagonal import solve
 from tsas_cli.support.arrays import Floats
 
@@ -66,21 +40,21 @@ def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
         g1 = -h * both / (h1 * h2)
         g2 = h * (h + h1) / ((h1 + h2) * h2)
     for i in range(laws.n + 2):
-        s[POSITION_HISTORY + i] = near * s[POSITION + i] - far * s[POSITION_1 + i]
-        s[SPEED_HISTORY + i] = near * s[SPEED + i] - far * s[SPEED_1 + i]
-        s[DEFLECTION_HISTORY + i] = near * s[DEFLECTION + i] - far * s[DEFLECTION_1 + i]
-        s[RATE + i] = (
-            g0 * s[POSITION + i]
-            + g1 * s[POSITION_1 + i]
-            + g2 * s[POSITION_2 + i]
-            - s[POSITION_HISTORY + i]
+        s[at.POSITION_HISTORY + i] = near * s[at.POSITION + i] - far * s[at.POSITION_1 + i]
+        s[at.SPEED_HISTORY + i] = near * s[at.SPEED + i] - far * s[at.SPEED_1 + i]
+        s[at.DEFLECTION_HISTORY + i] = near * s[at.DEFLECTION + i] - far * s[at.DEFLECTION_1 + i]
+        s[at.RATE + i] = (
+            g0 * s[at.POSITION + i]
+            + g1 * s[at.POSITION_1 + i]
+            + g2 * s[at.POSITION_2 + i]
+            - s[at.POSITION_HISTORY + i]
         ) / gh
-        s[TENSION_SLOPE + i] = s[STIFFNESS + i] * gh + s[DAMPING + i]
+        s[at.TENSION_SLOPE + i] = s[at.STIFFNESS + i] * gh + s[at.DAMPING + i]
     for i in range(2):
-        s[LOAD_STATE_HISTORY + i] = near * s[LOAD_STATE + i] - far * s[LOAD_STATE_1 + i]
+        s[at.LOAD_STATE_HISTORY + i] = near * s[at.LOAD_STATE + i] - far * s[at.LOAD_STATE_1 + i]
     for j in range(laws.n + 1):
-        s[TENSION_HISTORY + j] = laws.preload_N + s[STIFFNESS + j] * (
-            s[POSITION_HISTORY + j] - s[POSITION_HISTORY + j + 1]
+        s[at.TENSION_HISTORY + j] = laws.preload_N + s[at.STIFFNESS + j] * (
+            s[at.POSITION_HISTORY + j] - s[at.POSITION_HISTORY + j + 1]
         )
 
 
@@ -93,11 +67,13 @@ def newton(s: Floats, step: Step, laws: LugreLaws, residual_N: float) -> tuple[i
     """
     last = laws.n + 1
     if laws.drive.given == DISPLACEMENT:
-        s[RATE] = 0.0
+        s[at.RATE] = 0.0
     if laws.load.given == DISPLACEMENT:
-        s[RATE + last] = (step.load.value - step.frame.value - s[POSITION_HISTORY + last]) / step.gh
+        s[at.RATE + last] = (
+            step.load.value - step.frame.value - s[at.POSITION_HISTORY + last]
+        ) / step.gh
     for i in range(laws.n + 2):
-        s[RATE_PREDICTED + i] = s[RATE + i]
+        s[at.RATE_PREDICTED + i] = s[at.RATE + i]
     for iteration in range(MOST_ITERATIONS + 1):
         residual = balance(s, step, laws)
         if residual <= residual_N:
@@ -106,7 +82,7 @@ def newton(s: Floats, step: Step, laws: LugreLaws, residual_N: float) -> tuple[i
             return iteration, False
         solve(s, laws.n)
         for i in range(laws.n + 2):
-            s[RATE + i] += s[INCREMENT + i]
+            s[at.RATE + i] += s[at.INCREMENT + i]
     return MOST_ITERATIONS, False
 
 
@@ -115,10 +91,10 @@ def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
     """Return the error of a step as a tension, from the error of the prediction [N]."""
     h, h1, h2, gh, _, _ = formula
     for j in range(laws.n + 1):
-        difference = (s[RATE + j] - s[RATE_PREDICTED + j]) - (
-            s[RATE + j + 1] - s[RATE_PREDICTED + j + 1]
+        difference = (s[at.RATE + j] - s[at.RATE_PREDICTED + j]) - (
+            s[at.RATE + j + 1] - s[at.RATE_PREDICTED + j + 1]
         )
-        s[INCREMENT + j] = abs(s[STIFFNESS + j] * difference)
+        s[at.INCREMENT + j] = abs(s[at.STIFFNESS + j] * difference)
     largest = largest_increment(s, laws.n + 1)
     if h2 == math.inf:
         return 0.5 * gh * largest
@@ -131,10 +107,10 @@ def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
 @kernel
 def largest_increment(s: Floats, count: int) -> float:
     """Return the largest of INCREMENT, by two independent searches."""
-    a, b = s[INCREMENT], 0.0
+    a, b = s[at.INCREMENT], 0.0
     for i in range(1, count - 1, 2):
-        a, b = max(a, s[INCREMENT + i]), max(b, s[INCREMENT + i + 1])
-    largest: float = max(a, b, s[INCREMENT + count - 1])
+        a, b = max(a, s[at.INCREMENT + i]), max(b, s[at.INCREMENT + i + 1])
+    largest: float = max(a, b, s[at.INCREMENT + count - 1])
     return largest
 
 
@@ -142,12 +118,15 @@ def largest_increment(s: Floats, count: int) -> float:
 def accept_step(s: Floats, step: Step, laws: LugreLaws) -> None:
     """Accept a step: shift the state to its end."""
     for i in range(laws.n + 2):
-        s[POSITION_2 + i] = s[POSITION_1 + i]
-        s[POSITION_1 + i] = s[POSITION + i]
-        s[POSITION + i] = s[POSITION_NEW + i]
-        s[SPEED_1 + i] = s[SPEED + i]
-        s[SPEED + i] = s[RATE + i] + step.frame.rate
-        s[DEFLECTION_1 + i] = s[DEFLECTION + i]
-        s[DEFLECTION + i] = s[DEFLECTION_NEW + i]
+        s[at.POSITION_2 + i] = s[at.POSITION_1 + i]
+        s[at.POSITION_1 + i] = s[at.POSITION + i]
+        s[at.POSITION + i] = s[at.POSITION_NEW + i]
+        s[at.SPEED_1 + i] = s[at.SPEED + i]
+        s[at.SPEED + i] = s[at.RATE + i] + step.frame.rate
+        s[at.DEFLECTION_1 + i] = s[at.DEFLECTION + i]
+        s[at.DEFLECTION + i] = s[at.DEFLECTION_NEW + i]
     for i in range(2):
-        s[LOAD_STATE_1 + i], s[LOAD_STATE + i] = s[LOAD_STATE + i], s[LOAD_STATE_NEW + i]
+        s[at.LOAD_STATE_1 + i], s[at.LOAD_STATE + i] = (
+            s[at.LOAD_STATE + i],
+            s[at.LOAD_STATE_NEW + i],
+        )

@@ -21,6 +21,7 @@ from tsas_cli.physics.boundary import (
     with_spring,
 )
 from tsas_cli.physics.ends import losses_without_speed
+from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.balance import balance_drive
 from tsas_cli.physics.lugre.ends import EndState, StepEnds, ends_after
 from tsas_cli.physics.lugre.input import lump_share
@@ -33,25 +34,7 @@ from tsas_cli.physics.lugre.start import (
     set_segments,
     with_drive,
 )
-from tsas_cli.physics.lugre.state import (
-    DEFLECTION,
-    DEFLECTION_HISTORY,
-    DEFLECTION_NEW,
-    DIAGONAL,
-    FRICTION,
-    POSITION,
-    POSITION_HISTORY,
-    RATE,
-    RESIDUAL,
-    ROWS,
-    SPEED,
-    SPEED_HISTORY,
-    TENSION,
-    TENSION_SLOPE,
-    Given,
-    LugreLaws,
-    Step,
-)
+from tsas_cli.physics.lugre.state import ROWS, Given, LugreLaws, Step
 from tsas_cli.physics.lugre.step import MOST_ITERATIONS, accept_step, bdf2
 from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
 from tsas_cli.physics.mesh import PITCH
@@ -98,7 +81,7 @@ def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> Lu
         start[0, j], start[1, j] = chain[slip.POSITION + j], chain[slip.TENSION + j]
     step = step_of_rest(f_in, 0.0, start[0, 0], rig, n)
     ends = rest_at(s, start, step, laws)
-    if s[POSITION] < taut_position(s, step, laws):
+    if s[at.POSITION] < taut_position(s, step, laws):
         return slack_tendon(step, laws)
     return restarted(ends, True)
 
@@ -125,7 +108,7 @@ def step_lumped_plant(
     Returns the turntable, the tendon, and whether its steps converged within their error. Where
     Newton's method fails the tendon lags until the next step.
     """
-    p, h = s[POSITION], step.h
+    p, h = s[at.POSITION], step.h
     spring = spring_of(table, p, rig, step)
     given = step_of_rest(spring.force, step.time_s, p, rig, laws.n)
     if tendon.touched != spring.touches and not tendon.slack:
@@ -146,12 +129,12 @@ def step_lumped_plant(
     if not spring.touches:
         f_in += tendon.ends.drive.tension - tension
     else:
-        if tendon.ends.drive.tension < 0.0 and s[POSITION] <= taut_position(s, given, laws):
-            s[POSITION] = (given.drive.value - s[FRICTION]) / driven.drive.spring_N_per_mm
+        if tendon.ends.drive.tension < 0.0 and s[at.POSITION] <= taut_position(s, given, laws):
+            s[at.POSITION] = (given.drive.value - s[at.FRICTION]) / driven.drive.spring_N_per_mm
             tendon = slack_tendon(given, laws)
         if arrived:
-            x, f_in = turntable_at(s[POSITION], spring)
-    return advance_turntable(table, x, f_in, (s[POSITION] - p) / h, h), tendon, solved
+            x, f_in = turntable_at(s[at.POSITION], spring)
+    return advance_turntable(table, x, f_in, (s[at.POSITION] - p) / h, h), tendon, solved
 
 
 @kernel
@@ -193,23 +176,27 @@ def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[Lumped
 
     Returns the tendon and whether the end's position converged.
     """
-    position, deflection = s[POSITION], s[DEFLECTION]
-    s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = position, deflection, 0.0
-    s[SPEED_HISTORY] = s[SPEED]
-    s[TENSION] = s[TENSION_SLOPE] = 0.0
+    position, deflection = s[at.POSITION], s[at.DEFLECTION]
+    s[at.POSITION_HISTORY], s[at.DEFLECTION_HISTORY], s[at.RATE] = position, deflection, 0.0
+    s[at.SPEED_HISTORY] = s[at.SPEED]
+    s[at.TENSION] = s[at.TENSION_SLOPE] = 0.0
     step, solved = with_drive_force(step, step.drive.value, h), False
     for _ in range(MOST_ITERATIONS):
         balance_drive(s, step, laws)
-        solved = abs(s[RESIDUAL]) <= 1e-9 * laws.preload_N
+        solved = abs(s[at.RESIDUAL]) <= 1e-9 * laws.preload_N
         if solved:
             break
-        s[RATE] += s[RESIDUAL] / s[DIAGONAL]
-    s[POSITION], s[SPEED], s[DEFLECTION] = position + h * s[RATE], s[RATE], s[DEFLECTION_NEW]
-    if s[POSITION] <= taut_position(s, step, laws):
+        s[at.RATE] += s[at.RESIDUAL] / s[at.DIAGONAL]
+    s[at.POSITION], s[at.SPEED], s[at.DEFLECTION] = (
+        position + h * s[at.RATE],
+        s[at.RATE],
+        s[at.DEFLECTION_NEW],
+    )
+    if s[at.POSITION] <= taut_position(s, step, laws):
         return slack_tendon(step, laws), solved
     start = slack_state(s, unloaded_load(step.lost_N, laws), laws)
     ends = rest_at(s, start, with_drive_force(step, 0.0, NO_TIME_S), laws)
-    s[DEFLECTION] = deflection
+    s[at.DEFLECTION] = deflection
     return restarted(ends, True), True
 
 

@@ -13,14 +13,8 @@ from tsas_cli.physics.boundary import (
 )
 from tsas_cli.physics.mesh import PITCH, segment_compliances
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.state import (
-    COMPLIANCE,
-    ROWS,
-    SECOND,
-    TENSION,
-    TENSION_BEFORE,
-    SlipLaws,
-)
+from tsas_cli.physics.slip import state as at
+from tsas_cli.physics.slip.state import ROWS, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 
@@ -29,18 +23,18 @@ def chain_at_rest(rig: Rig, n: int) -> Floats:
     """Return the chain at uniform preload, with that of an antagonist behind it if there is one."""
     second_N = rig.effects.antagonist.preload_N
     tendons = 2 if second_N > 0.0 else 1
-    chain = np.empty(tendons * SECOND)
+    chain = np.empty(tendons * at.SECOND)
     for row in range(tendons * ROWS):
         for j in range(n + 2):
             chain[PITCH * row + j] = 0.0
     for j in range(n + 2):
-        chain[TENSION + j] = chain[TENSION_BEFORE + j] = rig.preload_N + second_N
+        chain[at.TENSION + j] = chain[at.TENSION_BEFORE + j] = rig.preload_N + second_N
     set_compliances(chain, rig, n)
     if second_N > 0.0:
-        second = chain[SECOND:]
+        second = chain[at.SECOND :]
         for j in range(n + 2):
-            second[TENSION + j] = second[TENSION_BEFORE + j] = second_N
-            second[COMPLIANCE + j] = chain[COMPLIANCE + max(n - j, 0)]
+            second[at.TENSION + j] = second[at.TENSION_BEFORE + j] = second_N
+            second[at.COMPLIANCE + j] = chain[at.COMPLIANCE + max(n - j, 0)]
     return chain
 
 
@@ -49,7 +43,7 @@ def set_compliances(chain: Floats, rig: Rig, n: int) -> None:
     """Set the compliances of the segments; the load's end has that of the last one."""
     compliances = segment_compliances(rig, n)
     for j in range(n + 2):
-        chain[COMPLIANCE + j] = compliances[min(j, n)]
+        chain[at.COMPLIANCE + j] = compliances[min(j, n)]
 
 
 @kernel
