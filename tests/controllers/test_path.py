@@ -8,7 +8,7 @@ import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.controllers.path import drive_at, follow, geared_at, smoothed
-from tsas_cli.effects.drive_ripple import DriveRipple
+from tsas_cli.numerics.wave import Wave
 from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.response import simulate
@@ -180,7 +180,7 @@ def test_rates_with_ripple_are_those_of_the_drive():
     """Gear's output 3t³: the drive's rates by the rule of the inverse function."""
     step_s = 2e-4
     t = 0.5 + step_s * np.arange(2501)
-    ripple = DriveRipple(sine_mm=0.03, cosine_mm=-0.02, period_mm=0.9)
+    ripple = Wave(sine_mm=0.03, cosine_mm=-0.02, period_mm=0.9)
     rows = drive_at(np.vstack((3.0 * t**3, np.zeros((3, t.size)))), ripple, step_s)
     k = 2.0 * np.pi / 0.9
     sine, cosine = np.sin(k * rows[0]), np.cos(k * rows[0])

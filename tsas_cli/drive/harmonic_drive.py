@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.backlash import follow_play
-from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.linear_response import (
     Sampled,
@@ -30,6 +29,7 @@ from tsas_cli.numerics.linear_response import (
     sampled,
     transients,
 )
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.support.arrays import Floats
 
 WAVES = 2.0  # of the ripple, per revolution of the wave generator, which is the motor's
@@ -83,7 +83,7 @@ def gear_response(u: Sampled, values: DriveValues, start_mm: float) -> Floats:
     g = values.gain_mm_per_s_rpm
     stiff = g * integrator_with_lags(input_delayed, values.leak_per_s, motor)
     period = g * SECONDS_PER_MINUTE / WAVES
-    ripple = DriveRipple(float(values.sine_mm), float(values.cosine_mm), period)
+    ripple = Wave(float(values.sine_mm), float(values.cosine_mm), period)
     error = _through_gear(stiff, float(start_mm), ripple, float(values.play_mm)) - stiff
     return _through_spring(error, u.step_s, values)
 
@@ -100,7 +100,7 @@ def free_motion(u: Sampled, values: DriveValues) -> Floats:
 
 
 @kernel
-def _through_gear(stiff: Floats, start: float, ripple: DriveRipple, play: float) -> Floats:
+def _through_gear(stiff: Floats, start: float, ripple: Wave, play: float) -> Floats:
     """Return the positions of the gear's output, from the middle of its play, shape (n,)."""
     out = np.empty(stiff.size)
     unmoved = rippled(start, ripple) - start

@@ -50,6 +50,48 @@ class Effect:
         return self.doc.partition("\n")[0]
 
 
+def shape(
+    name: str,
+    unit: str,
+    neutral: float,
+    *,
+    lower: float,
+    upper: float,
+    starts: tuple[float, ...] = (),
+    period: bool = False,
+) -> Parameter:
+    """Return a parameter that matters only where another one is not neutral, from there on."""
+    return Parameter(
+        name, unit, neutral, neutral, lower, upper, shape=True, period=period, starts=starts
+    )
+
+
+def wave_parameters(
+    amplitude_mm: float,
+    period_mm: float,
+    *,
+    shortest_mm: float,
+    longest_mm: float,
+    starts: tuple[float, ...],
+) -> tuple[Parameter, ...]:
+    """Return those of a `Wave` [mm]; a longer one is like a gain in the strokes of most rigs.
+
+    `amplitude_mm` is the initial value of both amplitudes, `starts` are those of the period.
+    """
+    return (
+        *(Parameter(name, "mm", 0.0, amplitude_mm, -5.0, 5.0) for name in ("sine_mm", "cosine_mm")),
+        shape(
+            "period_mm",
+            "mm",
+            period_mm,
+            lower=shortest_mm,
+            upper=longest_mm,
+            starts=starts,
+            period=True,
+        ),
+    )
+
+
 SETTLING = Parameter(
     "settling_per_s",
     "1/s",

@@ -12,13 +12,13 @@ from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
-from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import rippled
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.course import DRIVE, STEP, Losses
 from tsas_cli.physics.rig import Rig
