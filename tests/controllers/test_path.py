@@ -126,13 +126,13 @@ def test_the_model_driven_along_the_path_gives_the_wanted_force(values):
     """Between the turns; what smoothing takes off is x″ crossing²/96, 0.006 mm at most here."""
     path = path_to(SINE, values)
     rig = with_values(GROUP_A, values)
-    there = simulate(rig, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
+    there = simulate(rig, DriveInput(path.drive[0], time_s=T), nodes=NODES)
     between = (np.abs(np.sin(2.0 * T)) > 0.27) & (T[-1] - CROSSING_S > T)
     if values in LATE.values():
         between &= np.sin(2.0 * T) * np.cos(2.0 * T) < 0.0  # the second half of each stroke
     np.testing.assert_allclose(there.f_out_N[between], SINE[between], atol=0.04)
     if values:
-        other = simulate(GROUP_A, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
+        other = simulate(GROUP_A, DriveInput(path.drive[0], time_s=T), nodes=NODES)
         assert np.abs(other.f_out_N[between] - SINE[between]).max() > 0.1
 
 
@@ -157,7 +157,7 @@ def test_the_motor_winds_up_the_gear_by_what_hangs_at_it():
     rig = with_values(GROUP_A, values)
     assert (path_to(SINE, values).motor == path_to(SINE, values).drive).all()
     path = path_to(SINE, values, actuator=soft)
-    f_in = simulate(rig, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES).f_in_N
+    f_in = simulate(rig, DriveInput(path.drive[0], time_s=T), nodes=NODES).f_in_N
     wound = (f_in - GROUP_A.preload_N) / 52.0
     between = np.abs(np.sin(2.0 * T)) > 0.25
     np.testing.assert_allclose((path.motor - path.drive)[0][between], wound[between], atol=0.01)

@@ -17,7 +17,7 @@ from tsas_cli.physics.ends import (
     losses_at,
     losses_without_speed,
 )
-from tsas_cli.physics.response import first_determined_sample, is_closed, simulate
+from tsas_cli.physics.response import NODES, first_determined_sample, is_closed, simulate
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
@@ -145,12 +145,12 @@ MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])
 
 
 @pytest.mark.parametrize(("friction", "stiffness"), [(2.0, 4.0), (0.0, 4.0), (2.0, 0.0)])
-@pytest.mark.parametrize("on_mesh", [False, True])
-def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiffness, on_mesh):
+@pytest.mark.parametrize("nodes", [None, 3])
+def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiffness, nodes):
     names = ("drive_friction.friction_N", "proximal_spring.stiffness_N_per_mm")
     beside = with_values(RIG, dict(zip(names, (friction, stiffness), strict=True)))
     drive = DriveInput(MOTION + 3.0)
-    plain, answer = (simulate(rig, drive, on_mesh=on_mesh, nodes=3) for rig in (RIG, beside))
+    plain, answer = (simulate(rig, drive, nodes=nodes) for rig in (RIG, beside))
     felt = friction * np.array([0.0, 1.0, -1.0, -1.0, 1.0]) + stiffness * MOTION
     np.testing.assert_allclose(answer.f_in_N - plain.f_in_N, felt, atol=1e-9)
     np.testing.assert_allclose(answer.f_out_N, plain.f_out_N)
@@ -159,7 +159,7 @@ def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiff
 
 @pytest.mark.parametrize(("load", "read"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
 def test_a_load_that_was_measured_is_read_again(load, read):
-    spring = simulate(RIG, DriveInput(MOTION + 3.0), on_mesh=True, nodes=3)
+    spring = simulate(RIG, DriveInput(MOTION + 3.0), nodes=3)
     given = DriveInput(MOTION + 3.0, load=load, load_values=getattr(spring, read))
     again = simulate(RIG, given, nodes=3)
     for name in ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"):
@@ -172,12 +172,12 @@ def test_who_answers_and_on_what_mesh():
     """The paper's dynamic chain has 50 lumps."""
     drive = DriveInput(MOTION[:2] + 3.0, time_s=TIME_S[:2])
     assert simulate(RIG, drive).solver == "closed form"
-    assert simulate(RIG, drive, on_mesh=True).solver == "slip chain, 60 nodes"
+    assert simulate(RIG, drive, nodes=NODES).solver == "slip chain, 60 nodes"
     assert simulate(RIG, drive, "static").solver == "lumped dead bands"
     at_rest = DriveInput(np.array([3.0, 3.0]), time_s=TIME_S[:2])
     assert simulate(RIG, at_rest, "lugre").solver.startswith("LuGre chain, 50 lumps, ")
     for nodes in (2, 1000):
-        solver = simulate(RIG, at_rest, on_mesh=True, nodes=nodes).solver
+        solver = simulate(RIG, at_rest, nodes=nodes).solver
         assert solver == f"slip chain, {nodes} nodes"
     for nodes in (1, 1001):
         with pytest.raises(ValueError, match=f"{nodes} nodes; expected 2 to 1000"):
@@ -209,11 +209,11 @@ def test_where_else_the_closed_form_does_not_hold():
 
 
 @pytest.mark.parametrize("wanted", [38.0, 50.0, 62.0])
-@pytest.mark.parametrize("on_mesh", [False, True])
-def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, on_mesh):
+@pytest.mark.parametrize("nodes", [None, 3])
+def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, nodes):
     """At 15 mm between 35 N, let go of, and 62.9 N, pulled; no more than that drive is passed."""
     drive = DriveInput(np.array([18.0, 18.1]), start_f_in_N=wanted)
-    answer = simulate(RIG, drive, on_mesh=on_mesh, nodes=3, looked_at=np.array([1]))
+    answer = simulate(RIG, drive, nodes=nodes, looked_at=np.array([1]))
     assert answer.f_in_N.shape == (2,)
     assert answer.f_in_N[0] == pytest.approx(wanted, abs=1e-6)
     assert answer.frames.samples.tolist() == [1]

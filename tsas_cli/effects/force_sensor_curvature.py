@@ -37,7 +37,7 @@ def read_curved(force: Number, curvature: float) -> Number:
 @kernel
 def straightened(reading: Number, curvature: float) -> Number:
     """Return the force of a reading [N], that of the vertex for readings beyond it."""
-    root = np.sqrt(np.maximum(1.0 + 4.0 * curvature * reading, 0.0))
+    root: Number = np.sqrt(np.maximum(1.0 + 4.0 * curvature * reading, 0.0))
     return 2.0 * reading / (1.0 + root)
 
 

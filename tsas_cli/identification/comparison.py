@@ -105,12 +105,7 @@ def compare(
     """
     refuse_invalid(run.run, model, run.drive_column, dynamics)
     response = simulate(
-        model.rig(run.run),
-        run.drive,
-        dynamics,
-        on_mesh=nodes is not None,
-        nodes=nodes,
-        tolerance=run.step_tolerance,
+        model.rig(run.run), run.drive, dynamics, nodes=nodes, tolerance=run.step_tolerance
     )
     channels = channels_of(response, set(run.conditioned), run.in_gap)
     notes = dynamic_notes(run, model, response) if dynamics == "lugre" else ()

@@ -41,13 +41,7 @@ def simulate_long(
     parts: list[RunSummary] = []
     driven = long.plans.keys()
     names = [TIME, "x_in_mm", *(name for name in CHANNELS if name not in driven)]
-    pieces = simulate_pieces(
-        model.rig(long.run),
-        _drives(long, waiting),
-        dynamics,
-        on_mesh=nodes is not None,
-        nodes=nodes,
-    )
+    pieces = simulate_pieces(model.rig(long.run), _drives(long, waiting), dynamics, nodes=nodes)
     schema = pa.schema([(name, pa.float64()) for name in names])
     with parquet_writer(folder / f"{long.run.id}.parquet", schema) as write:
         for response in pieces:

@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
-from tsas_cli.numerics.interpolated import interpolated
-from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.noise import interpolated, noise_sd, quantisation_step
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME

@@ -96,17 +96,11 @@ def _solved(
     """Return drive and solution at all samples by the closed form, or at `points` by a chain."""
     slip = simulation.nodes is None and simulation.dynamics == "slip"
     at = slice(None) if slip and is_closed(rig, drive) else simulation.points
-    load = None if drive.load_values is None else drive.load_values[at]
-    time_s = None if drive.time_s is None else drive.time_s[at]
-    motor = None if drive.motor_mm is None else drive.motor_mm[at]
-    followed = replace(
-        drive, values=drive.values[at], load_values=load, time_s=time_s, motor_mm=motor
-    )
+    followed = drive.part(at)
     return followed, solve(
         rig,
         followed,
         simulation.dynamics,
-        on_mesh=simulation.nodes is not None,
         nodes=simulation.nodes,
         tolerance=simulation.tolerance,
         step_ends_s=step_ends_s,

@@ -14,7 +14,8 @@ def exponential_drift(rate: float, settling_per_s: float, time_s: Number) -> Num
     """
     if settling_per_s == 0.0:
         return rate * time_s
-    return rate * -np.expm1(-settling_per_s * time_s) / settling_per_s
+    settled: Number = -np.expm1(-settling_per_s * time_s)
+    return rate * settled / settling_per_s
 
 
 @kernel

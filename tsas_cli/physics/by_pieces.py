@@ -13,36 +13,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.physics.closed_form.branches import (
-    BranchState,
-    at_rest_before,
-    follow_branches,
-    with_room,
-)
-from tsas_cli.physics.closed_form.static import StaticState, follow_static
 from tsas_cli.physics.course import Output
 from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
 from tsas_cli.physics.response import (
-    CLOSED,
-    NODES,
     Dynamics,
     Prediction,
-    at_drive_sensor,
+    State,
+    advanced,
+    at_rest,
     history,
-    is_closed,
+    nodes_of,
     readings_of,
     solver_of,
-    with_spring_load,
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import new_memory, sensed
-from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 from tsas_cli.support.arrays import Floats
 
-State = BranchState | ChainState | StaticState
-
 OVERLAP = 2  # samples of a neighbour: one for a speed, one more for an acceleration
-STATIC = -1  # nodes of the lumped model
 
 
 class Start(NamedTuple):
@@ -81,7 +69,6 @@ def simulate_pieces(
     drives: Iterable[DriveInput],
     dynamics: Dynamics = "slip",
     *,
-    on_mesh: bool = False,
     nodes: int | None = None,
 ) -> Iterator[Prediction]:
     """Yield the response of each piece of a run, equal to that of `simulate` for the whole run.
@@ -98,27 +85,26 @@ def simulate_pieces(
     for piece in _overlapping(drives, _longest_delay(rig)):
         ends = ends_of(rig, piece.drive, start and (start.position, start.direction, start.travel))
         if start is None:
-            closed = is_closed(rig, piece.drive) and not on_mesh
-            mesh = STATIC if dynamics == "static" else CLOSED if closed else nodes or NODES
-            before = [] if mesh == STATIC else history(rig, ends, piece.drive.start_f_in_N, mesh)
+            mesh = nodes_of(rig, piece.drive, dynamics, nodes)
+            before = history(rig, ends, piece.drive.start_f_in_N, mesh)
             past_inputs = ends.first().after(before)
-            state, memory = _at_rest(rig, past_inputs, mesh), new_memory()
+            state, memory = at_rest(rig, past_inputs, mesh), new_memory()
             if before:
-                _, state = _follow(rig, past_inputs.part(0, len(before)), mesh, state)
+                _, state = advanced(rig, past_inputs.part(0, len(before)), mesh, state)
         else:
             state, memory = start.state, start.memory
         to = piece.until if piece.next_begin is None else piece.next_begin
-        outputs, state = _follow(rig, ends.part(piece.begin, to), mesh, state)
+        outputs, state = advanced(rig, ends.part(piece.begin, to), mesh, state)
         signals = _read(rig, piece, ends, outputs, slice(piece.begin, to), memory)
         if piece.handover is not None:
             at = piece.handover
             of_drive = (float(part[at]) for part in (ends.drive, ends.direction, ends.travel))
             start = Start(deepcopy(state), memory.copy(), *of_drive)
-            further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
+            further, _ = advanced(rig, ends.part(to, piece.until), mesh, state)
             further = _read(rig, piece, ends, further, slice(to, piece.until), memory)
             signals = _concatenated(signals, further)
-        drive = _part(piece.drive, piece.begin, piece.until)
-        response = readings_of(rig, drive, signals, solver_of(mesh, dynamics))
+        drive = piece.drive.part(slice(piece.begin, piece.until))
+        response = readings_of(rig, drive, signals, solver_of(mesh))
         yield _own_samples(response, piece.first - piece.begin, piece.end - piece.begin)
 
 
@@ -134,26 +120,6 @@ def _read(
     motor = piece.drive.motor_mm
     own = None if motor is None else motor[at]
     return sensed(outputs, _times(piece.drive)[at], rig, ends.boundary, memory, own)
-
-
-def _at_rest(rig: Rig, ends: EndInputs, mesh: int) -> State:
-    if mesh == STATIC:
-        return StaticState(0.0, rig.preload_N, rig.preload_N)
-    if mesh == CLOSED:
-        return at_rest_before(ends.drive, rig.preload_N)
-    return initial_state(ends.course, rig, ends.boundary, mesh)
-
-
-def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output, State]:
-    """Return the output and the final state."""
-    if isinstance(state, BranchState):
-        state = with_room(state, ends.drive)
-        return with_spring_load(rig, ends, follow_branches(ends.drive, rig, state, None)), state
-    if isinstance(state, StaticState):
-        tensions, state = follow_static(ends.drive, rig, state)
-        return with_spring_load(rig, ends, tensions), state
-    output, state = follow(ends.course, state, rig, ends.boundary, mesh, None)
-    return at_drive_sensor(rig, ends, output), state
 
 
 def _longest_delay(rig: Rig) -> float:
@@ -183,32 +149,18 @@ def _overlapping(drives: Iterable[DriveInput], delay_s: float) -> Iterator[_Over
         far_enough = int(np.searchsorted(time_s, time_s[handover + 1] + delay_s))
         next_begin = max(handover + OVERLAP, far_enough)
         yield _OverlappingPiece(drive, first, end, begin, size - 1, handover, next_begin)
-        tail, begin, now = _part(drive, handover, end), next_begin - handover, after
+        tail, begin, now = drive.part(slice(handover, end)), next_begin - handover, after
 
 
 def _head(now: DriveInput, after: DriveInput, delay_s: float) -> DriveInput:
     until = float(_times(now)[-1]) + 2.0 * delay_s
-    return _part(after, 0, int(np.searchsorted(_times(after), until, side="right")) + OVERLAP)
+    return after.part(slice(int(np.searchsorted(_times(after), until, side="right")) + OVERLAP))
 
 
 def _times(drive: DriveInput) -> Floats:
     if drive.time_s is None:
         raise ValueError("pieces need the times of their samples")
     return drive.time_s
-
-
-def _part(drive: DriveInput, first: int, end: int) -> DriveInput:
-    """Return the samples first … end−1 of a drive."""
-    load = None if drive.load_values is None else drive.load_values[first:end]
-    time_s = _times(drive)[first:end]
-    motor = None if drive.motor_mm is None else drive.motor_mm[first:end]
-    return replace(
-        drive,
-        values=drive.values[first:end],
-        load_values=load,
-        time_s=time_s,
-        motor_mm=motor,
-    )
 
 
 def _concatenated_drives(parts: Sequence[DriveInput]) -> DriveInput:
@@ -232,12 +184,5 @@ def _concatenated(one: Output, other: Output) -> Output:
 
 def _own_samples(response: Prediction, first: int, end: int) -> Prediction:
     """Return a response without the samples of the neighbours."""
-    rows = slice(first, end)
-    return replace(
-        response,
-        x_in_mm=response.x_in_mm[rows],
-        x_out_mm=response.x_out_mm[rows],
-        f_in_N=response.f_in_N[rows],
-        f_out_N=response.f_out_N[rows],
-        phase=response.phase[rows],
-    )
+    names = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "phase")
+    return replace(response, **{name: getattr(response, name)[first:end] for name in names})

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.course import DRIVE, STEP, Losses
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Indices
 
 NO_TENDON_LAW = TendonLaw()
 
@@ -47,6 +47,16 @@ class DriveInput:
     time_s: Floats | None = None
     session_s: float = 0.0
     motor_mm: Floats | None = None
+
+    def part(self, at: slice | Indices) -> Self:
+        """Return some samples."""
+        load, time_s, motor = (
+            None if column is None else column[at]
+            for column in (self.load_values, self.time_s, self.motor_mm)
+        )
+        return replace(
+            self, values=self.values[at], load_values=load, time_s=time_s, motor_mm=motor
+        )
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ def test_a_speed_step_without_friction_is_of_second_order(drive, spring):
 def moved_likewise(run, rig=GROUP_A):
     """Return what the model says where the drive moves the tendon's end as in a run."""
     drive = DriveInput(np.append(0.0, run.end), time_s=np.append(0.0, run.time_s))
-    return simulate(rig, drive, on_mesh=True, nodes=N)
+    return simulate(rig, drive, nodes=N)
 
 
 MOTION = there_and_back(2000.0, -600.0, 800.0, -1500.0, hold=0.05)

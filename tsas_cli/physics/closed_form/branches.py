@@ -18,13 +18,13 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.capstan import mean_tension_ratio, tension_ratio
-from tsas_cli.physics.compliances import (
+from tsas_cli.physics.course import Tensions
+from tsas_cli.physics.frames import Frames, is_next
+from tsas_cli.physics.mesh import (
     compliance_at_drive,
     compliance_at_load,
     sheath_compliance,
 )
-from tsas_cli.physics.course import Tensions
-from tsas_cli.physics.frames import Frames, is_next
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
@@ -111,7 +111,7 @@ def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
         Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
         in loosening, 0 in a dead band, 2 where it hangs slack.
     """
-    return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)
+    return follow_branches(x_in, rig, branches_at_rest(rig.preload_N), frames)[0]
 
 
 # State at the last sample: position [mm] and both tensions [N], direction of the last motion,
@@ -120,35 +120,27 @@ LAST_X, LAST_F_IN, LAST_F_OUT, DIRECTION, DEPTH, BASE, PHASE = range(7)
 
 
 class BranchState(NamedTuple):
-    """State of the closed form from one sample to the next, updated in place."""
+    """State of the closed form from one sample to the next."""
 
     now: Floats  # at the last sample, as named above, (7,)
-    reversal_x: Floats  # stack of reversals, with room for all that may nest
+    reversal_x: Floats  # stack of reversals, of any size
     reversal_T: Floats
 
 
 @kernel
-def at_rest_before(x_in: Floats, preload: float) -> BranchState:
-    """Return the state of uniform preload, with room for the reversals of a motion."""
+def branches_at_rest(preload: float) -> BranchState:
+    """Return the state of uniform preload."""
     now = np.zeros(7)
     now[LAST_F_IN] = now[LAST_F_OUT] = preload
     now[BASE] = REST
-    room = strokes(x_in)  # growing it in the loop would cost 20 ns a sample
-    return BranchState(now, np.empty(room), np.empty(room))
-
-
-def with_room(state: BranchState, x_in: Floats) -> BranchState:
-    """Return a copy of a state with room for the reversals of more motion."""
-    more, depth = np.empty(strokes(x_in)), int(state.now[DEPTH])
-    reversal_x, reversal_T = (
-        np.concatenate((t[:depth], more)) for t in (state.reversal_x, state.reversal_T)
-    )
-    return BranchState(state.now.copy(), reversal_x, reversal_T)
+    return BranchState(now, np.empty(0), np.empty(0))
 
 
 @kernel
-def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None) -> Tensions:
-    """Return the tensions for a motion from a state, which is updated in place; see `branches`."""
+def follow_branches(
+    x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None
+) -> tuple[Tensions, BranchState]:
+    """Return the tensions for a motion from a state, and the final state; see `branches`."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
     c = compliance_at_drive(rig)
@@ -161,10 +153,13 @@ def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames |
     f_in = np.empty(n)
     f_out = np.empty(n)
     phase = np.zeros(n, dtype=np.int8)
-    last, reversal_x, reversal_T = state
+    last = state.now
     x, T, out = last[LAST_X], last[LAST_F_IN], last[LAST_F_OUT]
     direction, depth, base = int(last[DIRECTION]), int(last[DEPTH]), int(last[BASE])
     before = int(last[PHASE])
+    room = depth + strokes(x_in)  # growing it in the loop would cost 20 ns a sample
+    reversal_x, reversal_T = np.empty(room), np.empty(room)
+    reversal_x[:depth], reversal_T[:depth] = state.reversal_x[:depth], state.reversal_T[:depth]
     written = 0
     for i in range(n):
         if x_in[i] != x:
@@ -204,8 +199,8 @@ def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames |
             write_profile(frames, written, past, rig.preload_N, wrap)
             written += 1
     # In the order of the indices: stored one by one, or in a record, the loop takes a fifth longer.
-    last[:] = np.array([x, T, out, direction, depth, base, before])
-    return Tensions(f_in, f_out, phase)
+    now = np.array([x, T, out, direction, depth, base, before])
+    return Tensions(f_in, f_out, phase), BranchState(now, reversal_x, reversal_T)
 
 
 class Strokes(NamedTuple):

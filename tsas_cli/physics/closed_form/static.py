@@ -12,8 +12,8 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.branches import SMALLEST_WRAP, full_slip
 from tsas_cli.physics.closed_form.capstan import dead_band_stiffness, tension_ratio
-from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.course import Tensions
+from tsas_cli.physics.mesh import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats

@@ -35,8 +35,15 @@ from tsas_cli.physics.lugre.start import (
     with_drive,
 )
 from tsas_cli.physics.lugre.state import ROWS, Given, LugreLaws, Step
-from tsas_cli.physics.lugre.step import MOST_ITERATIONS, accept_step, bdf2
-from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
+from tsas_cli.physics.lugre.step import (
+    MOST_ITERATIONS,
+    accept_step,
+    bdf2,
+    fit_to_reversal,
+    step_factor,
+    tolerances_of,
+    try_step,
+)
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.plant.turntable import (
     DriveStep,

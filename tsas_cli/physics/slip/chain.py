@@ -39,9 +39,8 @@ from tsas_cli.physics.slip.ends import (
     update_end_speeds,
     update_load_state,
 )
-from tsas_cli.physics.slip.frames import write_frame
 from tsas_cli.physics.slip.nodes import accept, update_speeds
-from tsas_cli.physics.slip.outputs import phase_of, tension_at_drive, tension_at_sensor
+from tsas_cli.physics.slip.outputs import phase_of, tension_at_drive, tension_at_sensor, write_frame
 from tsas_cli.physics.slip.pair import accept_pair, solve_pair
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import Moment, SlipLaws

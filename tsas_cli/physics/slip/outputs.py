@@ -1,12 +1,13 @@
-"""What a solved sample of the slip chain gives: its phase, and the forces at the sensors."""
+"""A solved sample of the slip chain: its phase, the forces at the sensors, profiles along it."""
 
 from tsas_cli.effects.antagonist import net_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
-from tsas_cli.physics.phases import SLACK
+from tsas_cli.physics.frames import Frames, is_next, slips_up_to
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import load_force, tension_of_second
-from tsas_cli.physics.slip.state import Moment, SlipLaws
+from tsas_cli.physics.slip.state import SLIP, TENSION, Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 
@@ -48,3 +49,16 @@ def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
         return float(tension - chain[at.SLIP + n + 1] * before)
     share = before / moving_friction(laws.load)
     return float(tension - share * (chain[at.TENSION + n] - load_force(chain, now, laws)))
+
+
+@kernel
+def write_frame(frames: Frames, written: int, i: int, chain: Floats, n: int, phase: int) -> int:
+    """Write the chain at sample i, if it is a frame's; return how many frames are written."""
+    if not is_next(frames, written, i):
+        return written
+    for j in range(n + 1):
+        frames.tension_N[written, j] = chain[TENSION + j]
+    for j in range(n):
+        frames.slip[written, j] = phase if phase in (SLACK, UNCONVERGED) else chain[SLIP + j + 1]
+    frames.front[written] = slips_up_to(frames, written)
+    return written + 1
