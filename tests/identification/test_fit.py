@@ -14,8 +14,8 @@ from tsas_cli.identification.fit import (
     solve,
     with_errors,
 )
+from tsas_cli.identification.fit_problem import further_unknown, unknown_of
 from tsas_cli.identification.quantities import QUANTITIES, Quantity
-from tsas_cli.identification.unknowns import further_unknown, unknown_of
 
 
 def unknown(name="a", run=None, start=0.0, lower=-10.0, upper=10.0, scale=1.0):

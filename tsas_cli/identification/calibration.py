@@ -17,8 +17,7 @@ from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.stiffness import Slope, slopes
-from tsas_cli.identification.transfer import tension_transfer
+from tsas_cli.identification.transfer import Slope, slopes, tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.steps import NO_PROGRESS, Steps

@@ -1,8 +1,10 @@
-"""Transfer of tension through the sheath: f_in = r f_out + c while the whole tendon slips.
+"""Straight lines through the phases of runs: stiffness at the drive, transfer of tension.
 
-The capstan law has r = e^(±a) and c = 0 (Yang 2025, Eq. 7), so that a = μθ is half the logarithm of
-the quotient of both ratios. An intercept of opposite sign in the two directions is friction
-independent of the tendon's tension; one of the same sign is an offset.
+The proximal stiffness of a phase is km = dFin/dxin, by linear fit as in Yang 2025, Fig. 7. The
+transfer is f_in = r f_out + c while the whole tendon slips: the capstan law has r = e^(±a) and
+c = 0 (Eq. 7), so that a = μθ is half the logarithm of the quotient of both ratios. An intercept of
+opposite sign in the two directions is friction independent of the tendon's tension; one of the
+same sign is an offset.
 """
 
 import math
@@ -13,12 +15,59 @@ from functools import partial
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.phases import Phase, Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
 from tsas_cli.support.arrays import Floats
 
-FEWEST_SAMPLES = 50
+PHASES: tuple[Phase, ...] = ("contraction", "loosening", "dead_band_up", "dead_band_down")
+FEWEST_SAMPLES = 6
+
+
+@dataclass(frozen=True)
+class Slope:
+    """One phase's slope in a run [N/mm], with the half-width of its 95 % interval."""
+
+    phase: Phase
+    value: float
+    stderr: float
+    half_width: float
+    occurrences: int
+    samples: int
+
+
+def slopes(x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> list[Slope]:
+    """Return the slope of each phase, fitted with an intercept for each occurrence.
+
+    `x_in` and `f_in` are conditioned displacement [mm] and tension [N] at the drive, shape (n,);
+    NaN where unknown.
+    """
+    found = (_slope(phase, x_in, f_in, segments) for phase in PHASES)
+    return [slope for slope in found if slope is not None]
+
+
+def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> Slope | None:
+    xs, fs = [], []
+    for s in segments:
+        x, f = x_in[s.first : s.end], f_in[s.first : s.end]
+        ok = np.isfinite(f) & np.isfinite(x)
+        if s.phase == phase and ok.sum() >= FEWEST_SAMPLES:
+            xs.append(x[ok] - x[ok].mean())
+            fs.append(f[ok] - f[ok].mean())
+    square = sum(float(np.sum(x**2)) for x in xs)
+    if not xs or square <= 0.0:
+        return None
+    slope = sum(float(np.sum(x * f)) for x, f in zip(xs, fs, strict=True)) / square
+    residuals = [f - slope * x for x, f in zip(xs, fs, strict=True)]
+    length = block_length(residuals)
+    block = block_numbers([r.size for r in residuals], length)
+    covariance, t = jackknife(np.concatenate(xs)[:, None], np.concatenate(residuals), block)
+    stderr = float(np.sqrt(covariance[0, 0]))
+    samples = sum(x.size for x in xs)
+    return Slope(phase, slope, stderr, float(t[0]) * stderr, len(xs), samples)
+
+
+FEWEST_OF_TRANSFER = 50
 WIDE = 10.0  # the range of f_out must exceed its noise by this factor
 
 
@@ -102,7 +151,7 @@ def _line(
                 at_load.append(f_out[part.first : part.end][ok])
                 block.append(np.full(int(ok.sum()), count))
                 count += 1
-    if count < 2 or sum(b.size for b in block) < FEWEST_SAMPLES:
+    if count < 2 or sum(b.size for b in block) < FEWEST_OF_TRANSFER:
         return None
     F, G, number = (np.concatenate(parts) for parts in (at_drive, at_load, block))
     if np.ptp(G) < WIDE * noise or np.ptp(G) == 0.0:
