@@ -12,7 +12,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, Residuals, Unknown, fit, identifiable, jacobian
+from tsas_cli.identification.fit import (
+    Fitted,
+    Residuals,
+    Unknown,
+    identifiable,
+    jacobian,
+    solve,
+    with_errors,
+)
 from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
@@ -183,7 +191,7 @@ def _fit(
     free = [replace(problem.unknowns[j], initial=float(start[j])) for j in chosen]
     blocks = blocks_of(errors, [problem.rig(k, values) for k in range(len(errors))])
     residuals = _of_free(_residuals(problem, errors), _fixed_values(problem), chosen)
-    return fit(free, blocks, residuals, tolerance=tolerance)
+    return with_errors(free, solve(free, len(blocks), residuals, tolerance=tolerance), blocks)
 
 
 def _fixed_values(problem: FitProblem) -> Floats:
