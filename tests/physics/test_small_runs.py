@@ -9,7 +9,18 @@ from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics import response
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
+from tsas_cli.physics.course import (
+    DIRECTION,
+    DRIVE,
+    LOAD,
+    LOST,
+    PULLED,
+    RELEASED,
+    STEP,
+    TIME,
+    TRAVEL,
+    VISCOUS,
+)
 from tsas_cli.physics.ends import (
     DriveInput,
     ends_of,
@@ -64,7 +75,7 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     expected = [friction_by_hand(t, place, v, 30.0) for t, place, v in moments]
     np.testing.assert_allclose(ends.course[:4].T, expected)
     np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
-    assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
+    assert ends.course[DIRECTION].tolist() == [0.0, 1.0, 1.0, -1.0]
     by_force = ends_of(VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S))
     unmoved = friction_by_hand(0.3, 0.0, 0.0, 0.0)  # its position and speed are not known
     np.testing.assert_allclose(by_force.course[:4, 2], unmoved)
@@ -111,8 +122,8 @@ def test_the_drives_end_goes_through_the_play_from_where_it_was():
     assert ends_of(loose, drive).drive.tolist() == pytest.approx([1.0, 1.3, 1.3, 1.3, 1.1])
     again = ends_of(loose, drive, (1.1, -1.0, 0.5))
     assert again.drive.tolist() == pytest.approx([1.1, 1.3, 1.3, 1.3, 1.1])
-    assert again.direction.tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
-    assert again.travel.tolist() == pytest.approx([0.5, 0.2, 0.2, 0.2, 0.2])
+    assert again.course[DIRECTION].tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
+    assert again.course[TRAVEL].tolist() == pytest.approx([0.5, 0.2, 0.2, 0.2, 0.2])
     wave = {"drive_ripple.sine_mm": 0.1, "drive_ripple.cosine_mm": 0.2, "drive_ripple.period_mm": 4}
     uneven = ends_of(with_values(GROUP_A, wave), DriveInput(np.array([1.0, 2.0])))
     assert uneven.drive.tolist() == pytest.approx([1.0 + 0.1 - 0.2, 2.0 - 0.4])
@@ -134,11 +145,11 @@ def test_positions_before_a_run_are_passed_at_no_known_speed():
     for k in range(2):
         np.testing.assert_array_equal(later.course[given, k], ends.course[given, 0])
     assert later.course[STEP, :3].tolist() == [math.inf] * 3
-    assert later.direction.tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
+    assert later.course[DIRECTION].tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
     assert later.boundary == ends.boundary
     first = ends.first()
     np.testing.assert_array_equal(first.course, ends.course[:, :1])
-    assert first.direction.tolist() == [0.0]
+    assert first.course[DIRECTION].tolist() == [0.0]
 
 
 MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])

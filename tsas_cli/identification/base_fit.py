@@ -11,8 +11,8 @@ from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.transfer import Slope, slopes
-from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
@@ -47,7 +47,7 @@ def initial_values_of(
         found |= _spring(run, segments, km)
     elif run.run.load == "displacement":
         found |= _zero_between(run, rig)
-    plausible = {k: (NOMINAL_BY_NAME[k].lower, NOMINAL_BY_NAME[k].upper) for k in found}
+    plausible = {k: (QUANTITIES[k].lower, QUANTITIES[k].upper) for k in found}
     return {k: float(v) for k, v in found.items() if plausible[k][0] <= v <= plausible[k][1]}
 
 
@@ -184,11 +184,11 @@ def _read_off(
     for run, parts, km in zip(runs, segments, measured, strict=True):
         values = initial_values_of(run, parts, km, stated.rig(run.run))
         for name, value in values.items():
-            owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
+            owner = None if QUANTITIES[name].shared else run.run.id
             found.setdefault((name, owner), []).append(value)
     return Model(
         tuple(
-            Estimate(name, float(np.median(values)), NOMINAL_BY_NAME[name].unit, "default", owner)
+            Estimate(name, float(np.median(values)), QUANTITIES[name].unit, "default", owner)
             for (name, owner), values in found.items()
         )
     )

@@ -8,10 +8,9 @@ import numpy as np
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.quantities import LOG_SCALE, QUANTITIES
+from tsas_cli.identification.quantities import LOG_SCALE, NOMINAL, QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, run_errors
 from tsas_cli.identification.run_simulation import fitted_samples, left_out_notes
-from tsas_cli.physics.parameters import NOMINAL
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
@@ -104,20 +103,18 @@ def nominal_unknowns(
     out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
     springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
-    for p in NOMINAL:
-        owners: Sequence[int | None] = [None] if p.shared else range(len(runs))
-        if p.name == "preload_N":
+    for q in NOMINAL:
+        owners: Sequence[int | None] = [None] if q.shared else range(len(runs))
+        if q.name == "preload_N":
             owners = springs
-        if p.name == "load_stiffness_N_per_mm" and not springs:
+        if q.name == "load_stiffness_N_per_mm" and not springs:
             continue
         for k in owners:
-            value = initial.value(p.name, None if k is None else runs[k].run.id)
-            quantity = QUANTITIES[p.name]
-            low, high = plausible.get(p.name, (p.lower, p.upper))
-            scaled = quantity.scaled(quantity.default if value is None else value)
-            scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
-            bounds = (quantity.scaled(low), quantity.scaled(high))
-            out.append(Unknown(p.name, k, min(max(scaled, bounds[0]), bounds[1]), *bounds, scale))
+            value = initial.value(q.name, None if k is None else runs[k].run.id)
+            low, high = map(q.scaled, plausible.get(q.name, (q.lower, q.upper)))
+            scaled = q.scaled(q.default if value is None else value)
+            scale = LOG_SCALE if q.positive else ZERO_SCALE * travel
+            out.append(Unknown(q.name, k, min(max(scaled, low), high), low, high, scale))
     return out
 
 

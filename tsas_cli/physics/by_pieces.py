@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.physics.course import Output
+from tsas_cli.physics.course import DIRECTION, DRIVE, TRAVEL, Output
 from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
 from tsas_cli.physics.response import (
     Dynamics,
@@ -98,7 +98,7 @@ def simulate_pieces(
         signals = _read(rig, piece, ends, outputs, slice(piece.begin, to), memory)
         if piece.handover is not None:
             at = piece.handover
-            of_drive = (float(part[at]) for part in (ends.drive, ends.direction, ends.travel))
+            of_drive = ends.course[[DRIVE, DIRECTION, TRAVEL], at].tolist()
             start = Start(deepcopy(state), memory.copy(), *of_drive)
             further, _ = advanced(rig, ends.part(to, piece.until), mesh, state)
             further = _read(rig, piece, ends, further, slice(to, piece.until), memory)

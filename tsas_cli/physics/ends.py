@@ -20,7 +20,7 @@ from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.wave import rippled
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.course import DRIVE, STEP, Losses
+from tsas_cli.physics.course import DIRECTION, DRIVE, MOTION, STEP, TRAVEL, Losses
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
 from tsas_cli.support.arrays import Floats, Indices
@@ -65,9 +65,6 @@ class EndInputs:
 
     course: Floats  # with the rows of `course`
     boundary: Boundary
-    direction: Floats  # of the last motion of the tendon's end at the drive, shape (n,)
-    travel: Floats  # of that end since its last reversal, infinite before the first one, shape (n,)
-    motion_N: Floats  # force at the drive's sensor for the motion of that end, shape (n,)
 
     @property
     def drive(self) -> Floats:
@@ -77,14 +74,7 @@ class EndInputs:
 
     def part(self, first: int, end: int) -> "EndInputs":
         """Return the samples first … end−1."""
-        course = np.ascontiguousarray(self.course[:, first:end])
-        return replace(
-            self,
-            course=course,
-            direction=self.direction[first:end],
-            travel=self.travel[first:end],
-            motion_N=self.motion_N[first:end],
-        )
+        return replace(self, course=np.ascontiguousarray(self.course[:, first:end]))
 
     def after(self, before: list[float]) -> "EndInputs":
         """Return the inputs with positions of the drive prepended."""
@@ -92,13 +82,8 @@ class EndInputs:
         course = np.concatenate((np.repeat(self.course[:, :1], more, axis=1), self.course), axis=1)
         course[DRIVE, :more] = before
         course[STEP, : more + 1] = math.inf  # their speed is not known
-        return replace(
-            self,
-            course=course,
-            direction=np.concatenate((np.zeros(more), self.direction)),
-            travel=np.concatenate((np.full(more, math.inf), self.travel)),
-            motion_N=np.concatenate((np.zeros(more), self.motion_N)),
-        )
+        course[[DIRECTION, MOTION], :more], course[TRAVEL, :more] = 0.0, math.inf
+        return replace(self, course=course)
 
     def first(self) -> "EndInputs":
         """Return the first sample alone."""
@@ -139,9 +124,9 @@ def ends_of(
     if rig.effects.tendon_law != NO_TENDON_LAW and drive.kind == "displacement":
         rate = rate_of(at_drive, drive.time_s)
         losses[:2] *= tendon_law_factor(rig.effects.tendon_law, at_drive, travel, rate)
-    course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     motion_N = force_of_motion(speed, drive.time_s, rig.effects)
-    return EndInputs(course, boundary_of(drive), direction, travel, motion_N)
+    of_end = at_drive, at_load, step_s, time_s, direction, travel, motion_N
+    return EndInputs(np.vstack((losses, *of_end)), boundary_of(drive))
 
 
 def _follows_speed(effects: Effects) -> bool:

@@ -13,7 +13,7 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.closed_form.branches import BranchState, branches_at_rest, follow_branches
 from tsas_cli.physics.closed_form.static import StaticState, follow_static
-from tsas_cli.physics.course import Output, samples_of
+from tsas_cli.physics.course import DIRECTION, MOTION, Output, samples_of
 from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
 from tsas_cli.physics.frames import Frames, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
@@ -248,10 +248,12 @@ def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     """Return the forces at the drive's sensor parallel to the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-    if friction == 0.0 and stiffness == 0.0 and not ends.motion_N.any():
+    if friction == 0.0 and stiffness == 0.0 and not ends.course[MOTION].any():
         return 0.0
-    friction_N = drive_friction_force(friction, 1.0) * ends.direction
-    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive + ends.motion_N
+    friction_N = drive_friction_force(friction, 1.0) * ends.course[DIRECTION]
+    beside: Floats = friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
+    beside += ends.course[MOTION]
+    return beside
 
 
 def first_determined_sample(rig: Rig, drive: DriveInput) -> int | None:

@@ -101,7 +101,7 @@ def lugre_chain(
     Parameters
     ----------
     course
-        Inputs of the tendon, with the rows of `course`, shape (8, m), and increasing times;
+        Inputs of the tendon, with the rows of `course`, shape (11, m), and increasing times;
         friction without its dependence on speed, which each lump has by itself.
     start
         Positions of the nodes and tensions of the segments behind them at the first sample, shape

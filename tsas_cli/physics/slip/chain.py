@@ -60,7 +60,7 @@ def slip_chain(
     Parameters
     ----------
     course
-        Inputs of the tendon, with the rows of `course`, shape (8, m).
+        Inputs of the tendon, with the rows of `course`, shape (11, m).
     rig
         The rig; its friction and bend are those of the course.
     boundary
