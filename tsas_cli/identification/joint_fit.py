@@ -23,7 +23,7 @@ from tsas_cli.identification.fit import (
 )
 from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.quantities import QUANTITIES, Quantity
 from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.rig import Rig, with_values
@@ -204,12 +204,17 @@ def _fixed_values(problem: FitProblem) -> Floats:
     return np.array(out)
 
 
-def estimates_of(unknowns: Sequence[Unknown], found: Fitted, runs: Sequence[str]) -> list[Estimate]:
+def estimates_of(
+    unknowns: Sequence[Unknown],
+    found: Fitted,
+    runs: Sequence[str],
+    quantities: Mapping[str, Quantity] = QUANTITIES,
+) -> list[Estimate]:
     """Return the estimates of a fit's unknowns, in their units; `runs` are the ids of the runs."""
     out = []
     each_one = zip(unknowns, found.values, found.stderr, found.t, found.at_bound, strict=True)
     for u, v, sd, t, at_bound in each_one:
-        quantity = QUANTITIES[u.name]
+        quantity = quantities[u.name]
         ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
         low, value, high = (quantity.inside(float(end)) for end in ends)
         stderr = sd * (value if quantity.positive else quantity.size)
