@@ -179,10 +179,9 @@ import json
 import sys
 import numpy as np
 from tests.effects.test_contract import LOADS, X_IN, started
-from tests.physics.references import GROUP_A
+from tests.physics.references import GROUP_A, slip_chain
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.ends import ends_of
-from tsas_cli.physics.slip.chain import slip_chain
 
 columns = []
 for effect in EFFECTS:

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A
+from tests.physics.references import GROUP_A, branches
 from tests.physics.slip.test_any_effect import any_effects
 from tests.physics.test_any_rig import any_motion, any_rig
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import simulate

@@ -7,16 +7,16 @@ from tests.physics.references import (
     FREE,
     GROUP_A,
     LOADED_BY_SPRING,
+    branches,
     course_of,
+    slip_chain,
     through,
 )
 from tsas_cli.effects import Effects, Presliding
-from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import NODES, simulate
-from tsas_cli.physics.slip.chain import slip_chain
 
 NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
 TIME_S = np.arange(0.0, 6.3, 1e-3)

@@ -5,13 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import FREE, GROUP_A, Profile, pulled_through, wrap_of
+from tests.physics.references import FREE, GROUP_A, Profile, branches, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.closed_form.branches import (
-    branches,
-    from_rest,
-    strokes,
-)
+from tsas_cli.physics.closed_form.branches import from_rest, strokes
 from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)

@@ -14,6 +14,7 @@ from tests.physics.references import (
     at,
     course_of,
     follow,
+    slip_chain,
 )
 from tests.physics.slip.test_small_chains import SPRINGY
 from tsas_cli.physics.course import Losses
@@ -22,14 +23,7 @@ from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
-from tsas_cli.physics.slip.chain import (
-    ChainEnds,
-    between,
-    go_slack,
-    initial_state,
-    rest_after,
-    slip_chain,
-)
+from tsas_cli.physics.slip.chain import ChainEnds, between, go_slack, initial_state, rest_after
 from tsas_cli.physics.slip.chain import follow as go_on
 from tsas_cli.physics.slip.chain import moment as moment_of
 from tsas_cli.physics.slip.outputs import phase_of, tension_at_sensor

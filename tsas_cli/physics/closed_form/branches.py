@@ -93,27 +93,6 @@ def strokes(x_in: Floats) -> int:
     return count
 
 
-def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
-    """Return the tensions for a motion of the drive that starts at rest at x = 0 [mm].
-
-    Parameters
-    ----------
-    x_in
-        Displacement of the drive from the state of uniform preload, shape (n,) [mm].
-    rig
-        The rig; its sensor zeros are not used.
-    frames
-        Written over with the profile along the tendon, on any number of elements.
-
-    Returns
-    -------
-    f_in, f_out, phase
-        Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
-        in loosening, 0 in a dead band, 2 where it hangs slack.
-    """
-    return follow_branches(x_in, rig, branches_at_rest(rig.preload_N), frames)[0]
-
-
 # State at the last sample: position [mm] and both tensions [N], direction of the last motion,
 # depth of the stack of reversals, its base, and the phase.
 LAST_X, LAST_F_IN, LAST_F_OUT, DIRECTION, DEPTH, BASE, PHASE = range(7)
@@ -140,7 +119,19 @@ def branches_at_rest(preload: float) -> BranchState:
 def follow_branches(
     x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None
 ) -> tuple[Tensions, BranchState]:
-    """Return the tensions for a motion from a state, and the final state; see `branches`."""
+    """Return the tensions for a motion from a state, and the final state.
+
+    Parameters
+    ----------
+    x_in
+        Displacement of the drive from the state of uniform preload, shape (n,) [mm].
+    rig
+        The rig; its sensor zeros are not used.
+    state
+        That of `branches_at_rest`, or the final one of the motion before.
+    frames
+        Written over with the profile along the tendon, on any number of elements.
+    """
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
     c = compliance_at_drive(rig)

@@ -27,17 +27,9 @@ class StaticState(NamedTuple):
     f_out: float
 
 
-def static_model(x_in: Floats, rig: Rig) -> Tensions:
-    """Return the tensions for a motion of the drive from rest at x = 0 [mm], with a spring load.
-
-    Parameters and results are those of `branches`.
-    """
-    return follow_static(x_in, rig, StaticState(0.0, rig.preload_N, rig.preload_N))[0]
-
-
 @kernel
 def follow_static(x_in: Floats, rig: Rig, state: StaticState) -> tuple[Tensions, StaticState]:
-    """Return the tensions for a motion from a state, and the final state."""
+    """Return the tensions for a motion of the drive [mm] from a state, and the final state."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     free = compliance_at_drive(rig)
     stiffness = dead_band_stiffness(wrap, 1.0, 1.0 / sheath_compliance(rig))

@@ -120,7 +120,7 @@ def lugre_chain(
     Returns
     -------
     output
-        As that of `slip_chain`; where the run is aborted, the rest has phase 3 and the last values.
+        As that of the slip chain; where a run is aborted, the rest has phase 3 and the last values.
     progress
         Statistics of the run.
     """

@@ -52,33 +52,6 @@ MOST_STEPS = 60  # between two samples, unconverged ones included
 SHORTEST_STEP = 1e-3  # of the interval between two samples; shorter steps do not converge either
 
 
-def slip_chain(
-    course: Floats, rig: Rig, boundary: Boundary, n: int, frames: Frames | None = None
-) -> Output:
-    """Return the output for the motion of both ends from rest at the preload.
-
-    Parameters
-    ----------
-    course
-        Inputs of the tendon, with the rows of `course`, shape (11, m).
-    rig
-        The rig; its friction and bend are those of the course.
-    boundary
-        The given quantity at each end.
-    n
-        Number of nodes.
-    frames
-        Written over with the profile along the tendon, n elements with a node in each.
-
-    Returns
-    -------
-        Positions and tensions at both ends: the tension at the drive is that behind the drive's
-        friction (or the given one), the one at the load is its sensor's. A sample of phase 3 is not
-        converged; after many such samples the run is aborted: the rest has the last values.
-    """
-    return follow(course, initial_state(course, rig, boundary, n), rig, boundary, n, frames)[0]
-
-
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
     """Return positions of the nodes and tensions behind them after a course, shape (2, n + 2)."""
     start = initial_state(course, rig, boundary, n)
@@ -123,7 +96,29 @@ def follow(
     n: int,
     frames: Frames | None,  # a default would be compiled apart from None
 ) -> tuple[Output, ChainState]:
-    """Return the output of a chain for a course from a state, and the final state."""
+    """Return the output of a chain for the motion of both ends from a state, and the final state.
+
+    Parameters
+    ----------
+    course
+        Inputs of the tendon, with the rows of `course`, shape (11, m).
+    state
+        That of `initial_state`, or the final one of the course before.
+    rig
+        The rig; its friction and bend are those of the course.
+    boundary
+        The given quantity at each end.
+    n
+        Number of nodes.
+    frames
+        Written over with the profile along the tendon, n elements with a node in each.
+
+    Returns
+    -------
+        Positions and tensions at both ends: the tension at the drive is that behind the drive's
+        friction (or the given one), the one at the load is its sensor's. A sample of phase 3 is not
+        converged; after many such samples the run is aborted: the rest has the last values.
+    """
     m = course.shape[1]
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phases = np.zeros(m, dtype=np.int8)
