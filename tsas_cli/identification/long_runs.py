@@ -19,7 +19,6 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import (
     CHANNELS,
     GAP,
-    LOAD_COLUMNS,
     START_SAMPLES,
     Prepared,
     drive_of,
@@ -296,7 +295,6 @@ def _whole(parts: Sequence[RunSummary]) -> RunSummary:
 
 def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[DriveInput]:
     """Yield the drive of each piece of a run; append its rows to `waiting`."""
-    load = LOAD_COLUMNS.get(long.run.load)
     begin_s = 0.0
     for rows in long.rows():
         if rows.start == 0:
@@ -305,9 +303,8 @@ def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[DriveInput]:
         drive = drive_of(
             long.run,
             rows.time_s,
-            rows.cleaned[long.drive_column].values,
-            by_force=long.drive_column == "f_in_N",
-            load_values=None if load is None else rows.cleaned[load].values,
+            long.drive_column,
+            {name: part.values for name, part in rows.cleaned.items()},
             f_in_N=rows.measured.get("f_in_N") if rows.start == 0 else None,
             session_s=long.session_s,
         )

@@ -10,7 +10,6 @@ same sign is an offset.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -105,30 +104,27 @@ def _of_one_bend(runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]
     down = _line(runs, segments, "loosening")
     if up is None or down is None or min(up.values[0], down.values[0]) <= 0.0:
         return []
-    ratios = [line.values[0] for line in (up, down)]
-    variances = [np.diag(line.covariance) for line in (up, down)]
-    wrap_sd = 0.5 * math.hypot(
-        *(math.sqrt(v[0]) / r for v, r in zip(variances, ratios, strict=True))
+    (up_ratio, up_N), (down_ratio, down_N) = (line.values.tolist() for line in (up, down))
+    (up_sd, up_sd_N), (down_sd, down_sd_N) = (
+        np.sqrt(np.diag(line.covariance)).tolist() for line in (up, down)
     )
-    constant_sd = 0.5 * math.sqrt(variances[0][1] + variances[1][1])
-    both = 0.5 * (up.values[1] - down.values[1]), 0.5 * (up.values[1] + down.values[1])
-    estimate = partial(
-        _estimate, t=float(max(up.t.max(), down.t.max())), runs=", ".join(r.run.id for r in runs)
+    wrap = 0.5 * math.log(up_ratio / down_ratio)
+    wrap_sd = 0.5 * math.hypot(up_sd / up_ratio, down_sd / down_ratio)
+    constant_sd = 0.5 * math.hypot(up_sd_N, down_sd_N)
+    found = (
+        ("ratio_contraction", up_ratio, up_sd, "1"),
+        ("ratio_loosening", down_ratio, down_sd, "1"),
+        ("intercept_contraction", up_N, up_sd_N, "N"),
+        ("intercept_loosening", down_N, down_sd_N, "N"),
+        ("wrap", wrap, wrap_sd, "1"),
+        ("constant_friction", 0.5 * (up_N - down_N), constant_sd, "N"),
+        ("offset", 0.5 * (up_N + down_N), constant_sd, "N"),
     )
+    t, ids = float(max(up.t.max(), down.t.max())), ", ".join(run.run.id for run in runs)
     return [
-        estimate("ratio_contraction", up.values[0], math.sqrt(variances[0][0]), "1"),
-        estimate("ratio_loosening", down.values[0], math.sqrt(variances[1][0]), "1"),
-        estimate("intercept_contraction", up.values[1], math.sqrt(variances[0][1]), "N"),
-        estimate("intercept_loosening", down.values[1], math.sqrt(variances[1][1]), "N"),
-        estimate("wrap", 0.5 * math.log(ratios[0] / ratios[1]), wrap_sd, "1"),
-        estimate("constant_friction", both[0], constant_sd, "N"),
-        estimate("offset", both[1], constant_sd, "N"),
+        Estimate(name, value, unit, "fitted", ids, sd, value - t * sd, value + t * sd)
+        for name, value, sd, unit in found
     ]
-
-
-def _estimate(name: str, value: float, sd: float, unit: str, *, t: float, runs: str) -> Estimate:
-    low, high = float(value - t * sd), float(value + t * sd)
-    return Estimate(name, float(value), unit, "fitted", runs, sd, low, high)
 
 
 def _line(
