@@ -26,7 +26,6 @@ from tsas_cli.physics.ends import (
     ends_of,
     last_direction,
     losses_at,
-    losses_without_speed,
 )
 from tsas_cli.physics.response import NODES, first_determined_sample, is_closed, simulate
 from tsas_cli.physics.rig import with_values
@@ -61,8 +60,6 @@ def friction_by_hand(time_s, position, speed, session_s):
 def test_friction_at_a_moment_is_all_that_changes_it(speed):
     expected = friction_by_hand(4.0, 7.0, speed, 30.0)
     assert losses_at(4.0, 7.0, speed, 30.0, VARYING) == pytest.approx(expected)
-    still = friction_by_hand(4.0, 7.0, 0.0, 30.0)
-    assert losses_without_speed(4.0, 7.0, 30.0, VARYING) == pytest.approx(still)
 
 
 def test_the_course_of_a_run_is_what_acts_at_each_sample():

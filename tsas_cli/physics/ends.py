@@ -216,14 +216,6 @@ def losses_over(
 @kernel
 def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
     """Return the losses at one moment, by position and speed of the end at the drive [mm, s]."""
-    now = losses_without_speed(time_s, position, session_s, rig)
-    viscous_N = viscous_loss(speed, rig.effects.viscous_friction.coefficient_N_s_per_mm)
-    return Losses(now.pulled, now.released, viscous_N, now.preload_N)
-
-
-@kernel
-def losses_without_speed(time_s: float, position: float, session_s: float, rig: Rig) -> Losses:
-    """Return the losses at one moment without those that depend on the local sliding speed."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
@@ -232,6 +224,6 @@ def losses_without_speed(time_s: float, position: float, session_s: float, rig: 
     return Losses(
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),
-        0.0,
+        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm),
         lost_preload(effects.preload_loss, time_s),
     )

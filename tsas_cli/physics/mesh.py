@@ -21,12 +21,6 @@ def sheath_compliance(rig: Rig) -> float:
 
 
 @kernel
-def length_per_angle(place: float, rig: Rig) -> float:
-    """Return the sheath's length per bend angle over its mean, `place` from −1 (drive) to 1."""
-    return 1.0 + rig.bend_slope * place + rig.bend_bow * (1.5 * place * place - 0.5)
-
-
-@kernel
 def compliance_at_drive(rig: Rig) -> float:
     """Return the compliance between the drive's sensors and the sheath [mm/N]."""
     free = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)
@@ -50,8 +44,9 @@ def segment_compliances(rig: Rig, n: int) -> Floats:
     compliance = np.empty(n + 1)
     for i in range(n + 1):
         start, end = max(2 * i - 1, 0), min(2 * i + 1, 2 * n)  # in halves of a node's bend
-        at = 0.5 * (start + end) / n - 1.0
-        compliance[i] = 0.5 * (end - start) * sheathed * length_per_angle(at, rig)
+        at = 0.5 * (start + end) / n - 1.0  # from −1 at the drive to 1 at the load
+        per_angle = 1.0 + rig.bend_slope * at + rig.bend_bow * (1.5 * at * at - 0.5)
+        compliance[i] = 0.5 * (end - start) * sheathed * per_angle
     compliance[0] += compliance_at_drive(rig)
     compliance[n] += compliance_at_load(rig)
     return compliance

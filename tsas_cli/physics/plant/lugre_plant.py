@@ -20,7 +20,7 @@ from tsas_cli.physics.boundary import (
     share_before_sensor,
     with_spring,
 )
-from tsas_cli.physics.ends import losses_without_speed
+from tsas_cli.physics.ends import losses_at
 from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.balance import balance_drive
 from tsas_cli.physics.lugre.ends import EndState, StepEnds, ends_after
@@ -225,7 +225,7 @@ def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
 @kernel
 def step_of_rest(force: float, time_s: float, position: float, rig: Rig, n: int) -> Step:
     """Return a step of zero length with a force at the drive [N], which is at a position [mm]."""
-    losses = losses_without_speed(time_s, position, 0.0, rig)
+    losses = losses_at(time_s, position, 0.0, 0.0, rig)
     pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
     none = Given(0.0, 0.0)
     return Step(NO_TIME_S, Given(force, 0.0), none, none, pulled, released, losses.preload_N)

@@ -12,7 +12,7 @@ set, in between which all tensions are affine.
 
 from tsas_cli.effects.antagonist import is_taut, net_force
 from tsas_cli.numerics.compiled import kernel, seldom_kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, moving_friction
+from tsas_cli.physics.boundary import DISPLACEMENT, DriveEnd, moving_friction
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import (
@@ -29,7 +29,7 @@ from tsas_cli.physics.slip.nodes import (
     update_relations,
     update_speeds,
 )
-from tsas_cli.physics.slip.start import driven_by_displacement, laws_of_second
+from tsas_cli.physics.slip.start import laws_of_second, with_drive
 from tsas_cli.physics.slip.state import Moment, SlipLaws
 from tsas_cli.physics.slip.step import (
     changes_at,
@@ -94,7 +94,7 @@ def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int, revers
 @kernel
 def set_both_in_motion(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set positions and tensions of both tendons for their active sets."""
-    driven = driven_by_displacement(laws)
+    driven = with_drive(laws, DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0))
     if laws.drive.given == DISPLACEMENT:
         sweep_both(chain, now.drive, now, driven)
         return

@@ -85,12 +85,6 @@ def with_drive(laws: SlipLaws, drive: DriveEnd) -> SlipLaws:
 
 
 @kernel
-def driven_by_displacement(laws: SlipLaws) -> SlipLaws:
-    """Return the laws with the displacement given at the drive."""
-    return with_drive(laws, DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0))
-
-
-@kernel
 def laws_of_second(laws: SlipLaws) -> SlipLaws:
     """Return the laws of an antagonist, whose both ends have given displacements."""
     return SlipLaws(
