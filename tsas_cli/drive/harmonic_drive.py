@@ -85,7 +85,9 @@ def gear_response(u: Sampled, values: DriveValues, start_mm: float) -> Floats:
     period = g * SECONDS_PER_MINUTE / WAVES
     ripple = Wave(float(values.sine_mm), float(values.cosine_mm), period)
     error = _through_gear(stiff, float(start_mm), ripple, float(values.play_mm)) - stiff
-    return _through_spring(error, u.step_s, values)
+    if values.natural_frequency_Hz == 0.0:
+        return error
+    return lagged(sampled(u.step_s, error, "first"), _spring(values))
 
 
 def has_gear(values: DriveValues) -> bool:
@@ -110,10 +112,3 @@ def _through_gear(stiff: Floats, start: float, ripple: Wave, play: float) -> Flo
         position = follow_play(position, moved, play)
         out[i] = position
     return out
-
-
-def _through_spring(positions: Floats, step_s: float, values: DriveValues) -> Floats:
-    """Return the response of x_in to the gear's output, linear between samples."""
-    if values.natural_frequency_Hz == 0.0:
-        return positions
-    return lagged(sampled(step_s, positions, "first"), _spring(values))
