@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.support.arrays import Number
+from tsas_cli.support.arrays import Values
 
 
 class Wave(NamedTuple):
@@ -23,7 +23,7 @@ class Wave(NamedTuple):
 
 
 @kernel
-def wave_at(position: Number, wave: Wave) -> tuple[Number, Number]:
+def wave_at(position: Values, wave: Wave) -> tuple[Values, Values]:
     """Return sine·sin a + cosine·(cos a − 1) [mm] with a = 2π position/period, and its slope."""
     rate = 2.0 * math.pi / wave.period_mm
     angle = rate * position
@@ -33,7 +33,7 @@ def wave_at(position: Number, wave: Wave) -> tuple[Number, Number]:
 
 
 @kernel
-def rippled(position: Number, wave: Wave) -> Number:
+def rippled(position: Values, wave: Wave) -> Values:
     """Return a position with the wave on it [mm]."""
     return position + wave_at(position, wave)[0]
 

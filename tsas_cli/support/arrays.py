@@ -9,4 +9,4 @@ Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
-Number = TypeVar("Number", float, Floats)  # of laws that hold for a sample and for all alike
+Values = TypeVar("Values", float, Floats)  # of laws that hold for a sample and for all alike
