@@ -7,7 +7,7 @@ import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction, ViscousFriction
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.closed_form.branches import branches_at_rest, follow_branches
+from tsas_cli.physics.closed_form.branches import branches_at_rest, follow_branches, with_room
 from tsas_cli.physics.closed_form.static import StaticState, follow_static
 from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
 from tsas_cli.physics.rig import Rig
@@ -36,7 +36,7 @@ DRIVEN_BY_FORCE = LOADED_BY_SPRING._replace(drive=FORCE)
 
 def branches(x_in, rig, frames=None):
     """Return tensions and phase of the closed form for a motion from rest."""
-    return follow_branches(x_in, rig, branches_at_rest(rig.preload_N), frames)[0]
+    return follow_branches(x_in, rig, with_room(branches_at_rest(rig.preload_N), x_in), frames)
 
 
 def static_model(x_in, rig):

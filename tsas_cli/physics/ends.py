@@ -169,11 +169,11 @@ def tendon_end(x: Floats, effects: Effects, position: float) -> Floats:
 
     `position` is the one before the first sample.
     """
-    out = np.empty(x.size)
+    out, ripple = np.empty(x.size), effects.drive_ripple
+    waves = ripple.sine_mm != 0.0 or ripple.cosine_mm != 0.0  # sines take half the time
     for i in range(x.size):
-        position = follow_play(
-            position, rippled(x[i], effects.drive_ripple), effects.backlash.play_mm
-        )
+        moved = rippled(x[i], ripple) if waves else x[i]
+        position = follow_play(position, moved, effects.backlash.play_mm)
         out[i] = position
     return out
 

@@ -11,7 +11,12 @@ from tsas_cli.effects import EFFECTS, LAWS, Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
-from tsas_cli.physics.closed_form.branches import BranchState, branches_at_rest, follow_branches
+from tsas_cli.physics.closed_form.branches import (
+    BranchState,
+    branches_at_rest,
+    follow_branches,
+    with_room,
+)
 from tsas_cli.physics.closed_form.static import StaticState, follow_static
 from tsas_cli.physics.course import DIRECTION, MOTION, Output, samples_of
 from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
@@ -226,7 +231,8 @@ def advanced(
     That of a chain is updated in place.
     """
     if isinstance(state, BranchState):
-        tensions, state = follow_branches(ends.drive, rig, state, frames)
+        state = with_room(state, ends.drive)
+        tensions = follow_branches(ends.drive, rig, state, frames)
     elif isinstance(state, StaticState):
         tensions, state = follow_static(ends.drive, rig, state)
     else:

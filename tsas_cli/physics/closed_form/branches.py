@@ -99,10 +99,10 @@ LAST_X, LAST_F_IN, LAST_F_OUT, DIRECTION, DEPTH, BASE, PHASE = range(7)
 
 
 class BranchState(NamedTuple):
-    """State of the closed form from one sample to the next."""
+    """State of the closed form from one sample to the next, updated in place."""
 
     now: Floats  # at the last sample, as named above, (7,)
-    reversal_x: Floats  # stack of reversals, of any size
+    reversal_x: Floats  # stack of reversals, with room for all that may nest
     reversal_T: Floats
 
 
@@ -115,11 +115,19 @@ def branches_at_rest(preload: float) -> BranchState:
     return BranchState(now, np.empty(0), np.empty(0))
 
 
+def with_room(state: BranchState, x_in: Floats) -> BranchState:
+    """Return a copy of a state with room for the reversals of a motion.
+
+    Growing it in the loop of `follow_branches` would cost 20 ns a sample.
+    """
+    more, depth = np.empty(strokes(x_in)), int(state.now[DEPTH])
+    reversal_x, reversal_T = (np.concatenate((row[:depth], more)) for row in state[1:])
+    return BranchState(state.now.copy(), reversal_x, reversal_T)
+
+
 @kernel
-def follow_branches(
-    x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None
-) -> tuple[Tensions, BranchState]:
-    """Return the tensions for a motion from a state, and the final state.
+def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None) -> Tensions:
+    """Return the tensions for a motion from a state, which is updated in place.
 
     Parameters
     ----------
@@ -128,7 +136,7 @@ def follow_branches(
     rig
         The rig; its sensor zeros are not used.
     state
-        That of `branches_at_rest`, or the final one of the motion before.
+        The state before the motion, `with_room` for it.
     frames
         Written over with the profile along the tendon, on any number of elements.
     """
@@ -144,13 +152,10 @@ def follow_branches(
     f_in = np.empty(n)
     f_out = np.empty(n)
     phase = np.zeros(n, dtype=np.int8)
-    last = state.now
+    last, reversal_x, reversal_T = state
     x, T, out = last[LAST_X], last[LAST_F_IN], last[LAST_F_OUT]
     direction, depth, base = int(last[DIRECTION]), int(last[DEPTH]), int(last[BASE])
     before = int(last[PHASE])
-    room = depth + strokes(x_in)  # growing it in the loop would cost 20 ns a sample
-    reversal_x, reversal_T = np.empty(room), np.empty(room)
-    reversal_x[:depth], reversal_T[:depth] = state.reversal_x[:depth], state.reversal_T[:depth]
     written = 0
     for i in range(n):
         if x_in[i] != x:
@@ -190,8 +195,8 @@ def follow_branches(
             write_profile(frames, written, past, rig.preload_N, wrap)
             written += 1
     # In the order of the indices: stored one by one, or in a record, the loop takes a fifth longer.
-    now = np.array([x, T, out, direction, depth, base, before])
-    return Tensions(f_in, f_out, phase), BranchState(now, reversal_x, reversal_T)
+    last[:] = np.array([x, T, out, direction, depth, base, before])
+    return Tensions(f_in, f_out, phase)
 
 
 class Strokes(NamedTuple):
