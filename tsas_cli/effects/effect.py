@@ -60,7 +60,7 @@ def shape(
     starts: tuple[float, ...] = (),
     period: bool = False,
 ) -> Parameter:
-    """Return a parameter that matters only where another one is not neutral, from there on."""
+    """Return a `shape` parameter, whose initial value is the neutral one."""
     return Parameter(
         name, unit, neutral, neutral, lower, upper, shape=True, period=period, starts=starts
     )
@@ -74,21 +74,15 @@ def wave_parameters(
     longest_mm: float,
     starts: tuple[float, ...],
 ) -> tuple[Parameter, ...]:
-    """Return those of a `Wave` [mm]; a longer one is like a gain in the strokes of most rigs.
+    """Return the parameters of a `Wave`; a longer one is like a gain in the strokes of most rigs.
 
     `amplitude_mm` is the initial value of both amplitudes, `starts` are those of the period.
     """
+    bounds = {"lower": shortest_mm, "upper": longest_mm}
     return (
-        *(Parameter(name, "mm", 0.0, amplitude_mm, -5.0, 5.0) for name in ("sine_mm", "cosine_mm")),
-        shape(
-            "period_mm",
-            "mm",
-            period_mm,
-            lower=shortest_mm,
-            upper=longest_mm,
-            starts=starts,
-            period=True,
-        ),
+        Parameter("sine_mm", "mm", 0.0, amplitude_mm, -5.0, 5.0),
+        Parameter("cosine_mm", "mm", 0.0, amplitude_mm, -5.0, 5.0),
+        shape("period_mm", "mm", period_mm, **bounds, starts=starts, period=True),
     )
 
 
