@@ -34,8 +34,7 @@ from tsas_cli.physics.plant.turntable import (
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import follow, initial_state
 from tsas_cli.physics.slip.outputs import tension_at_sensor
-from tsas_cli.physics.slip.start import set_compliances, slip_laws
-from tsas_cli.physics.slip.state import POSITION, Moment
+from tsas_cli.physics.slip.state import POSITION, Moment, set_compliances, slip_laws
 from tsas_cli.support.arrays import Floats
 
 DRIVEN = Boundary(FORCE, SPRING)  # the tendon in the plant

@@ -22,8 +22,15 @@ from tsas_cli.physics.plant.turntable import (
     turntable_at,
 )
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws, with_drive
-from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Moment
+from tsas_cli.physics.slip.state import (
+    POSITION,
+    SLIP,
+    TENSION,
+    Moment,
+    chain_at_rest,
+    slip_laws,
+    with_drive,
+)
 
 F0, H = 25.0, 0.01
 ACTUATOR = Actuator(0.024, 150.0, 6e-3, 0.4, 0.02, 3000.0)

@@ -21,8 +21,14 @@ from tsas_cli.physics.plant.turntable import (
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.outputs import tension_at_sensor
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import COMPLIANCE, POSITION, TENSION, Moment
+from tsas_cli.physics.slip.state import (
+    COMPLIANCE,
+    POSITION,
+    TENSION,
+    Moment,
+    chain_at_rest,
+    slip_laws,
+)
 
 K = 2.0 * math.pi * 27.1 / (60.0 * 120.0)
 DRIVE = Actuator(K, 52.0, 0.1296 / 27.1**2, 0.007, 0.002, 3000.0)

@@ -14,8 +14,7 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.chain import advance, go_slack
 from tsas_cli.physics.slip.ends import drive_tangent, update_end_speeds
-from tsas_cli.physics.slip.start import with_drive
-from tsas_cli.physics.slip.state import Moment, SlipLaws
+from tsas_cli.physics.slip.state import Moment, SlipLaws, with_drive
 from tsas_cli.support.arrays import Floats
 
 

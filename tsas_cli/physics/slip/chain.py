@@ -42,8 +42,7 @@ from tsas_cli.physics.slip.ends import (
 from tsas_cli.physics.slip.nodes import accept, update_speeds
 from tsas_cli.physics.slip.outputs import phase_of, tension_at_drive, tension_at_sensor, write_frame
 from tsas_cli.physics.slip.pair import accept_pair, solve_pair
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import Moment, SlipLaws
+from tsas_cli.physics.slip.state import Moment, SlipLaws, chain_at_rest, slip_laws
 from tsas_cli.physics.slip.step import solve_sample
 from tsas_cli.support.arrays import Floats
 

@@ -19,8 +19,15 @@ from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance
 from tsas_cli.physics.slip.outputs import tension_at_sensor
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import POSITION, ROWS, TENSION, Moment, SlipLaws
+from tsas_cli.physics.slip.state import (
+    POSITION,
+    ROWS,
+    TENSION,
+    Moment,
+    SlipLaws,
+    chain_at_rest,
+    slip_laws,
+)
 from tsas_cli.support.arrays import Floats
 
 EXACT_N = 1e-7  # tolerance of the force

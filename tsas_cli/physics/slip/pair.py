@@ -29,8 +29,7 @@ from tsas_cli.physics.slip.nodes import (
     update_relations,
     update_speeds,
 )
-from tsas_cli.physics.slip.start import laws_of_second, with_drive
-from tsas_cli.physics.slip.state import Moment, SlipLaws
+from tsas_cli.physics.slip.state import Moment, SlipLaws, laws_of_second, with_drive
 from tsas_cli.physics.slip.step import (
     changes_at,
     most_iterations,
