@@ -13,14 +13,14 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
+    branches,
     course_of,
+    slip_chain,
 )
 from tsas_cli.effects import EFFECTS
 from tsas_cli.numerics.conditioning import condition
-from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.physics.slip.chain import slip_chain
 
 TIME_S = np.arange(12566) / 1000.0  # two periods
 REPEATS = 30

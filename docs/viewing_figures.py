@@ -5,8 +5,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from tests.physics.references import GROUP_A
-from tsas_cli.physics.closed_form.branches import branches
+from tests.physics.references import GROUP_A, branches
 from tsas_cli.physics.frames import empty_frames
 
 mpl.use("svg")

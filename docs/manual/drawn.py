@@ -10,7 +10,7 @@ from tsas_cli.diagnosis.motions import motion
 from tsas_cli.effects import Effect
 from tsas_cli.paper import yang2025
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.response import Prediction, simulate
+from tsas_cli.physics.response import NODES, Prediction, simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
@@ -69,7 +69,7 @@ def _run(effect: Effect, values: dict[str, float], way: Motion) -> Run:
         quasi_static_rig(yang2025()),
         {f"{effect.name}.{name}": value for name, value in values.items()},
     )
-    answer: Prediction = simulate(rig, DriveInput(x_in, time_s=time_s), on_mesh=True)
+    answer: Prediction = simulate(rig, DriveInput(x_in, time_s=time_s), nodes=NODES)
     return {
         "time_s": time_s,
         "x_in_mm": answer.x_in_mm,

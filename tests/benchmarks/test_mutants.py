@@ -12,7 +12,7 @@ from benchmarks.mutants.verdicts import equivalents, interval, lines
 
 ROOT = Path(__file__).parents[2]
 SMALL = "tsas_cli/physics/closed_form/capstan.py"
-PATHS = [SMALL, "tsas_cli/physics/compliances.py", "tsas_cli/diagnosis/evidence.py"]
+PATHS = [SMALL, "tsas_cli/physics/mesh.py", "tsas_cli/diagnosis/evidence.py"]
 SOURCE = """
 def f(x: int | None, *, low: float = 1.0) -> float | None:
     if (

@@ -7,14 +7,14 @@ from tsas_cli.comparing.sides import read_side
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
-from tsas_cli.physics.parameters import BRISTLES
+from tsas_cli.identification.quantities import BRISTLES
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError
 
 FRICTION = Estimate("friction_coefficient", 0.125, "1", "fitted")
 LENGTH = Estimate("free_tendon.distal_length_mm", 60.0, "mm", "fitted")
 PLAY = Estimate("backlash.play_mm", 0.1, "mm", "fitted")
-BRISTLE = Estimate(f"bristles.{BRISTLES[0].name}", 100.0, BRISTLES[0].unit, "fitted")
+BRISTLE = Estimate(BRISTLES[0].name, 100.0, BRISTLES[0].unit, "fitted")
 
 
 @pytest.fixture

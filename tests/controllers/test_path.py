@@ -8,7 +8,7 @@ import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.controllers.path import drive_at, follow, geared_at, smoothed
-from tsas_cli.effects.drive_ripple import DriveRipple
+from tsas_cli.numerics.wave import Wave
 from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.response import simulate
@@ -126,13 +126,13 @@ def test_the_model_driven_along_the_path_gives_the_wanted_force(values):
     """Between the turns; what smoothing takes off is x″ crossing²/96, 0.006 mm at most here."""
     path = path_to(SINE, values)
     rig = with_values(GROUP_A, values)
-    there = simulate(rig, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
+    there = simulate(rig, DriveInput(path.drive[0], time_s=T), nodes=NODES)
     between = (np.abs(np.sin(2.0 * T)) > 0.27) & (T[-1] - CROSSING_S > T)
     if values in LATE.values():
         between &= np.sin(2.0 * T) * np.cos(2.0 * T) < 0.0  # the second half of each stroke
     np.testing.assert_allclose(there.f_out_N[between], SINE[between], atol=0.04)
     if values:
-        other = simulate(GROUP_A, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
+        other = simulate(GROUP_A, DriveInput(path.drive[0], time_s=T), nodes=NODES)
         assert np.abs(other.f_out_N[between] - SINE[between]).max() > 0.1
 
 
@@ -157,7 +157,7 @@ def test_the_motor_winds_up_the_gear_by_what_hangs_at_it():
     rig = with_values(GROUP_A, values)
     assert (path_to(SINE, values).motor == path_to(SINE, values).drive).all()
     path = path_to(SINE, values, actuator=soft)
-    f_in = simulate(rig, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES).f_in_N
+    f_in = simulate(rig, DriveInput(path.drive[0], time_s=T), nodes=NODES).f_in_N
     wound = (f_in - GROUP_A.preload_N) / 52.0
     between = np.abs(np.sin(2.0 * T)) > 0.25
     np.testing.assert_allclose((path.motor - path.drive)[0][between], wound[between], atol=0.01)
@@ -180,7 +180,7 @@ def test_rates_with_ripple_are_those_of_the_drive():
     """Gear's output 3t³: the drive's rates by the rule of the inverse function."""
     step_s = 2e-4
     t = 0.5 + step_s * np.arange(2501)
-    ripple = DriveRipple(sine_mm=0.03, cosine_mm=-0.02, period_mm=0.9)
+    ripple = Wave(sine_mm=0.03, cosine_mm=-0.02, period_mm=0.9)
     rows = drive_at(np.vstack((3.0 * t**3, np.zeros((3, t.size)))), ripple, step_s)
     k = 2.0 * np.pi / 0.9
     sine, cosine = np.sin(k * rows[0]), np.cos(k * rows[0])

@@ -10,7 +10,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
-from tsas_cli.physics.response import is_closed, simulate
+from tsas_cli.physics.response import NODES, is_closed, simulate
 from tsas_cli.physics.rig import with_values
 
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
@@ -44,7 +44,7 @@ def of_response(response):
 
 def every_answer(rig):
     """Return all channels of all solvers and loads, each as often as it knows the effect."""
-    answers = [simulate(rig, drive, on_mesh=True) for drive in LOADS.values()]
+    answers = [simulate(rig, drive, nodes=NODES) for drive in LOADS.values()]
     if is_closed(rig, RUN):
         answers += [simulate(rig, RUN), simulate(rig, RUN, "static")]
     return np.array([of_response(answer) for answer in answers])
@@ -59,7 +59,7 @@ def nominal():
 def test_neutral_is_nothing_to_the_last_bit_whatever_the_shape(effect, nominal):
     neutral = {p.name: p.start if p.shape else p.neutral for p in effect.parameters}
     np.testing.assert_array_equal(
-        of_response(simulate(started(effect, **neutral), RUN, on_mesh=True)), nominal[0]
+        of_response(simulate(started(effect, **neutral), RUN, nodes=NODES)), nominal[0]
     )
     neutral = {p.name: p.neutral for p in effect.parameters}
     np.testing.assert_array_equal(every_answer(started(effect, **neutral)), nominal)
@@ -74,7 +74,7 @@ def test_the_start_of_every_parameter_changes_a_channel(effect, parameter):
     moved = parameter.start if parameter.start != parameter.neutral else 0.5 * parameter.start
     with_it = without | {parameter.name: moved}
     there, not_there = (
-        of_response(simulate(started(effect, **v), RUN, on_mesh=True)) for v in (with_it, without)
+        of_response(simulate(started(effect, **v), RUN, nodes=NODES)) for v in (with_it, without)
     )
     assert np.abs(there - not_there).max() > 1e-3
 
@@ -91,7 +91,7 @@ def test_every_load_settles_with_every_effect(effect, load):
 def test_the_chain_is_the_closed_form(effect):
     """As far as without any effect: a hundredth of a newton, and no more than a node holds back."""
     rig = started(effect)
-    closed, chain = simulate(rig, RUN), simulate(rig, RUN, on_mesh=True)
+    closed, chain = simulate(rig, RUN), simulate(rig, RUN, nodes=NODES)
     assert (closed.solver, chain.solver) == ("closed form", "slip chain, 60 nodes")
     error = chain.f_in_N - closed.f_in_N
     assert np.sqrt(np.mean(error**2)) < 0.03
@@ -121,7 +121,7 @@ def test_a_run_fed_back_as_a_measured_load_repeats_itself(effect, load, channel)
     if (effect.name, load) in NOT_FED_BACK:
         pytest.skip("the load does not tell everything")
     rig = started(effect)
-    spring = simulate(rig, RUN, on_mesh=True)
+    spring = simulate(rig, RUN, nodes=NODES)
     again = simulate(rig, replace(RUN, load=load, load_values=getattr(spring, channel)))
     wrong = (
         f"{channel} as read with {effect.name} is not read back: true_value (physics/sensors.py)"
@@ -139,7 +139,7 @@ def work_of_a_round(rig):
     way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(ROUND)))))
     passed = np.linspace(0.0, way[-1], 6001)
     x = np.interp(passed, way, ROUND)
-    answer = simulate(rig, DriveInput(x, time_s=0.1 * passed), on_mesh=True)
+    answer = simulate(rig, DriveInput(x, time_s=0.1 * passed), nodes=NODES)
     trip = slice(
         int(np.searchsorted(passed, 14.0)), int(np.searchsorted(passed, way[-1] - 2.0)) + 1
     )
@@ -183,10 +183,9 @@ import json
 import sys
 import numpy as np
 from tests.effects.test_contract import LOADS, X_IN, started
-from tests.physics.references import GROUP_A
+from tests.physics.references import GROUP_A, slip_chain
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.ends import ends_of
-from tsas_cli.physics.slip.chain import slip_chain
 
 columns = []
 for effect in EFFECTS:

@@ -6,11 +6,8 @@ import pytest
 from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
-from tsas_cli.effects.position_sensor_ripple import (
-    PositionSensorRipple,
-    read_rippled,
-    without_ripple,
-)
+from tsas_cli.effects.position_sensor_ripple import without_ripple
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
@@ -100,11 +97,8 @@ def test_a_sensor_that_tilts_reads_more_by_its_own_position(channel, position):
 
 
 def test_a_wave_too_steep_has_no_position():
-    steep = PositionSensorRipple(0.0, 0.9, 2.0)
-    assert without_ripple(
-        read_rippled(3.3, PositionSensorRipple(0.2, -0.1, 4.0)),
-        PositionSensorRipple(0.2, -0.1, 4.0),
-    ) == pytest.approx(3.3, abs=1e-10)
+    gentle, steep = Wave(0.2, -0.1, 4.0), Wave(0.0, 0.9, 2.0)
+    assert without_ripple(rippled(3.3, gentle), gentle) == pytest.approx(3.3, abs=1e-10)
     assert any(np.isnan(without_ripple(x, steep)) for x in np.linspace(-3.0, 3.0, 200))
 
 

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A
+from tests.physics.references import GROUP_A, branches
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.effects.free_tendon import free_compliance
-from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.response import DriveInput, simulate
 
 EA = GROUP_A.tendon_stiffness_N

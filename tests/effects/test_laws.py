@@ -3,17 +3,11 @@
 import numpy as np
 import pytest
 
-from tsas_cli.effects import (
-    BendDrift,
-    FrictionDrift,
-    LoadHysteresis,
-    LoadRipple,
-)
-from tsas_cli.effects.bend_drift import drifted_bend
-from tsas_cli.effects.friction_drift import friction_factor
-from tsas_cli.effects.load_hysteresis import element_force
-from tsas_cli.effects.load_ripple import spring_wave
+from tsas_cli.effects.bend_drift import BendDrift, drifted_bend
+from tsas_cli.effects.friction_drift import FrictionDrift, friction_factor
+from tsas_cli.effects.load_hysteresis import LoadHysteresis, element_force
 from tsas_cli.effects.presliding import friction_share, friction_share_rate
+from tsas_cli.numerics.wave import Wave, wave_at
 
 
 @pytest.mark.parametrize("way", [0.003, 0.02, 0.1, -0.003, -0.02, -0.1])
@@ -39,13 +33,13 @@ def test_before_any_way_the_steeper_side_counts(before):
 
 @pytest.mark.parametrize("position", [-3.0, 0.0, 0.4])
 def test_a_wave_has_its_period_its_slope_and_is_nothing_at_rest(position):
-    ripple = LoadRipple(sine_mm=0.3, cosine_mm=-0.2, period_mm=7.0)
-    ahead, behind = (spring_wave(position + step, ripple)[0] for step in (1e-4, -1e-4))
-    wave, slope = spring_wave(position, ripple)
+    ripple = Wave(sine_mm=0.3, cosine_mm=-0.2, period_mm=7.0)
+    ahead, behind = (wave_at(position + step, ripple)[0] for step in (1e-4, -1e-4))
+    wave, slope = wave_at(position, ripple)
     assert slope == pytest.approx((ahead - behind) / 2e-4, rel=1e-6)
-    assert spring_wave(position + 7.0, ripple)[0] == pytest.approx(wave)
-    assert spring_wave(0.0, ripple)[0] == 0.0
-    assert spring_wave(1.75, ripple)[0] == pytest.approx(0.3 + 0.2)
+    assert wave_at(position + 7.0, ripple)[0] == pytest.approx(wave)
+    assert wave_at(0.0, ripple)[0] == 0.0
+    assert wave_at(1.75, ripple)[0] == pytest.approx(0.3 + 0.2)
 
 
 def test_an_element_follows_by_its_stiffness_and_yields():

@@ -8,7 +8,7 @@ import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.response import simulate
+from tsas_cli.physics.response import NODES, simulate
 from tsas_cli.physics.rig import with_values
 
 KL = GROUP_A.load_stiffness_N_per_mm
@@ -86,7 +86,7 @@ def test_a_load_that_relaxes_falls_back_by_an_exponential(dynamics):
 def test_a_load_without_times_is_relaxed():
     x_in = np.linspace(0.0, 8.0, 50)
     rig = with_values(SOFT, {"load_relaxation.share": 0.8})
-    relaxed, plain = (simulate(r, DriveInput(x_in), on_mesh=True) for r in (rig, SOFT))
+    relaxed, plain = (simulate(r, DriveInput(x_in), nodes=NODES) for r in (rig, SOFT))
     np.testing.assert_array_equal(relaxed.f_out_N, plain.f_out_N)
 
 

@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 from tests.effects.runs import UP_AND_DOWN, A, run
-from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, course_of
+from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, course_of, slip_chain
 from tsas_cli.physics.response import NODES
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import slip_chain
 
 
 def in_slip(response, direction, after=0.2):

@@ -7,7 +7,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.effects import LAWS, Effects
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.response import simulate
+from tsas_cli.physics.response import NODES, simulate
 from tsas_cli.physics.rig import with_values
 
 TIME_S = np.linspace(0.0, 12.0, 1201)
@@ -122,5 +122,5 @@ def test_a_factor_beyond_the_low_end_is_another_friction_coefficient():
     ranges = {"tendon_law__low_mm": -40.0, "tendon_law__high_mm": 0.0}
     more = GROUP_A._replace(friction_coefficient=1.4 * GROUP_A.friction_coefficient)
     law = run(**curve, **ranges)
-    assert law.f_in_N == pytest.approx(simulate(more, DRIVE, on_mesh=True).f_in_N, rel=1e-9)
-    assert np.ptp(law.f_in_N - simulate(GROUP_A, DRIVE, on_mesh=True).f_in_N) > 1.0
+    assert law.f_in_N == pytest.approx(simulate(more, DRIVE, nodes=NODES).f_in_N, rel=1e-9)
+    assert np.ptp(law.f_in_N - simulate(GROUP_A, DRIVE, nodes=NODES).f_in_N) > 1.0

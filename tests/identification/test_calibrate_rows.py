@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from tests.physics.references import GROUP_A
-from tsas_cli.identification.stiffness import Slope
+from tsas_cli.identification.transfer import Slope
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.stages.calibrate import CalibrationResult, _stiffness, _theory
 

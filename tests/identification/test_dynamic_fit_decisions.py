@@ -117,7 +117,7 @@ def test_the_finest_stiffness_reaches_as_far_as_a_lump_is_long():
 
 
 def solved(estimates=(), further=(d.STIFFNESS, d.VISCOUS)):
-    return d.Solved(Fit(OWN, further=further, model=Model(tuple(estimates))), None)
+    return Fit(OWN, further=further, model=Model(tuple(estimates)))
 
 
 @pytest.fixture
@@ -138,7 +138,7 @@ def estimate(name, value, low, high, *, stderr=1.0, at_bound=False):
 
 
 def test_the_stiffness_is_sought_again_from_where_it_fits_best(again):
-    better = d.Solved(Fit(-np.log(5.0) * OWN, further=(d.STIFFNESS,)), None)
+    better = Fit(-np.log(5.0) * OWN, further=(d.STIFFNESS,))
     assert d._from_better_stiffness(better, NO_PROGRESS) == "fitted"
     ((initial, fixed, further),) = again[0]
     assert initial.value(d.STIFFNESS) == fixed.value(d.STIFFNESS) == pytest.approx(25e3)
@@ -146,9 +146,9 @@ def test_the_stiffness_is_sought_again_from_where_it_fits_best(again):
 
 
 def test_a_stiffness_that_is_free_or_gains_little_stays(again):
-    free = d.Solved(Fit(-np.log(5.0) * OWN, names=(d.STIFFNESS,)), None)
+    free = Fit(-np.log(5.0) * OWN, names=(d.STIFFNESS,))
     assert d._from_better_stiffness(free, NO_PROGRESS) is None
-    little = d.Solved(Fit(-0.4 * OWN), None)  # saves 16 of 25 at the most
+    little = Fit(-0.4 * OWN)  # saves 16 of 25 at the most
     assert d._from_better_stiffness(little, NO_PROGRESS) is None
     assert again[0] == []
 

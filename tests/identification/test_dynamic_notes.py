@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import TABLE_1
-from tsas_cli.identification import dynamic_notes as d
+from tsas_cli.identification import comparison as d
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.physics.lugre.start import bristles_of

@@ -10,11 +10,10 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification import extension as e
 from tsas_cli.identification.extension import Bench, _parameters
 from tsas_cli.identification.fit import Solution, Unknown
-from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.fit_problem import FitProblem, unknown_of
 from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.unknowns import unknown_of
 
 
 def test_an_effect_frees_its_own_parameters_and_nothing_else():

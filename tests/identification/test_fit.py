@@ -8,14 +8,13 @@ import pytest
 from tsas_cli.identification.fit import (
     Solution,
     Unknown,
-    fit,
     identifiable,
     jacobian,
     solve,
     with_errors,
 )
+from tsas_cli.identification.fit_problem import further_unknown, unknown_of
 from tsas_cli.identification.quantities import QUANTITIES, Quantity
-from tsas_cli.identification.unknowns import further_unknown, unknown_of
 
 
 def unknown(name="a", run=None, start=0.0, lower=-10.0, upper=10.0, scale=1.0):
@@ -156,15 +155,6 @@ def test_what_residuals_do_not_determine_has_no_error_at_all():
     found = with_errors([unknown(), unknown("b")], solution(J, residual), blocks(1, 4, 5))
     assert np.isfinite(found.stderr[0])
     assert found.stderr[1] == math.inf
-
-
-def test_a_fit_is_a_solution_with_its_errors():
-    residuals = linear(MATRICES, TARGETS)
-    numbers = [np.repeat(np.arange(3), 3), np.minimum(np.arange(7) // 2, 2)]
-    found = fit(THREE, numbers, residuals, tolerance=1e-12)
-    alone = solve(THREE, 2, residuals, tolerance=1e-12)
-    np.testing.assert_array_equal(found.values, alone.values)
-    np.testing.assert_array_equal(found.stderr, with_errors(THREE, alone, numbers).stderr)
 
 
 def test_a_quantity_is_scaled_inside_its_bounds_and_back():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
-from tsas_cli.identification import initial_values as s
+from tsas_cli.identification import base_fit as s
 from tsas_cli.identification.phases import Segment
 
 UP, DOWN = Segment(0, 3, "contraction"), Segment(3, 6, "loosening")

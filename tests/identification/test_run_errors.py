@@ -19,7 +19,7 @@ from tsas_cli.identification.run_errors import (
     _reversal_shapes,
     run_errors,
 )
-from tsas_cli.identification.samples import fitted_samples
+from tsas_cli.identification.run_simulation import fitted_samples
 from tsas_studies.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig

@@ -132,8 +132,8 @@ def test_a_run_is_answered_as_it_is_asked_for(model):
     r.meshed(errors_of(run_of()), 12).errors(3.0)
     (_, drive, _, first), *_, (_, _, _, last) = model.asked
     assert drive.start_f_in_N is None
-    assert (first["on_mesh"], first["nodes"], first["tolerance"]) == (False, None, 1e-5)
-    assert (last["on_mesh"], last["nodes"]) == (True, 12)
+    assert (first["nodes"], first["tolerance"]) == (None, 1e-5)
+    assert last["nodes"] == 12
 
 
 LATER = np.arange(1, N)  # a fit never holds the first sample: nothing is forgotten there

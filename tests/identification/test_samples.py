@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.identification import samples as s
+from tsas_cli.identification import run_simulation as s
 
 N = 60
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from tsas_cli.identification.phases import Segment
-from tsas_cli.identification.stiffness import slopes
+from tsas_cli.identification.transfer import slopes
 
 X = np.concatenate((np.linspace(0.0, 10.0, 2000), np.linspace(10.0, 0.0, 2000)))
 PARTS = [Segment(0, 2000, "contraction"), Segment(2000, 4000, "loosening")]

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.numerics.interpolated import interpolated
-from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.numerics.noise import interpolated, noise_sd
 from tsas_studies.challenge.rig.sensors import quantised
 
 TIME = np.arange(400) / 100.0

@@ -7,9 +7,11 @@ import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction, ViscousFriction
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.closed_form.branches import branches_at_rest, follow_branches, with_room
+from tsas_cli.physics.closed_form.static import StaticState, follow_static
 from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.chain import slip_chain
+from tsas_cli.physics.slip import chain
 
 GROUP_A = Rig(
     friction_coefficient=0.125,
@@ -30,6 +32,22 @@ LOADED_BY_SPRING = Boundary(DISPLACEMENT, SPRING)
 LOADED_BY_FORCE = Boundary(DISPLACEMENT, FORCE)
 LOADED_BY_DISPLACEMENT = Boundary(DISPLACEMENT, DISPLACEMENT)
 DRIVEN_BY_FORCE = LOADED_BY_SPRING._replace(drive=FORCE)
+
+
+def branches(x_in, rig, frames=None):
+    """Return tensions and phase of the closed form for a motion from rest."""
+    return follow_branches(x_in, rig, with_room(branches_at_rest(rig.preload_N), x_in), frames)
+
+
+def static_model(x_in, rig):
+    """Return tensions and phase of the static model for a motion from rest."""
+    return follow_static(x_in, rig, StaticState(0.0, rig.preload_N, rig.preload_N))[0]
+
+
+def slip_chain(course, rig, boundary, n, frames=None):
+    """Return the output of the slip chain for a course from rest."""
+    start = chain.initial_state(course, rig, boundary, n)
+    return chain.follow(course, start, rig, boundary, n, frames)[0]
 
 
 def wrap_of(rig):

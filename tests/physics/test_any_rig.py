@@ -5,14 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import Profile, course_of, wrap_of
+from tests.physics.references import Profile, branches, course_of, slip_chain, static_model, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.chain import slip_chain
 
 SEEDS = range(1000)
 LARGE = pytest.mark.large

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A
+from tests.physics.references import GROUP_A, branches
 from tests.physics.slip.test_any_effect import any_effects
 from tests.physics.test_any_rig import any_motion, any_rig
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import simulate
@@ -82,7 +81,7 @@ def test_a_slack_tendon_that_rests_over_a_border_stays_slack():
     assert_same(in_pieces(RIG, drive, 40), whole, rtol=1e-14)
 
 
-@pytest.mark.parametrize("how", [{}, {"on_mesh": True, "nodes": 12}])
+@pytest.mark.parametrize("how", [{}, {"nodes": 12}])
 def test_readings_that_come_late_look_over_the_borders(how):
     rig = with_values(RIG, DELAYS)
     assert_same(in_pieces(rig, DRIVE, 150, **how), simulate(rig, DRIVE, **how), rtol=1e-13)

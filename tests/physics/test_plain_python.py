@@ -10,13 +10,10 @@ import sys
 import numpy as np
 from tests.physics.lugre.lumps import run
 from tests.physics.references import (DRIVEN_BY_FORCE, FREE, GROUP_A, LOADED_BY_DISPLACEMENT,
-    LOADED_BY_FORCE, LOADED_BY_SPRING, course_of, follow)
+    LOADED_BY_FORCE, LOADED_BY_SPRING, branches, course_of, follow, slip_chain, static_model)
 from tsas_cli.physics.boundary import DISPLACEMENT
-from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import slip_chain
 
 x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])
 spiral = 14 + 0.1 * np.linspace(1, 0, 100) * (-1.0) ** np.arange(100)

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A
-from tsas_cli.physics.closed_form.branches import branches
+from tests.physics.references import GROUP_A, branches
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import first_determined_sample, simulate
 

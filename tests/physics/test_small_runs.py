@@ -9,15 +9,25 @@ from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics import response
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
+from tsas_cli.physics.course import (
+    DIRECTION,
+    DRIVE,
+    LOAD,
+    LOST,
+    PULLED,
+    RELEASED,
+    STEP,
+    TIME,
+    TRAVEL,
+    VISCOUS,
+)
 from tsas_cli.physics.ends import (
     DriveInput,
     ends_of,
     last_direction,
     losses_at,
-    losses_without_speed,
 )
-from tsas_cli.physics.response import first_determined_sample, is_closed, simulate
+from tsas_cli.physics.response import NODES, first_determined_sample, is_closed, simulate
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
@@ -50,8 +60,6 @@ def friction_by_hand(time_s, position, speed, session_s):
 def test_friction_at_a_moment_is_all_that_changes_it(speed):
     expected = friction_by_hand(4.0, 7.0, speed, 30.0)
     assert losses_at(4.0, 7.0, speed, 30.0, VARYING) == pytest.approx(expected)
-    still = friction_by_hand(4.0, 7.0, 0.0, 30.0)
-    assert losses_without_speed(4.0, 7.0, 30.0, VARYING) == pytest.approx(still)
 
 
 def test_the_course_of_a_run_is_what_acts_at_each_sample():
@@ -64,7 +72,7 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     expected = [friction_by_hand(t, place, v, 30.0) for t, place, v in moments]
     np.testing.assert_allclose(ends.course[:4].T, expected)
     np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
-    assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
+    assert ends.course[DIRECTION].tolist() == [0.0, 1.0, 1.0, -1.0]
     by_force = ends_of(VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S))
     unmoved = friction_by_hand(0.3, 0.0, 0.0, 0.0)  # its position and speed are not known
     np.testing.assert_allclose(by_force.course[:4, 2], unmoved)
@@ -111,8 +119,8 @@ def test_the_drives_end_goes_through_the_play_from_where_it_was():
     assert ends_of(loose, drive).drive.tolist() == pytest.approx([1.0, 1.3, 1.3, 1.3, 1.1])
     again = ends_of(loose, drive, (1.1, -1.0, 0.5))
     assert again.drive.tolist() == pytest.approx([1.1, 1.3, 1.3, 1.3, 1.1])
-    assert again.direction.tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
-    assert again.travel.tolist() == pytest.approx([0.5, 0.2, 0.2, 0.2, 0.2])
+    assert again.course[DIRECTION].tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
+    assert again.course[TRAVEL].tolist() == pytest.approx([0.5, 0.2, 0.2, 0.2, 0.2])
     wave = {"drive_ripple.sine_mm": 0.1, "drive_ripple.cosine_mm": 0.2, "drive_ripple.period_mm": 4}
     uneven = ends_of(with_values(GROUP_A, wave), DriveInput(np.array([1.0, 2.0])))
     assert uneven.drive.tolist() == pytest.approx([1.0 + 0.1 - 0.2, 2.0 - 0.4])
@@ -134,23 +142,23 @@ def test_positions_before_a_run_are_passed_at_no_known_speed():
     for k in range(2):
         np.testing.assert_array_equal(later.course[given, k], ends.course[given, 0])
     assert later.course[STEP, :3].tolist() == [math.inf] * 3
-    assert later.direction.tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
+    assert later.course[DIRECTION].tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
     assert later.boundary == ends.boundary
     first = ends.first()
     np.testing.assert_array_equal(first.course, ends.course[:, :1])
-    assert first.direction.tolist() == [0.0]
+    assert first.course[DIRECTION].tolist() == [0.0]
 
 
 MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])
 
 
 @pytest.mark.parametrize(("friction", "stiffness"), [(2.0, 4.0), (0.0, 4.0), (2.0, 0.0)])
-@pytest.mark.parametrize("on_mesh", [False, True])
-def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiffness, on_mesh):
+@pytest.mark.parametrize("nodes", [None, 3])
+def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiffness, nodes):
     names = ("drive_friction.friction_N", "proximal_spring.stiffness_N_per_mm")
     beside = with_values(RIG, dict(zip(names, (friction, stiffness), strict=True)))
     drive = DriveInput(MOTION + 3.0)
-    plain, answer = (simulate(rig, drive, on_mesh=on_mesh, nodes=3) for rig in (RIG, beside))
+    plain, answer = (simulate(rig, drive, nodes=nodes) for rig in (RIG, beside))
     felt = friction * np.array([0.0, 1.0, -1.0, -1.0, 1.0]) + stiffness * MOTION
     np.testing.assert_allclose(answer.f_in_N - plain.f_in_N, felt, atol=1e-9)
     np.testing.assert_allclose(answer.f_out_N, plain.f_out_N)
@@ -159,7 +167,7 @@ def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiff
 
 @pytest.mark.parametrize(("load", "read"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
 def test_a_load_that_was_measured_is_read_again(load, read):
-    spring = simulate(RIG, DriveInput(MOTION + 3.0), on_mesh=True, nodes=3)
+    spring = simulate(RIG, DriveInput(MOTION + 3.0), nodes=3)
     given = DriveInput(MOTION + 3.0, load=load, load_values=getattr(spring, read))
     again = simulate(RIG, given, nodes=3)
     for name in ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"):
@@ -172,12 +180,12 @@ def test_who_answers_and_on_what_mesh():
     """The paper's dynamic chain has 50 lumps."""
     drive = DriveInput(MOTION[:2] + 3.0, time_s=TIME_S[:2])
     assert simulate(RIG, drive).solver == "closed form"
-    assert simulate(RIG, drive, on_mesh=True).solver == "slip chain, 60 nodes"
+    assert simulate(RIG, drive, nodes=NODES).solver == "slip chain, 60 nodes"
     assert simulate(RIG, drive, "static").solver == "lumped dead bands"
     at_rest = DriveInput(np.array([3.0, 3.0]), time_s=TIME_S[:2])
     assert simulate(RIG, at_rest, "lugre").solver.startswith("LuGre chain, 50 lumps, ")
     for nodes in (2, 1000):
-        solver = simulate(RIG, at_rest, on_mesh=True, nodes=nodes).solver
+        solver = simulate(RIG, at_rest, nodes=nodes).solver
         assert solver == f"slip chain, {nodes} nodes"
     for nodes in (1, 1001):
         with pytest.raises(ValueError, match=f"{nodes} nodes; expected 2 to 1000"):
@@ -210,11 +218,11 @@ def test_where_else_the_closed_form_does_not_hold():
 
 
 @pytest.mark.parametrize("wanted", [38.0, 50.0, 62.0])
-@pytest.mark.parametrize("on_mesh", [False, True])
-def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, on_mesh):
+@pytest.mark.parametrize("nodes", [None, 3])
+def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, nodes):
     """At 15 mm between 35 N, let go of, and 62.9 N, pulled; no more than that drive is passed."""
     drive = DriveInput(np.array([18.0, 18.1]), start_f_in_N=wanted)
-    answer = simulate(RIG, drive, on_mesh=on_mesh, nodes=3, looked_at=np.array([1]))
+    answer = simulate(RIG, drive, nodes=nodes, looked_at=np.array([1]))
     assert answer.f_in_N.shape == (2,)
     assert answer.f_in_N[0] == pytest.approx(wanted, abs=1e-6)
     assert answer.frames.samples.tolist() == [1]

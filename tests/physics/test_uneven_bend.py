@@ -21,7 +21,7 @@ def tensions(profile=((0.0, 1.0),), **uneven):
     virtual = VirtualRig(cells=60, bend_profile=profile)
     columns = run_rig(virtual, MOTION).columns
     model = GROUP_A._replace(tendon_stiffness_N=virtual.axial_stiffness, **uneven)
-    response = simulate(model, DriveInput(columns["x_in_mm"]), on_mesh=True, nodes=60)
+    response = simulate(model, DriveInput(columns["x_in_mm"]), nodes=60)
     return np.array([columns["f_in_N"], response.f_in_N])
 
 

@@ -81,7 +81,7 @@ def test_the_tensions_are_those_of_the_model_moved_along_x_in(drift_per_s):
     rig = with_values(plant().rig, {"friction_drift.rate_per_s": drift_per_s})
     one = run(rig=rig, sensor=RATE | SILENT)
     c = one.columns
-    there = simulate(rig, DriveInput(c[X_IN], time_s=one.time_s), on_mesh=True, nodes=8)
+    there = simulate(rig, DriveInput(c[X_IN], time_s=one.time_s), nodes=8)
     np.testing.assert_allclose(c[F_OUT], there.f_out_N, atol=0.05)
     np.testing.assert_allclose(c[X_OUT], there.x_out_mm, atol=0.05)
     assert np.sqrt(np.mean((c[F_IN] - there.f_in_N) ** 2)) < 0.3

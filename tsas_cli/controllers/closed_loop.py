@@ -34,8 +34,7 @@ from tsas_cli.physics.plant.turntable import (
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import follow, initial_state
 from tsas_cli.physics.slip.outputs import tension_at_sensor
-from tsas_cli.physics.slip.start import set_compliances, slip_laws
-from tsas_cli.physics.slip.state import POSITION, Moment
+from tsas_cli.physics.slip.state import POSITION, Moment, set_compliances, slip_laws
 from tsas_cli.support.arrays import Floats
 
 DRIVEN = Boundary(FORCE, SPRING)  # the tendon in the plant
@@ -149,7 +148,9 @@ def close_loop(
         if not abs(e) < RUNAWAY_MM or unconverged > GIVEN_UP * m * substeps:
             return columns, unconverged, k
         filtered(state, e, sensor.A, sensor.b)
-        signals = signals_at(path, k, e, state, applied, limited)
+        signals = Signals(
+            e, state[0], state[1], state[2], path[1, k], path[2, k], path[3, k], applied, limited
+        )
         u, s = control(signals, laws, memory, sensor.step_s)
         speed = wanted.feedforward[k] + u
         asked = min(max(speed, -actuator.speed_limit_rpm), actuator.speed_limit_rpm)
@@ -183,21 +184,3 @@ def measured(x_in: float, sensor: DriveSensor, k: int) -> float:
     if sensor.encoder_step_mm > 0.0:
         x_measured = sensor.encoder_step_mm * np.round(x_measured / sensor.encoder_step_mm)
     return x_measured
-
-
-@kernel
-def signals_at(
-    path: Floats, k: int, e: float, filtered_error: Floats, applied: float, limited: bool
-) -> Signals:
-    """Return the controller's inputs at a sample."""
-    return Signals(
-        e=e,
-        e_filtered=filtered_error[0],
-        de=filtered_error[1],
-        dde=filtered_error[2],
-        v=path[1, k],
-        a=path[2, k],
-        jerk=path[3, k],
-        applied=applied,
-        limited=limited,
-    )

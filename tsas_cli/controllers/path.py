@@ -13,10 +13,10 @@ import numpy as np
 
 from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
-from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck_factor
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.course import PULLED, RELEASED
 from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, rate_of
 from tsas_cli.physics.plant.turntable import Actuator
@@ -95,9 +95,9 @@ def geared_at(end: Floats, effects: Effects) -> Floats:
     return geared
 
 
-def drive_at(geared: Floats, ripple: DriveRipple, step_s: float) -> Floats:
+def drive_at(geared: Floats, ripple: Wave, step_s: float) -> Floats:
     """Return position and three rates of the drive for those of the gear's output, shape (4, m)."""
-    if ripple.sine_mm == ripple.cosine_mm == 0.0:
+    if ripple.is_flat:
         return geared
     rows = [unrippled(geared[0], ripple)]
     for _ in range(3):
@@ -106,7 +106,7 @@ def drive_at(geared: Floats, ripple: DriveRipple, step_s: float) -> Floats:
 
 
 @kernel
-def unrippled(geared: Floats, ripple: DriveRipple) -> Floats:
+def unrippled(geared: Floats, ripple: Wave) -> Floats:
     """Return the drive's positions for those of the gear's output, by bisection."""
     drive = np.empty(geared.size)
     reach = abs(ripple.sine_mm) + 2.0 * abs(ripple.cosine_mm)

@@ -15,7 +15,8 @@ from typing import Protocol
 
 import numpy as np
 
-from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.fit import Unknown
+from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEWEST_RUNS = 3  # of which one can be held out

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.samples import mean_edges
+from tsas_cli.identification.run_simulation import mean_edges
 from tsas_cli.support.arrays import Floats
 
 DIRECTION, RUN = "direction", "run"

@@ -11,10 +11,9 @@ import numpy as np
 
 from tsas_cli.identification.extension import FAR, UNEVEN, Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
-from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import projector
-from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats, Indices
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from tsas_cli.drive.fit import QUANTITIES, DriveTrial
 from tsas_cli.drive.harmonic_drive import DriveValues
+from tsas_cli.identification import joint_fit
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, with_errors
+from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.model import check_wrap
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, RigSheet
@@ -99,22 +100,8 @@ def estimates_of(
     for the errors of a model that may be wrong.
     """
     fitted = with_errors(trial.unknowns, trial.solution, blocks, by_run=by_run)
-    out = {}
-    for j, unknown in enumerate(trial.unknowns):
-        q = QUANTITIES[unknown.name]
-        half = float(fitted.t[j] * fitted.stderr[j])
-        value, slope = float(trial.solution.values[j]), 1.0
-        if q.positive:
-            slope = math.exp(value)
-            low, high = math.exp(value - min(half, 50.0)), math.exp(value + min(half, 50.0))
-        else:
-            slope = q.size
-            low, high = (value - half) * q.size, (value + half) * q.size
-        low, high = max(low, q.lower), min(high, q.upper)
-        out[q.name] = _estimate(
-            q.name, q.unit, q.unscaled(value), slope * float(fitted.stderr[j]), low, high,
-            at_bound=bool(fitted.at_bound[j]),
-        )  # fmt: skip
+    found = joint_fit.estimates_of(trial.unknowns, fitted, (), QUANTITIES)
+    out = {estimate.name: estimate for estimate in found}
     for derived in _derived(trial.values, sheet):
         out[derived[0]] = _from(derived, trial, blocks, by_run=by_run)
     return out
@@ -168,13 +155,12 @@ def _from(
     changed = J - np.outer(J[:, most], slopes / slopes[most])
     changed[:, most] = J[:, most] / slopes[most]
     solution = replace(trial.solution, jacobian=changed)
-    fitted: Fitted = with_errors(trial.unknowns, solution, blocks, by_run=by_run)
+    fitted = with_errors(trial.unknowns, solution, blocks, by_run=by_run)
     value, half = law(trial.values), float(fitted.t[most] * fitted.stderr[most])
     moving = np.abs(slopes) > 1e-9 * np.abs(slopes).max()
     bound = bool(np.any(trial.solution.at_bound & moving))
-    return _estimate(
-        name, unit, value, float(fitted.stderr[most]), value - half, value + half, at_bound=bound
-    )
+    stderr = float(fitted.stderr[most])
+    return Estimate(name, value, unit, "fitted", None, stderr, value - half, value + half, bound)
 
 
 def _slope(law: Callable[[DriveValues], float], trial: DriveTrial, j: int) -> float:
@@ -185,9 +171,3 @@ def _slope(law: Callable[[DriveValues], float], trial: DriveTrial, j: int) -> fl
         law(trial.values._replace(**{q.name: q.unscaled(at + side * NUDGE)})) for side in (-1, 1)
     ]
     return (ends[1] - ends[0]) / (2.0 * NUDGE)
-
-
-def _estimate(
-    name: str, unit: str, value: float, stderr: float, low: float, high: float, *, at_bound: bool
-) -> Estimate:
-    return Estimate(name, value, unit, "fitted", None, stderr, low, high, at_bound)

@@ -23,8 +23,9 @@ from tsas_cli.drive.runs import DriveRun, FrequencyResponse
 from tsas_cli.effects.backlash import BACKLASH
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
 from tsas_cli.identification.extension import MOST_LOOSENING
-from tsas_cli.identification.fit import Solution, Unknown, solve
+from tsas_cli.identification.fit import Unknown, solve
 from tsas_cli.identification.quantities import Quantity
+from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.support.arrays import Complex, Floats
 
 Terms = frozenset[str]

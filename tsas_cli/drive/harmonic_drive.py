@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.backlash import follow_play
-from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.linear_response import (
     Sampled,
@@ -30,6 +29,7 @@ from tsas_cli.numerics.linear_response import (
     sampled,
     transients,
 )
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.support.arrays import Floats
 
 WAVES = 2.0  # of the ripple, per revolution of the wave generator, which is the motor's
@@ -83,9 +83,11 @@ def gear_response(u: Sampled, values: DriveValues, start_mm: float) -> Floats:
     g = values.gain_mm_per_s_rpm
     stiff = g * integrator_with_lags(input_delayed, values.leak_per_s, motor)
     period = g * SECONDS_PER_MINUTE / WAVES
-    ripple = DriveRipple(float(values.sine_mm), float(values.cosine_mm), period)
+    ripple = Wave(float(values.sine_mm), float(values.cosine_mm), period)
     error = _through_gear(stiff, float(start_mm), ripple, float(values.play_mm)) - stiff
-    return _through_spring(error, u.step_s, values)
+    if values.natural_frequency_Hz == 0.0:
+        return error
+    return lagged(sampled(u.step_s, error, "first"), _spring(values))
 
 
 def has_gear(values: DriveValues) -> bool:
@@ -100,7 +102,7 @@ def free_motion(u: Sampled, values: DriveValues) -> Floats:
 
 
 @kernel
-def _through_gear(stiff: Floats, start: float, ripple: DriveRipple, play: float) -> Floats:
+def _through_gear(stiff: Floats, start: float, ripple: Wave, play: float) -> Floats:
     """Return the positions of the gear's output, from the middle of its play, shape (n,)."""
     out = np.empty(stiff.size)
     unmoved = rippled(start, ripple) - start
@@ -110,10 +112,3 @@ def _through_gear(stiff: Floats, start: float, ripple: DriveRipple, play: float)
         position = follow_play(position, moved, play)
         out[i] = position
     return out
-
-
-def _through_spring(positions: Floats, step_s: float, values: DriveValues) -> Floats:
-    """Return the response of x_in to the gear's output, linear between samples."""
-    if values.natural_frequency_Hz == 0.0:
-        return positions
-    return lagged(sampled(step_s, positions, "first"), _spring(values))

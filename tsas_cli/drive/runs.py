@@ -7,10 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
 from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
-from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.numerics.noise import interpolated, noise_sd
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
 from tsas_cli.support.arrays import Complex, Floats, Mask
 from tsas_cli.support.errors import InputError

@@ -14,7 +14,7 @@ from tsas_cli.effects.drive_compliance import DRIVE_COMPLIANCE, DriveCompliance
 from tsas_cli.effects.drive_damping import DRIVE_DAMPING, DriveDamping
 from tsas_cli.effects.drive_friction import DRIVE_FRICTION, DriveFriction
 from tsas_cli.effects.drive_inertia import DRIVE_INERTIA, DriveInertia
-from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, DriveRipple
+from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, PERIOD_MM
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.effects.force_crosstalk import FORCE_CROSSTALK, ForceCrosstalk
 from tsas_cli.effects.force_sensor_curvature import FORCE_SENSOR_CURVATURE, ForceSensorCurvature
@@ -38,7 +38,7 @@ from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
 from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS, LoadHysteresis
 from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
 from tsas_cli.effects.load_relaxation import LOAD_RELAXATION, LoadRelaxation
-from tsas_cli.effects.load_ripple import LOAD_RIPPLE, LoadRipple
+from tsas_cli.effects.load_ripple import LOAD_RIPPLE
 from tsas_cli.effects.load_spring_nonlinearity import (
     LOAD_SPRING_NONLINEARITY,
     LoadSpringNonlinearity,
@@ -48,7 +48,7 @@ from tsas_cli.effects.position_dependent_friction import (
     PositionDependentFriction,
 )
 from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN, PositionSensorGain
-from tsas_cli.effects.position_sensor_ripple import POSITION_SENSOR_RIPPLE, PositionSensorRipple
+from tsas_cli.effects.position_sensor_ripple import POSITION_SENSOR_RIPPLE
 from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
 from tsas_cli.effects.presliding import PRESLIDING, Presliding
 from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
@@ -57,6 +57,7 @@ from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompre
 from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION, StribeckFriction
 from tsas_cli.effects.uneven_friction import UNEVEN_FRICTION, UnevenFriction
 from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
+from tsas_cli.numerics.wave import Wave
 
 EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     BACKLASH,
@@ -114,7 +115,7 @@ class Effects(NamedTuple):
     drive_friction: DriveFriction = DriveFriction()
     drive_damping: DriveDamping = DriveDamping()
     drive_inertia: DriveInertia = DriveInertia()
-    drive_ripple: DriveRipple = DriveRipple()
+    drive_ripple: Wave = Wave(period_mm=PERIOD_MM)
     drive_compliance: DriveCompliance = DriveCompliance()
     proximal_spring: ProximalSpring = ProximalSpring()
     free_tendon: FreeTendon = FreeTendon()
@@ -131,7 +132,7 @@ class Effects(NamedTuple):
     friction_drift: FrictionDrift = FrictionDrift()
     preload_loss: PreloadLoss = PreloadLoss()
     load_spring_nonlinearity: LoadSpringNonlinearity = LoadSpringNonlinearity()
-    load_ripple: LoadRipple = LoadRipple()
+    load_ripple: Wave = Wave()
     load_friction: LoadFriction = LoadFriction()
     load_inertia: LoadInertia = LoadInertia()
     load_damping: LoadDamping = LoadDamping()
@@ -146,7 +147,7 @@ class Effects(NamedTuple):
     force_sensor_tilt: ForceSensorTilt = ForceSensorTilt()
     force_crosstalk: ForceCrosstalk = ForceCrosstalk()
     position_sensor_gain: PositionSensorGain = PositionSensorGain()
-    position_sensor_ripple: PositionSensorRipple = PositionSensorRipple()
+    position_sensor_ripple: Wave = Wave()
     channel_delay: ChannelDelay = ChannelDelay()
     sensor_lag: SensorLag = SensorLag()
     drive_law: DriveLaw = DriveLaw()
@@ -154,52 +155,4 @@ class Effects(NamedTuple):
     load_law: LoadLaw = LoadLaw()
 
 
-__all__ = [
-    "EFFECTS",
-    "LAWS",
-    "Antagonist",
-    "Backlash",
-    "BendDrift",
-    "ChannelDelay",
-    "DirectionDependentFriction",
-    "DriveCompliance",
-    "DriveDamping",
-    "DriveFriction",
-    "DriveInertia",
-    "DriveLaw",
-    "DriveRipple",
-    "Effect",
-    "Effects",
-    "ForceCrosstalk",
-    "ForceSensorCurvature",
-    "ForceSensorDrift",
-    "ForceSensorGain",
-    "ForceSensorGainDrift",
-    "ForceSensorHysteresis",
-    "ForceSensorOffset",
-    "ForceSensorTilt",
-    "FreeTendon",
-    "FrictionDrift",
-    "LoadDamping",
-    "LoadDependentFriction",
-    "LoadFriction",
-    "LoadHysteresis",
-    "LoadInertia",
-    "LoadLaw",
-    "LoadRelaxation",
-    "LoadRipple",
-    "LoadSpringNonlinearity",
-    "Parameter",
-    "PositionDependentFriction",
-    "PositionSensorGain",
-    "PositionSensorRipple",
-    "PreloadLoss",
-    "Presliding",
-    "ProximalSpring",
-    "SensorLag",
-    "SheathCompression",
-    "StribeckFriction",
-    "TendonLaw",
-    "UnevenFriction",
-    "ViscousFriction",
-]
+__all__ = ["EFFECTS", "LAWS", "Effect", "Effects", "Parameter"]

@@ -18,7 +18,7 @@ it.
 
 from typing import NamedTuple
 
-from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.effect import Effect, Parameter, shape
 from tsas_cli.numerics.compiled import kernel
 
 
@@ -55,19 +55,8 @@ ANTAGONIST = Effect(
     doc=__doc__,
     parameters=(
         Parameter("preload_N", "N", neutral=0.0, start=20.0, lower=0.0, upper=1e4),
-        Parameter(
-            "friction_ratio", "1", neutral=1.0, start=1.0, lower=0.05, upper=20.0, shape=True
-        ),
-        Parameter(
-            "f_in_share",
-            "1",
-            neutral=1.0,
-            start=1.0,
-            lower=-0.5,
-            upper=1.5,
-            shape=True,
-            starts=(1.0, 0.0),
-        ),
+        shape("friction_ratio", "1", 1.0, lower=0.05, upper=20.0),
+        shape("f_in_share", "1", 1.0, lower=-0.5, upper=1.5, starts=(1.0, 0.0)),
     ),
     experiment="Take the second tendon off its pulleys and repeat the run: the loop of f_in over "
     "f_out becomes narrower, and the kink in each stroke disappears.",

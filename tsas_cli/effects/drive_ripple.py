@@ -14,29 +14,10 @@ Not validated: higher harmonics; a ripple that changes with torque; one so steep
 2π·amplitude/period exceeds 1, which reverses the tendon's end.
 """
 
-from typing import NamedTuple
-
-from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import periods, wave_at
+from tsas_cli.effects.effect import Effect, wave_parameters
+from tsas_cli.numerics.wave import periods
 
 PERIOD_MM = 0.7095
-LONGEST_MM, SHORTEST_MM, PERIODS = 10.0, 0.3, 60
-
-
-class DriveRipple(NamedTuple):
-    """Two amplitudes of the wave and its period in travel of the drive [mm]."""
-
-    sine_mm: float = 0.0
-    cosine_mm: float = 0.0
-    period_mm: float = PERIOD_MM
-
-
-@kernel
-def rippled(drive: float, ripple: DriveRipple) -> float:
-    """Return the position of the drive's output [mm] for its input; both are 0 at rest."""
-    return drive + wave_at(drive, ripple.sine_mm, ripple.cosine_mm, ripple.period_mm)[0]
-
 
 DRIVE_RIPPLE = Effect(
     name="drive_ripple",
@@ -45,20 +26,12 @@ DRIVE_RIPPLE = Effect(
     closed_form=True,
     equation="p = x_in + s·sin(2π x_in/period) + c·(cos(2π x_in/period) − 1)",
     doc=__doc__,
-    parameters=(
-        Parameter("sine_mm", "mm", neutral=0.0, start=0.05, lower=-5.0, upper=5.0),
-        Parameter("cosine_mm", "mm", neutral=0.0, start=0.05, lower=-5.0, upper=5.0),
-        Parameter(
-            "period_mm",
-            "mm",
-            neutral=PERIOD_MM,
-            start=PERIOD_MM,
-            lower=0.05,
-            upper=LONGEST_MM,  # a longer ripple is like a gain within the strokes of most rigs
-            shape=True,
-            period=True,
-            starts=(PERIOD_MM, *periods(LONGEST_MM, SHORTEST_MM, PERIODS)),
-        ),
+    parameters=wave_parameters(
+        0.05,
+        PERIOD_MM,
+        shortest_mm=0.05,
+        longest_mm=10.0,
+        starts=(PERIOD_MM, *periods(10.0, 0.3, 60)),
     ),
     experiment="One slow stroke at two constant speeds: the wave keeps its period in x_in and "
     "doubles its frequency in time with the speed.",

@@ -50,6 +50,42 @@ class Effect:
         return self.doc.partition("\n")[0]
 
 
+def shape(
+    name: str,
+    unit: str,
+    neutral: float,
+    *,
+    lower: float,
+    upper: float,
+    starts: tuple[float, ...] = (),
+    period: bool = False,
+) -> Parameter:
+    """Return a `shape` parameter, whose initial value is the neutral one."""
+    return Parameter(
+        name, unit, neutral, neutral, lower, upper, shape=True, period=period, starts=starts
+    )
+
+
+def wave_parameters(
+    amplitude_mm: float,
+    period_mm: float,
+    *,
+    shortest_mm: float,
+    longest_mm: float,
+    starts: tuple[float, ...],
+) -> tuple[Parameter, ...]:
+    """Return the parameters of a `Wave`; a longer one is like a gain in the strokes of most rigs.
+
+    `amplitude_mm` is the initial value of both amplitudes, `starts` are those of the period.
+    """
+    bounds = {"lower": shortest_mm, "upper": longest_mm}
+    return (
+        Parameter("sine_mm", "mm", 0.0, amplitude_mm, -5.0, 5.0),
+        Parameter("cosine_mm", "mm", 0.0, amplitude_mm, -5.0, 5.0),
+        shape("period_mm", "mm", period_mm, **bounds, starts=starts, period=True),
+    )
+
+
 SETTLING = Parameter(
     "settling_per_s",
     "1/s",

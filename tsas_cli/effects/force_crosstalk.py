@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Values
 
 
 class ForceCrosstalk(NamedTuple):
@@ -27,7 +28,7 @@ class ForceCrosstalk(NamedTuple):
 
 
 @kernel
-def with_crosstalk(force: float, other: float, share: float) -> float:
+def with_crosstalk(force: Values, other: Values, share: float) -> Values:
     """Return the reading of a sensor that picks up a share of another force [N]."""
     return force + share * other
 

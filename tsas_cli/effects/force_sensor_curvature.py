@@ -18,6 +18,7 @@ import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Values
 
 
 class ForceSensorCurvature(NamedTuple):
@@ -28,15 +29,15 @@ class ForceSensorCurvature(NamedTuple):
 
 
 @kernel
-def read_curved(force: float, curvature: float) -> float:
+def read_curved(force: Values, curvature: float) -> Values:
     """Return the reading of a sensor with a curved scale [N]."""
     return force + curvature * force * force
 
 
 @kernel
-def straightened(reading: float, curvature: float) -> float:
+def straightened(reading: Values, curvature: float) -> Values:
     """Return the force of a reading [N], that of the vertex for readings beyond it."""
-    root: float = np.sqrt(np.maximum(1.0 + 4.0 * curvature * reading, 0.0))
+    root: Values = np.sqrt(np.maximum(1.0 + 4.0 * curvature * reading, 0.0))
     return 2.0 * reading / (1.0 + root)
 
 

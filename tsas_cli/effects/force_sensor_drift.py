@@ -16,6 +16,7 @@ from typing import NamedTuple
 from tsas_cli.effects.effect import SETTLING, Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.settling import exponential_drift
+from tsas_cli.support.arrays import Values
 
 
 class ForceSensorDrift(NamedTuple):
@@ -27,7 +28,7 @@ class ForceSensorDrift(NamedTuple):
 
 
 @kernel
-def drift_reading(force: float, rate: float, settling_per_s: float, time_s: float) -> float:
+def drift_reading(force: float, rate: float, settling_per_s: float, time_s: Values) -> Values:
     """Return the reading of a drifting sensor [N] at a time since the start of the run."""
     return force + exponential_drift(rate, settling_per_s, time_s)
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Values
 
 
 class ForceSensorGainDrift(NamedTuple):
@@ -25,7 +26,7 @@ class ForceSensorGainDrift(NamedTuple):
 
 
 @kernel
-def drifted_gain(gain: float, rate_per_s: float, time_s: float) -> float:
+def drifted_gain(gain: float, rate_per_s: float, time_s: Values) -> Values:
     """Return a sensor's gain at a time since the start of the run."""
     return gain * (1.0 + rate_per_s * time_s)
 

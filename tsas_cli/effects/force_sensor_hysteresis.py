@@ -15,7 +15,7 @@ measured tension that drives the model is taken as it is, with its loop.
 
 from typing import NamedTuple
 
-from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.effect import Effect, Parameter, shape
 from tsas_cli.numerics.compiled import kernel
 
 
@@ -43,16 +43,7 @@ FORCE_SENSOR_HYSTERESIS = Effect(
     parameters=(
         Parameter("f_in_share", "1", neutral=0.0, start=0.02, lower=0.0, upper=0.5),
         Parameter("f_out_share", "1", neutral=0.0, start=0.02, lower=0.0, upper=0.5),
-        Parameter(
-            "span_N",
-            "N",
-            neutral=10.0,
-            start=10.0,
-            lower=0.1,
-            upper=1000.0,
-            shape=True,
-            starts=(3.0, 10.0, 30.0),
-        ),
+        shape("span_N", "N", 10.0, lower=0.1, upper=1000.0, starts=(3.0, 10.0, 30.0)),
     ),
     experiment="Load the sensor by weights one by one and unload it the same way: half the gap "
     "between both readings at one weight is the share of the span.",

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Values
 
 
 class ForceSensorTilt(NamedTuple):
@@ -26,7 +27,7 @@ class ForceSensorTilt(NamedTuple):
 
 
 @kernel
-def read_tilted(force: float, per_mm: float, position: float) -> float:
+def read_tilted(force: Values, per_mm: float, position: Values) -> Values:
     """Return the reading of a sensor that tilts with the position [N]."""
     return force * (1.0 + per_mm * position)
 

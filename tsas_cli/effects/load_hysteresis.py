@@ -16,9 +16,9 @@ of the element before a run, which is taken to be without force.
 
 from typing import NamedTuple
 
-from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.effect import Effect, Parameter, shape
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.elastoplastic import yielded
+from tsas_cli.numerics.stops import yielded
 
 
 class LoadHysteresis(NamedTuple):
@@ -46,16 +46,7 @@ LOAD_HYSTERESIS = Effect(
     doc=__doc__,
     parameters=(
         Parameter("force_N", "N", neutral=0.0, start=0.5, lower=0.0, upper=1000.0),
-        Parameter(
-            "travel_mm",
-            "mm",
-            neutral=0.5,
-            start=0.5,
-            lower=0.001,
-            upper=100.0,
-            shape=True,
-            starts=(0.1, 0.5, 2.0),
-        ),
+        shape("travel_mm", "mm", 0.5, lower=0.001, upper=100.0, starts=(0.1, 0.5, 2.0)),
     ),
     experiment="Remove the tendon and pull the load slowly back and forth by strokes that grow: "
     "from twice the travel on the loop opens, and grows no higher.",

@@ -15,7 +15,7 @@ taken to be relaxed; the state before a run, which is taken to be relaxed.
 
 from typing import NamedTuple
 
-from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.effect import Effect, Parameter, shape
 from tsas_cli.numerics.compiled import kernel
 
 
@@ -41,16 +41,7 @@ LOAD_RELAXATION = Effect(
     doc=__doc__,
     parameters=(
         Parameter("share", "1", neutral=0.0, start=0.1, lower=0.0, upper=10.0),
-        Parameter(
-            "time_s",
-            "s",
-            neutral=1.0,
-            start=1.0,
-            lower=0.001,
-            upper=1000.0,
-            shape=True,
-            starts=(0.1, 1.0, 10.0),
-        ),
+        shape("time_s", "s", 1.0, lower=0.001, upper=1000.0, starts=(0.1, 1.0, 10.0)),
     ),
     experiment="Pull the load by a step and hold it there: f_out falls exponentially by the share "
     "of the step.",

@@ -13,28 +13,8 @@ Not validated: the change of the pulley's lever arm, 2π·amplitude/period of th
 harmonics; a wave so steep that the force falls with x.
 """
 
-from typing import NamedTuple
-
-from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import periods, wave_at
-
-LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 5.0, 8  # each start costs runs of the slip chain
-
-
-class LoadRipple(NamedTuple):
-    """Two amplitudes of the wave and its period in travel of the load [mm]."""
-
-    sine_mm: float = 0.0
-    cosine_mm: float = 0.0
-    period_mm: float = 10.0
-
-
-@kernel
-def spring_wave(position: float, ripple: LoadRipple) -> tuple[float, float]:
-    """Return by how much the spring is stretched beyond the load's travel [mm], and the slope."""
-    return wave_at(position, ripple.sine_mm, ripple.cosine_mm, ripple.period_mm)
-
+from tsas_cli.effects.effect import Effect, wave_parameters
+from tsas_cli.numerics.wave import periods
 
 LOAD_RIPPLE = Effect(
     name="load_ripple",
@@ -43,20 +23,8 @@ LOAD_RIPPLE = Effect(
     closed_form=False,
     equation="spring force = F0 + kL·(x + s·sin(2πx/period) + c·(cos(2πx/period) − 1))",
     doc=__doc__,
-    parameters=(
-        Parameter("sine_mm", "mm", neutral=0.0, start=0.1, lower=-5.0, upper=5.0),
-        Parameter("cosine_mm", "mm", neutral=0.0, start=0.1, lower=-5.0, upper=5.0),
-        Parameter(
-            "period_mm",
-            "mm",
-            neutral=10.0,
-            start=10.0,
-            lower=0.5,
-            upper=LONGEST_MM,  # a longer one is like a gain within the strokes of most rigs
-            shape=True,
-            period=True,
-            starts=periods(LONGEST_MM, SHORTEST_MM, PERIODS),
-        ),
+    parameters=wave_parameters(
+        0.1, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 5.0, 8)
     ),
     experiment="Turn the pulley to another angle before the run: the wave moves along x_out with "
     "it.",

@@ -11,38 +11,21 @@ x_in, which moves all other channels); position_sensor_gain (a slope, not a wave
 Not validated: higher harmonics; a wave so steep that the reading falls while x grows.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
-from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.effect import Effect, wave_parameters
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import periods, wave_at
+from tsas_cli.numerics.wave import Wave, periods, wave_at
 
-LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 2.0, 24
 INVERSIONS = 50  # Newton's steps, far more than any wave that can be inverted needs
 
 
-class PositionSensorRipple(NamedTuple):
-    """Two amplitudes of the wave of x_out and its period in travel of the load [mm]."""
-
-    sine_mm: float = 0.0
-    cosine_mm: float = 0.0
-    period_mm: float = 10.0
-
-
 @kernel
-def read_rippled(position: float, ripple: PositionSensorRipple) -> float:
-    """Return the reading of a sensor that turns off its centre [mm]."""
-    return position + wave_at(position, ripple.sine_mm, ripple.cosine_mm, ripple.period_mm)[0]
-
-
-@kernel
-def without_ripple(reading: float, ripple: PositionSensorRipple) -> float:
+def without_ripple(reading: float, ripple: Wave) -> float:
     """Return the position of a reading [mm]; NaN where the wave is too steep for one to exist."""
     position = reading
     for _ in range(INVERSIONS):
-        wave, slope = wave_at(position, ripple.sine_mm, ripple.cosine_mm, ripple.period_mm)
+        wave, slope = wave_at(position, ripple)
         missed = position + wave - reading
         if np.abs(missed) <= 1e-12 * (1.0 + np.abs(reading)):
             return position
@@ -57,20 +40,8 @@ POSITION_SENSOR_RIPPLE = Effect(
     closed_form=True,
     equation="reading of x_out = x + s·sin(2πx/period) + c·(cos(2πx/period) − 1)",
     doc=__doc__,
-    parameters=(
-        Parameter("sine_mm", "mm", neutral=0.0, start=0.05, lower=-5.0, upper=5.0),
-        Parameter("cosine_mm", "mm", neutral=0.0, start=0.05, lower=-5.0, upper=5.0),
-        Parameter(
-            "period_mm",
-            "mm",
-            neutral=10.0,
-            start=10.0,
-            lower=0.5,
-            upper=LONGEST_MM,  # a longer one is like a gain within the strokes of most rigs
-            shape=True,
-            period=True,
-            starts=periods(LONGEST_MM, SHORTEST_MM, PERIODS),
-        ),
+    parameters=wave_parameters(
+        0.05, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 2.0, 24)
     ),
     experiment="Turn the encoder on its shaft by half a turn: the wave changes its sign over "
     "x_out, and f_in and f_out stay as they are.",

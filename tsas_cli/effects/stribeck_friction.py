@@ -14,7 +14,7 @@ Not validated: stick-slip; how long the lag is.
 
 from typing import NamedTuple
 
-from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.effect import Effect, Parameter, shape
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
 
@@ -50,16 +50,7 @@ STRIBECK_FRICTION = Effect(
     doc=__doc__,
     parameters=(
         Parameter("excess", "1", neutral=0.0, start=0.2, lower=0.0, upper=10.0),
-        Parameter(
-            "velocity_mm_per_s",
-            "mm/s",
-            neutral=5.0,
-            start=5.0,
-            lower=0.01,
-            upper=500.0,
-            shape=True,
-            starts=(1.0, 4.0, 15.0),
-        ),
+        shape("velocity_mm_per_s", "mm/s", 5.0, lower=0.01, upper=500.0, starts=(1.0, 4.0, 15.0)),
     ),
     experiment="The same stroke at constant speeds over two decades: f_in/f_out at one position of "
     "the stroke, over the speed.",

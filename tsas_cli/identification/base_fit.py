@@ -1,18 +1,144 @@
 """The fit of the nominal parameters, with initial values from the phases and the data sheet."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
-from tsas_cli.identification.initial_values import initial_values_of
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.stiffness import Slope, slopes
-from tsas_cli.physics.parameters import NOMINAL_BY_NAME
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.transfer import Slope, slopes
+from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
+
+FAR = 5.0  # times the travel: a zero that a fit from 0 mm does not find
+SMALLEST_BEND = 1e-3  # rad
+SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
+
+
+def initial_values_of(
+    run: Prepared, segments: Sequence[Segment], slopes: Sequence[Slope], rig: Rig
+) -> dict[str, float]:
+    """Return the parameters of one run by the formulas of the static model.
+
+    Friction from the ratio of the tensions in both directions, or of the slopes (Yang 2025, Eqs.
+    7, 31, 32); the load spring from f_out over x_out, or from the slopes; the tendon from the
+    dead band (29). Parameters that the channels do not determine are left out. `rig` is the run's
+    own, as stated.
+    """
+    length, bend = rig.sheath_length_mm, max(rig.total_bend_rad, SMALLEST_BEND)
+    km: dict[str, float] = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
+    wrap = _wrap(run, segments, km)
+    found: dict[str, float] = {}
+    if wrap is not None:
+        wrap = max(wrap, SMALLEST_WRAP)
+        found["friction_coefficient"] = wrap / bend
+        dead = [km[p] for p in ("dead_band_up", "dead_band_down") if p in km]
+        if dead:
+            found["tendon_stiffness_N"] = (
+                float(np.mean(dead)) * length * math.tanh(0.5 * wrap) / wrap
+            )
+    if run.run.load == "spring":
+        found |= _spring(run, segments, km)
+    elif run.run.load == "displacement":
+        found |= _zero_between(run, rig)
+    plausible = {k: (QUANTITIES[k].lower, QUANTITIES[k].upper) for k in found}
+    return {k: float(v) for k, v in found.items() if plausible[k][0] <= v <= plausible[k][1]}
+
+
+def _samples(segments: Sequence[Segment], phase: str, values: Floats) -> Floats:
+    parts = [values[s.first : s.end] for s in segments if s.phase == phase]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+def _wrap(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> float | None:
+    f_in, f_out = run.channel("f_in_N"), run.channel("f_out_N")
+    if f_in is not None and f_out is not None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.log(f_in / f_out)
+        up = _samples(segments, "contraction", ratio)
+        down = _samples(segments, "loosening", ratio)
+        if np.isfinite(up).any() and np.isfinite(down).any():
+            return 0.5 * float(np.nanmedian(up) - np.nanmedian(down))
+    if "contraction" in km and "loosening" in km:
+        return 0.5 * math.log(km["contraction"] / km["loosening"])
+    return None
+
+
+def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> dict[str, float]:
+    f_out, x_out = run.measured.get("f_out_N"), run.measured.get("x_out_mm")
+    if f_out is not None and x_out is not None:
+        ok = np.isfinite(f_out) & np.isfinite(x_out)
+        if ok.sum() > 2 and np.ptp(x_out[ok]) > 0.0:
+            slope, intercept = map(float, np.polyfit(x_out[ok], f_out[ok], 1))
+            found = {"load_stiffness_N_per_mm": slope, "preload_N": intercept}
+            if slope > 0.0:
+                found |= _far_zeros(run, f_out, float(x_out[ok][0]), slope, intercept)
+            return found
+    if "contraction" not in km or "loosening" not in km:
+        return {}
+    found = {"load_stiffness_N_per_mm": math.sqrt(km["contraction"] * km["loosening"])}
+    f_in = run.measured.get("f_in_N")
+    if f_in is not None:
+        x = run.conditioned["x_in_mm"].values
+        at_zero = []
+        for phase in ("contraction", "loosening"):
+            offset = _samples(segments, phase, f_in) - km[phase] * _samples(segments, phase, x)
+            at_zero.append(float(np.nanmean(offset)))
+        if min(at_zero) > 0.0:
+            found["preload_N"] = math.sqrt(at_zero[0] * at_zero[1])
+        elif run.run.preload_N is not None:
+            at_preload = [
+                (run.run.preload_N - tension) / km[phase]
+                for phase, tension in zip(("contraction", "loosening"), at_zero, strict=True)
+            ]
+            found["x_in_zero_mm"] = float(np.mean(at_preload))
+    return found
+
+
+def _far_zeros(
+    run: Prepared, f_out: Floats, first_mm: float, slope: float, intercept: float
+) -> dict[str, float]:
+    """Return zeros of displacements with a distant origin, and the preload with them.
+
+    With zeros at 0 mm the spring would be slack where x_out reads 0 (the tension there is the
+    `intercept` of its line), or the tendon within the run, from where a fit does not converge. The
+    tendon's own stretch is neglected.
+    """
+    found = {}
+    preload = intercept
+    if intercept <= 0.0:  # the preload is then the stated one, or the run's initial tension
+        stated = run.run.preload_N
+        preload = intercept + slope * first_mm if stated is None else stated
+        found = {"x_out_zero_mm": (preload - intercept) / slope, "preload_N": preload}
+    if run.drive_column == "x_in_mm":
+        x_in = run.conditioned["x_in_mm"].values
+        zero = float(np.nanmedian(x_in - (f_out - preload) / slope))
+        slack = float(np.min(x_in)) < -preload / slope
+        if slack or abs(zero) > FAR * float(np.ptp(x_in)):
+            found["x_in_zero_mm"] = zero
+    return found
+
+
+def _zero_between(run: Prepared, rig: Rig) -> dict[str, float]:
+    """Return the zero of x_in where both ends are driven and the tendon would be slack with 0 mm.
+
+    Two independent sensors are often offset by more than the tendon stretches.
+    """
+    tension = run.measured.get("f_in_N", run.measured.get("f_out_N"))
+    if run.drive_column != "x_in_mm" or tension is None:
+        return {}
+    difference = run.conditioned["x_in_mm"].values - run.conditioned["x_out_mm"].values
+    compliance = rig.sheath_length_mm / rig.tendon_stiffness_N
+    if float(np.min(difference)) >= -rig.preload_N * compliance:
+        return {}
+    stretch = (tension - rig.preload_N) * compliance
+    return {"x_in_zero_mm": float(np.nanmedian(difference - stretch))}
 
 
 def base_fit(
@@ -58,11 +184,11 @@ def _read_off(
     for run, parts, km in zip(runs, segments, measured, strict=True):
         values = initial_values_of(run, parts, km, stated.rig(run.run))
         for name, value in values.items():
-            owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
+            owner = None if QUANTITIES[name].shared else run.run.id
             found.setdefault((name, owner), []).append(value)
     return Model(
         tuple(
-            Estimate(name, float(np.median(values)), NOMINAL_BY_NAME[name].unit, "default", owner)
+            Estimate(name, float(np.median(values)), QUANTITIES[name].unit, "default", owner)
             for (name, owner), values in found.items()
         )
     )

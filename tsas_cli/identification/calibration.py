@@ -17,8 +17,7 @@ from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.stiffness import Slope, slopes
-from tsas_cli.identification.transfer import tension_transfer
+from tsas_cli.identification.transfer import Slope, slopes, tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -78,14 +77,15 @@ def calibrate_runs(
     predictions = [compare(run, model, dynamics) for run in runs]
     expected = [_predicted_slopes(*each) for each in zip(runs, predictions, segments, strict=True)]
     if dynamic is not None:
+        of_runs = [note for predicted in predictions for note in predicted.summary.notes]
         residual_notes = [*dynamic.misfit, MISSING_EFFECTS_NOTE] if dynamic.misfit else []
-        sentences = [*dynamic.cannot_tell, *_notes(predictions)]
+        sentences = [*dynamic.cannot_tell, *dict.fromkeys(of_runs)]
     else:
         residual_notes = misfit(fit)
         if residual_notes and fitted is not None:
             wider = widened(fit, step)
             model = Model(wider.estimates)
-            residual_notes += _widened_by(wider.effects)
+            residual_notes.append(_widened_by(wider.effects))
     notes = [
         *contradictions(manifest, model),
         *thinned_notes(runs),
@@ -106,28 +106,16 @@ def calibrate_runs(
     )
 
 
-def _notes(predictions: Sequence[Compared]) -> list[str]:
-    """Return the dynamic model's notes on its predictions, without duplicates."""
-    return list(
-        dict.fromkeys(note for predicted in predictions for note in predicted.summary.notes)
-    )
-
-
-def _widened_by(effects: Sequence[str]) -> list[str]:
+def _widened_by(effects: Sequence[str]) -> str:
     if not effects:
-        return [
-            (
-                "No catalogued effect explains the residual: the intervals may not contain the "
-                "true values."
-            )
-        ]
-    names = " or ".join(effects)
-    return [
-        (
-            f"The intervals are widened by the influence of {names}, which would explain most of "
-            "the residual; `tsas diagnose` searches for the cause."
+        return (
+            "No catalogued effect explains the residual: the intervals may not contain the true "
+            "values."
         )
-    ]
+    return (
+        f"The intervals are widened by the influence of {' or '.join(effects)}, which would "
+        "explain most of the residual; `tsas diagnose` searches for the cause."
+    )
 
 
 def _predicted_slopes(run: Prepared, predicted: Compared, segments: list[Segment]) -> list[Slope]:

@@ -9,6 +9,7 @@ do not exclude.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -65,14 +66,6 @@ class ScreenedValue:
     shows: bool = False  # whether an excess of VISIBLE_EXCESS would be visible
 
 
-@dataclass(frozen=True)
-class Solved:
-    """A joint fit with free parameters, and the least squares of these."""
-
-    fit: FittedModel
-    fitted: Fitted
-
-
 def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = NO_PROGRESS) -> DynamicFit:
     """Return the fit of nominal values, bristles and friction over speed with the dynamic chain.
 
@@ -81,23 +74,23 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = NO_PROGR
     """
     stiffness = nominal.rig(runs[0].run).bristles.stiffness_N_per_mm
     first = {STIFFNESS: stiffness, VISCOUS: QUANTITIES[VISCOUS].size}
-    solved = _solved(_model_of(first).over(nominal), nominal, runs, list(first), step)
-    if solved is None:
+    fit = _solved(_model_of(first).over(nominal), nominal, runs, list(first), step)
+    if fit is None:
         return DynamicFit(nominal, None)
-    solved = _from_better_stiffness(solved, step) or _at_stiffness(solved, step) or solved
-    at_rest = _friction_at_rest(solved.fit, step)
-    with_rest = _freed(solved, at_rest, step)
-    solved = with_rest or solved
-    dampings = _sizes(solved.fit, DAMPING, step)
-    solved = _freed(solved, dampings, step) or solved
-    notes, fitted = solved.fit.cannot_tell, solved.fitted
+    fit = _from_better_stiffness(fit, step) or _at_stiffness(fit, step) or fit
+    at_rest = _friction_at_rest(fit, step)
+    with_rest = _freed(fit, at_rest, step)
+    fit = with_rest or fit
+    dampings = _sizes(fit, DAMPING, step)
+    fit = _freed(fit, dampings, step) or fit
+    notes, fitted = fit.cannot_tell, cast("Fitted", fit.fitted)
     if with_rest is None:
         notes.append(_static_friction_note(at_rest))
     for name in (STIFFNESS, DAMPING, VISCOUS):
-        if not _is_free(solved.fit, name):
-            looks = dampings if name == DAMPING else _sizes(solved.fit, name, step)
+        if not _is_free(fit, name):
+            looks = dampings if name == DAMPING else _sizes(fit, name, step)
             best = max(look.saves for look in looks)
-            finest = _finest_stiffness(solved.fit)
+            finest = _finest_stiffness(fit)
             equivalent = [
                 look
                 for look in looks
@@ -105,7 +98,6 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = NO_PROGR
             ]
             fitted = _widened(fitted, equivalent)
             notes.append(_indistinguishable_note(name, equivalent))
-    fit = solved.fit
     estimates = estimates_of(fit.free, fitted, fit.problem.ids)
     model = Model(tuple(estimates)).over(fit.model)
     return DynamicFit(model, fitted, tuple(notes), tuple(misfit(fit)))
@@ -113,7 +105,7 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = NO_PROGR
 
 def _solved(
     initial: Model, fixed: Model, runs: Sequence[Prepared], further: Sequence[str], step: Steps
-) -> Solved | None:
+) -> FittedModel | None:
     """Return a fit with the nominal and further free parameters; None if none is identifiable.
 
     `initial` has the initial values, `fixed` those of parameters that are not identifiable.
@@ -121,7 +113,15 @@ def _solved(
     step.ahead(1)
     fit = solve_fit(prepare_fit(initial, fixed, runs, dynamics="lugre", further=further))
     step()
-    return None if fit.fitted is None else Solved(fit, fit.fitted)
+    return None if fit.fitted is None else fit
+
+
+def _solved_again(
+    fit: FittedModel, look: ScreenedValue, fixed: Model, further: Sequence[str], step: Steps
+) -> FittedModel | None:
+    """Return a fit from screened values."""
+    initial = _model_of(look.values).over(moved_model(fit, look.moves))
+    return _solved(initial, fixed, fit.problem.runs, further, step)
 
 
 def _further(fit: FittedModel) -> list[str]:
@@ -191,35 +191,31 @@ def _is_free(fit: FittedModel, name: str) -> bool:
     return any(u.name == name for u in fit.free)
 
 
-def _from_better_stiffness(solved: Solved, step: Steps) -> Solved | None:
+def _from_better_stiffness(fit: FittedModel, step: Steps) -> FittedModel | None:
     """Return a fit from the best screened stiffness, where it is fixed and another fits better."""
-    if _is_free(solved.fit, STIFFNESS):
+    if _is_free(fit, STIFFNESS):
         return None
-    best = max(_sizes(solved.fit, STIFFNESS, step), key=lambda look: look.saves)
+    best = max(_sizes(fit, STIFFNESS, step), key=lambda look: look.saves)
     if best.saves < LEAST_REDUCTION:
         return None
-    stiffness, fit = _model_of(best.values), solved.fit
-    initial = stiffness.over(moved_model(fit, best.moves))
-    fixed = stiffness.over(fit.problem.fixed)
-    return _solved(initial, fixed, fit.problem.runs, _further(fit), step)
+    fixed = _model_of(best.values).over(fit.problem.fixed)
+    return _solved_again(fit, best, fixed, _further(fit), step)
 
 
-def _at_stiffness(solved: Solved, step: Steps) -> Solved | None:
+def _at_stiffness(fit: FittedModel, step: Steps) -> FittedModel | None:
     """Return a fit with the stiffness fixed, where its estimate is not informative.
 
     Its interval may be too wide, or the mesh too coarse for it.
     """
-    finest = _finest_stiffness(solved.fit)
-    for e in solved.fit.model.estimates:
-        if e.name == STIFFNESS and e.interval_low is not None and e.interval_high is not None:
-            if e.interval_high < VAGUE_RATIO * e.interval_low and e.value < finest:
-                return None
-            with_value, fit = _model_of({STIFFNESS: min(e.value, finest)}), solved.fit
-            further = [name for name in _further(fit) if name != STIFFNESS]
-            initial = with_value.over(moved_model(fit, np.zeros(len(fit.chosen))))
-            fixed = with_value.over(fit.problem.fixed)
-            return _solved(initial, fixed, fit.problem.runs, further, step)
-    return None
+    finest = _finest_stiffness(fit)
+    e = next((e for e in fit.model.estimates if e.name == STIFFNESS), None)
+    if e is None or e.interval_low is None or e.interval_high is None:
+        return None
+    if e.interval_high < VAGUE_RATIO * e.interval_low and e.value < finest:
+        return None
+    at = ScreenedValue({STIFFNESS: min(e.value, finest)}, np.zeros(len(fit.chosen)), 0.0)
+    further = [name for name in _further(fit) if name != STIFFNESS]
+    return _solved_again(fit, at, _model_of(at.values).over(fit.problem.fixed), further, step)
 
 
 def _finest_stiffness(fit: FittedModel) -> float:
@@ -233,19 +229,15 @@ def _least_squares_step(slopes: Floats, residual: Floats) -> Floats:
     return np.asarray(np.linalg.lstsq(slopes, -residual, rcond=None)[0])
 
 
-def _freed(solved: Solved, looks: Sequence[ScreenedValue], step: Steps) -> Solved | None:
+def _freed(fit: FittedModel, looks: Sequence[ScreenedValue], step: Steps) -> FittedModel | None:
     """Return a fit with the best screened values free too; None if they are not identifiable."""
     best = max(looks, key=lambda look: look.saves)
     if best.saves < LEAST_REDUCTION:
         return None
-    problem = solved.fit.problem
-    initial = _model_of(best.values).over(moved_model(solved.fit, best.moves))
-    further = [*_further(solved.fit), *best.values]
-    more = _solved(initial, problem.fixed, problem.runs, further, step)
+    more = _solved_again(fit, best, fit.problem.fixed, [*_further(fit), *best.values], step)
     if more is None:
         return None
-    estimates = more.fit.model.estimates
-    found = {e.name: e for e in estimates if e.stderr is not None and not e.at_bound}
+    found = {e.name: e for e in more.model.estimates if e.stderr is not None and not e.at_bound}
     for name in best.values:
         low = found[name].interval_low if name in found else None
         if low is None or low <= QUANTITIES[name].lower:

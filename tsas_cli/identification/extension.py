@@ -7,12 +7,12 @@ from typing import Self
 
 import numpy as np
 
-from tsas_cli.identification.fit import Solution, Unknown, solve
-from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.fit import Unknown, solve
+from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
-from tsas_cli.identification.unknowns import unknown_of
+from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values

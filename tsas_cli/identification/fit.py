@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tsas_cli.numerics.covariance import jackknife
-from tsas_cli.numerics.least_squares import least_squares
+from tsas_cli.numerics.least_squares import Solution, least_squares
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
@@ -23,7 +23,6 @@ WRONG = 2.0  # mean square of the residuals beyond which the model is wrong
 FEWEST_RUNS = 3  # for standard errors of a wrong model
 ALONE = 50.0  # growth of the variance of a parameter without the run that alone determines it
 UNDETERMINED = 1e-3  # tolerance of the resolution of a determined parameter
-NEARLY_BOUND = 1e-4  # of a plausible change, or of the width between the bounds if it is less
 KNOWN = 0.1  # of its scale: with a larger standard error, alone, an unknown is not identifiable
 INDEPENDENT = 1e-3  # share of an unknown's column that has to be independent of the others
 COLOUR = 10.0  # ratio of the standard errors for coloured and for white noise, at most
@@ -39,19 +38,6 @@ class Unknown:
     lower: float
     upper: float
     scale: float
-
-
-@dataclass(frozen=True)
-class Solution:
-    """A minimum: scaled values, bound flags, residual (n,) and Jacobian (n, p) there."""
-
-    values: Floats
-    at_bound: Mask
-    residual: Floats
-    jacobian: Floats
-    converged: bool
-    message: str
-    evaluations: int
 
 
 @dataclass(frozen=True)
@@ -156,7 +142,7 @@ def solve(
     upper = np.array([u.upper for u in unknowns])
     initial = np.array([u.initial for u in unknowns])
     start = np.clip(initial, lower, upper)
-    found = least_squares(
+    return least_squares(
         errors,
         slopes,
         start,
@@ -166,25 +152,6 @@ def solve(
         slopes=None if known is None else slopes(start, known),
         values_only=values_only,
     )
-    near = NEARLY_BOUND * np.minimum(upper - lower, 1.0)
-    at_bound = (found.values - lower < near) | (upper - found.values < near)
-    return Solution(**vars(found), at_bound=at_bound)
-
-
-def fit(
-    unknowns: Sequence[Unknown],
-    blocks: Sequence[Indices],
-    residuals: Residuals,
-    *,
-    tolerance: float,
-) -> Fitted:
-    """Return the minimum of the squares of all runs' residuals, with standard errors.
-
-    `blocks` has for each run the block of each residual, counted from 0 in each run, for the
-    intervals; `tolerance` is the share of the squares below which a reduction ends the search.
-    """
-    solution = solve(unknowns, len(blocks), residuals, tolerance=tolerance)
-    return with_errors(unknowns, solution, blocks)
 
 
 def with_errors(

@@ -3,16 +3,20 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.quantities import LOG_SCALE, NOMINAL, QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, run_errors
-from tsas_cli.identification.samples import fitted_samples, left_out_notes
-from tsas_cli.identification.unknowns import further_unknown, nominal_unknowns
+from tsas_cli.identification.run_simulation import fitted_samples, left_out_notes
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
+
+FURTHER_SCALE = 7.0  # plausible change without prior knowledge: logarithm, or effect's sizes
+ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,3 +91,44 @@ def rig_at(rig: Rig, k: int, unknowns: Sequence[Unknown], values: Floats) -> Rig
         if u.run in (None, k)
     }
     return with_values(rig, own)
+
+
+def nominal_unknowns(
+    initial: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
+) -> list[Unknown]:
+    """Return all candidates, in the order of the identifiability check.
+
+    With a load other than a spring the preload is equivalent to the zeros: it is fixed.
+    """
+    out = []
+    travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
+    springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
+    for q in NOMINAL:
+        owners: Sequence[int | None] = [None] if q.shared else range(len(runs))
+        if q.name == "preload_N":
+            owners = springs
+        if q.name == "load_stiffness_N_per_mm" and not springs:
+            continue
+        for k in owners:
+            value = initial.value(q.name, None if k is None else runs[k].run.id)
+            low, high = map(q.scaled, plausible.get(q.name, (q.lower, q.upper)))
+            scaled = q.scaled(q.default if value is None else value)
+            scale = LOG_SCALE if q.positive else ZERO_SCALE * travel
+            out.append(Unknown(q.name, k, min(max(scaled, low), high), low, high, scale))
+    return out
+
+
+def unknown_of(name: str, value: float | None = None, scale: float = 1.0) -> Unknown:
+    """Return the unknown of a shared parameter, from a scaled value or its neutral one."""
+    quantity = QUANTITIES[name]
+    initial = quantity.scaled(quantity.default) if value is None else value
+    return Unknown(
+        name, None, initial, quantity.scaled(quantity.lower), quantity.scaled(quantity.upper), scale
+    )
+
+
+def further_unknown(name: str, initial: Model) -> Unknown:
+    """Return the unknown of a parameter of bristles or effects, from a model's value if any."""
+    value = initial.value(name)
+    scaled = None if value is None else QUANTITIES[name].scaled(value)
+    return unknown_of(name, scaled, FURTHER_SCALE)

@@ -12,10 +12,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, Residuals, Unknown, fit, identifiable, jacobian
+from tsas_cli.identification.fit import (
+    Fitted,
+    Residuals,
+    Unknown,
+    identifiable,
+    jacobian,
+    solve,
+    with_errors,
+)
 from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.quantities import QUANTITIES, Quantity
 from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.rig import Rig, with_values
@@ -183,7 +191,7 @@ def _fit(
     free = [replace(problem.unknowns[j], initial=float(start[j])) for j in chosen]
     blocks = blocks_of(errors, [problem.rig(k, values) for k in range(len(errors))])
     residuals = _of_free(_residuals(problem, errors), _fixed_values(problem), chosen)
-    return fit(free, blocks, residuals, tolerance=tolerance)
+    return with_errors(free, solve(free, len(blocks), residuals, tolerance=tolerance), blocks)
 
 
 def _fixed_values(problem: FitProblem) -> Floats:
@@ -196,12 +204,17 @@ def _fixed_values(problem: FitProblem) -> Floats:
     return np.array(out)
 
 
-def estimates_of(unknowns: Sequence[Unknown], found: Fitted, runs: Sequence[str]) -> list[Estimate]:
+def estimates_of(
+    unknowns: Sequence[Unknown],
+    found: Fitted,
+    runs: Sequence[str],
+    quantities: Mapping[str, Quantity] = QUANTITIES,
+) -> list[Estimate]:
     """Return the estimates of a fit's unknowns, in their units; `runs` are the ids of the runs."""
     out = []
     each_one = zip(unknowns, found.values, found.stderr, found.t, found.at_bound, strict=True)
     for u, v, sd, t, at_bound in each_one:
-        quantity = QUANTITIES[u.name]
+        quantity = quantities[u.name]
         ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
         low, value, high = (quantity.inside(float(end)) for end in ends)
         stderr = sd * (value if quantity.positive else quantity.size)

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
+from tsas_cli.identification.quantities import NOMINAL, QUANTITIES
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
 from tsas_cli.support.errors import InputError, nearest
@@ -66,10 +65,10 @@ class Model:
 
         InputError: friction times bend is implausibly large: no tension would be transmitted.
         """
-        values = {p.name: self.value(p.name, run.id) for p in NOMINAL}
+        values = {q.name: self.value(q.name, run.id) for q in NOMINAL}
         if values["preload_N"] is None and run.preload_N is not None:
             values["preload_N"] = run.preload_N + (self.value(CORRECTION) or 0.0)
-        known = {name: v if v is not None else DEFAULTS[name] for name, v in values.items()}
+        known = {name: QUANTITIES[name].default if v is None else v for name, v in values.items()}
         bend = UNKNOWN_BEND_RAD if run.total_bend_rad is None else run.total_bend_rad
         check_wrap(known["friction_coefficient"], bend, f"run {run.id}")
         nominal = Rig(
@@ -119,7 +118,7 @@ def data_sheet(manifest: Manifest) -> Model:
 
 
 def _stated(name: str, value: float, run: str | None = None) -> Estimate:
-    return Estimate(name, value, NOMINAL_BY_NAME[name].unit, "data sheet", run)
+    return Estimate(name, value, QUANTITIES[name].unit, "data sheet", run)
 
 
 def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> float | None:

@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
-from tsas_cli.numerics.interpolated import interpolated
-from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.noise import interpolated, noise_sd, quantisation_step
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
@@ -55,13 +54,11 @@ class Prepared:
     @cached_property
     def drive(self) -> DriveInput:
         """The given quantities at the ends, conditioned."""
-        load = LOAD_COLUMNS.get(self.run.load)
         return drive_of(
             self.run,
             self.time_s,
-            self.conditioned[self.drive_column].values,
-            by_force=self.drive_column == "f_in_N",
-            load_values=None if load is None else self.conditioned[load].values,
+            self.drive_column,
+            {name: column.values for name, column in self.conditioned.items()},
             f_in_N=self.measured.get("f_in_N"),
             session_s=self.session_s,
             motor_mm=self.motor_mm,
@@ -108,24 +105,24 @@ class Prepared:
 def drive_of(
     run: Run,
     time_s: Floats,
-    values: Floats,
+    drive_column: str,
+    conditioned: Mapping[str, Floats],
     *,
-    by_force: bool,
-    load_values: Floats | None,
     f_in_N: Floats | None,
     session_s: float,
     motor_mm: Floats | None = None,
 ) -> DriveInput:
-    """Return the drive of a run: conditioned values at the drive and, where given, at the load.
+    """Return the drive of a run: the conditioned column at the drive and, where given, at the load.
 
     The measured tension at the drive, unless it is given, is the initial condition.
     """
+    by_force, load = drive_column == "f_in_N", LOAD_COLUMNS.get(run.load)
     start = None if f_in_N is None or by_force else _start_value(time_s, f_in_N)
     return DriveInput(
-        values=values,
+        values=conditioned[drive_column],
         kind="force" if by_force else "displacement",
         load=run.load,
-        load_values=load_values,
+        load_values=None if load is None else conditioned[load],
         start_f_in_N=start,
         time_s=time_s - time_s[0],
         session_s=session_s,

@@ -5,17 +5,8 @@ from dataclasses import dataclass
 
 from tsas_cli.effects import EFFECTS, LAWS
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.parameters import BRISTLES, NOMINAL
 
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
-DEFAULTS = {
-    "friction_coefficient": 0.1,
-    "load_stiffness_N_per_mm": 1.0,
-    "preload_N": 10.0,
-    "tendon_stiffness_N": 5e4,
-    "x_in_zero_mm": 0.0,
-    "x_out_zero_mm": 0.0,
-}
 
 
 @dataclass(frozen=True)
@@ -56,34 +47,34 @@ class Quantity:
         return math.exp(value) if self.positive else float(value) * self.size
 
 
-QUANTITIES: dict[str, Quantity] = (
-    {
-        p.name: Quantity(p.name, p.unit, p.lower, p.upper, DEFAULTS[p.name], p.shared, p.positive)
-        for p in NOMINAL
-    }
-    | {
-        f"bristles.{p.name}": Quantity(
-            f"bristles.{p.name}",
-            p.unit,
-            p.lower,
-            p.upper,
-            getattr(Bristles(), p.name),
-            positive=True,
-        )
-        for p in BRISTLES
-    }
-    | {
-        f"{effect.name}.{p.name}": Quantity(
-            f"{effect.name}.{p.name}",
-            p.unit,
-            p.lower,
-            p.upper,
-            p.neutral,
-            size=abs(p.start - p.neutral) or abs(p.start) or 1.0,
-            shape=p.shape,
-            given=p.given,
-        )
-        for effect in (*EFFECTS, *LAWS)
-        for p in effect.parameters
-    }
+NOMINAL = (
+    Quantity("friction_coefficient", "1", 1e-4, 10.0, 0.1, positive=True),  # μ, or μθ
+    Quantity("load_stiffness_N_per_mm", "N/mm", 1e-4, 1e4, 1.0, positive=True),  # kL
+    Quantity("preload_N", "N", 1e-3, 1e5, 10.0, shared=False, positive=True),  # F0
+    Quantity("tendon_stiffness_N", "N", 1e1, 1e8, 5e4, positive=True),  # axial, EA
+    Quantity("x_in_zero_mm", "mm", -1e5, 1e5, 0.0, shared=False),  # reading at the preload
+    Quantity("x_out_zero_mm", "mm", -1e5, 1e5, 0.0, shared=False),
 )
+BRISTLES = tuple(
+    Quantity(f"bristles.{name}", unit, lower, upper, getattr(Bristles(), name), positive=True)
+    for name, unit, lower, upper in (
+        ("stiffness_N_per_mm", "N/mm", 1e-2, 1e9),
+        ("damping_N_s_per_mm", "N s/mm", 1e-6, 1e4),
+        ("tendon_mass_kg_per_m", "kg/m", 1e-6, 1e2),
+        ("tendon_damping_N_s_per_mm", "N s/mm", 1e-9, 1e2),
+    )
+)
+QUANTITIES = {q.name: q for q in (*NOMINAL, *BRISTLES)} | {
+    f"{effect.name}.{p.name}": Quantity(
+        f"{effect.name}.{p.name}",
+        p.unit,
+        p.lower,
+        p.upper,
+        p.neutral,
+        size=abs(p.start - p.neutral) or abs(p.start) or 1.0,
+        shape=p.shape,
+        given=p.given,
+    )
+    for effect in (*EFFECTS, *LAWS)
+    for p in effect.parameters
+}

@@ -17,12 +17,12 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_simulation import (
     Predictions,
     RunSimulation,
+    mean_edges,
     predict_driven,
     predictor,
     run_simulation,
     with_steps_at,
 )
-from tsas_cli.identification.samples import mean_edges
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.numerics.turning_points import last_beyond

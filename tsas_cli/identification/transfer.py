@@ -1,24 +1,72 @@
-"""Transfer of tension through the sheath: f_in = r f_out + c while the whole tendon slips.
+"""Straight lines through the phases of runs: stiffness at the drive, transfer of tension.
 
-The capstan law has r = e^(±a) and c = 0 (Yang 2025, Eq. 7), so that a = μθ is half the logarithm of
-the quotient of both ratios. An intercept of opposite sign in the two directions is friction
-independent of the tendon's tension; one of the same sign is an offset.
+The proximal stiffness of a phase is km = dFin/dxin, by linear fit as in Yang 2025, Fig. 7. The
+transfer is f_in = r f_out + c while the whole tendon slips: the capstan law has r = e^(±a) and
+c = 0 (Eq. 7), so that a = μθ is half the logarithm of the quotient of both ratios. An intercept of
+opposite sign in the two directions is friction independent of the tendon's tension; one of the
+same sign is an offset.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.phases import Phase, Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
 from tsas_cli.support.arrays import Floats
 
-FEWEST_SAMPLES = 50
+PHASES: tuple[Phase, ...] = ("contraction", "loosening", "dead_band_up", "dead_band_down")
+FEWEST_SAMPLES = 6
+
+
+@dataclass(frozen=True)
+class Slope:
+    """One phase's slope in a run [N/mm], with the half-width of its 95 % interval."""
+
+    phase: Phase
+    value: float
+    stderr: float
+    half_width: float
+    occurrences: int
+    samples: int
+
+
+def slopes(x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> list[Slope]:
+    """Return the slope of each phase, fitted with an intercept for each occurrence.
+
+    `x_in` and `f_in` are conditioned displacement [mm] and tension [N] at the drive, shape (n,);
+    NaN where unknown.
+    """
+    found = (_slope(phase, x_in, f_in, segments) for phase in PHASES)
+    return [slope for slope in found if slope is not None]
+
+
+def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> Slope | None:
+    xs, fs = [], []
+    for s in segments:
+        x, f = x_in[s.first : s.end], f_in[s.first : s.end]
+        ok = np.isfinite(f) & np.isfinite(x)
+        if s.phase == phase and ok.sum() >= FEWEST_SAMPLES:
+            xs.append(x[ok] - x[ok].mean())
+            fs.append(f[ok] - f[ok].mean())
+    square = sum(float(np.sum(x**2)) for x in xs)
+    if not xs or square <= 0.0:
+        return None
+    slope = sum(float(np.sum(x * f)) for x, f in zip(xs, fs, strict=True)) / square
+    residuals = [f - slope * x for x, f in zip(xs, fs, strict=True)]
+    length = block_length(residuals)
+    block = block_numbers([r.size for r in residuals], length)
+    covariance, t = jackknife(np.concatenate(xs)[:, None], np.concatenate(residuals), block)
+    stderr = float(np.sqrt(covariance[0, 0]))
+    samples = sum(x.size for x in xs)
+    return Slope(phase, slope, stderr, float(t[0]) * stderr, len(xs), samples)
+
+
+FEWEST_OF_TRANSFER = 50
 WIDE = 10.0  # the range of f_out must exceed its noise by this factor
 
 
@@ -56,30 +104,27 @@ def _of_one_bend(runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]
     down = _line(runs, segments, "loosening")
     if up is None or down is None or min(up.values[0], down.values[0]) <= 0.0:
         return []
-    ratios = [line.values[0] for line in (up, down)]
-    variances = [np.diag(line.covariance) for line in (up, down)]
-    wrap_sd = 0.5 * math.hypot(
-        *(math.sqrt(v[0]) / r for v, r in zip(variances, ratios, strict=True))
+    (up_ratio, up_N), (down_ratio, down_N) = (line.values.tolist() for line in (up, down))
+    (up_sd, up_sd_N), (down_sd, down_sd_N) = (
+        np.sqrt(np.diag(line.covariance)).tolist() for line in (up, down)
     )
-    constant_sd = 0.5 * math.sqrt(variances[0][1] + variances[1][1])
-    both = 0.5 * (up.values[1] - down.values[1]), 0.5 * (up.values[1] + down.values[1])
-    estimate = partial(
-        _estimate, t=float(max(up.t.max(), down.t.max())), runs=", ".join(r.run.id for r in runs)
+    wrap = 0.5 * math.log(up_ratio / down_ratio)
+    wrap_sd = 0.5 * math.hypot(up_sd / up_ratio, down_sd / down_ratio)
+    constant_sd = 0.5 * math.hypot(up_sd_N, down_sd_N)
+    found = (
+        ("ratio_contraction", up_ratio, up_sd, "1"),
+        ("ratio_loosening", down_ratio, down_sd, "1"),
+        ("intercept_contraction", up_N, up_sd_N, "N"),
+        ("intercept_loosening", down_N, down_sd_N, "N"),
+        ("wrap", wrap, wrap_sd, "1"),
+        ("constant_friction", 0.5 * (up_N - down_N), constant_sd, "N"),
+        ("offset", 0.5 * (up_N + down_N), constant_sd, "N"),
     )
+    t, ids = float(max(up.t.max(), down.t.max())), ", ".join(run.run.id for run in runs)
     return [
-        estimate("ratio_contraction", up.values[0], math.sqrt(variances[0][0]), "1"),
-        estimate("ratio_loosening", down.values[0], math.sqrt(variances[1][0]), "1"),
-        estimate("intercept_contraction", up.values[1], math.sqrt(variances[0][1]), "N"),
-        estimate("intercept_loosening", down.values[1], math.sqrt(variances[1][1]), "N"),
-        estimate("wrap", 0.5 * math.log(ratios[0] / ratios[1]), wrap_sd, "1"),
-        estimate("constant_friction", both[0], constant_sd, "N"),
-        estimate("offset", both[1], constant_sd, "N"),
+        Estimate(name, value, unit, "fitted", ids, sd, value - t * sd, value + t * sd)
+        for name, value, sd, unit in found
     ]
-
-
-def _estimate(name: str, value: float, sd: float, unit: str, *, t: float, runs: str) -> Estimate:
-    low, high = float(value - t * sd), float(value + t * sd)
-    return Estimate(name, float(value), unit, "fitted", runs, sd, low, high)
 
 
 def _line(
@@ -102,7 +147,7 @@ def _line(
                 at_load.append(f_out[part.first : part.end][ok])
                 block.append(np.full(int(ok.sum()), count))
                 count += 1
-    if count < 2 or sum(b.size for b in block) < FEWEST_SAMPLES:
+    if count < 2 or sum(b.size for b in block) < FEWEST_OF_TRANSFER:
         return None
     F, G, number = (np.concatenate(parts) for parts in (at_drive, at_load, block))
     if np.ptp(G) < WIDE * noise or np.ptp(G) == 0.0:

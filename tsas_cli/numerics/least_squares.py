@@ -22,16 +22,18 @@ MOST_DAMPING = 1e8
 STEP = 1e-7  # change of all unknowns below which a step is the last
 LAST = 0.01  # of the tolerance, below which a step is not worth its residual; with known slopes
 AS_PREDICTED = 0.5  # share of the predicted reduction, beyond which corrected slopes are kept
+NEARLY_BOUND = 1e-4  # of a unit, or of the width between the bounds if it is less
 
 
 @dataclass(frozen=True)
-class Minimum:
-    """The minimum: unknowns (p,), with the residual (n,) and the Jacobian (n, p) there.
+class Solution:
+    """A minimum: unknowns (p,), bound flags, residual (n,) and Jacobian (n, p) there.
 
     The Jacobian is that before the last step where `slopes` were known.
     """
 
     values: Floats
+    at_bound: Mask
     residual: Floats
     jacobian: Floats
     converged: bool
@@ -49,7 +51,7 @@ def least_squares(
     most: int,
     slopes: Floats | None = None,
     values_only: bool = False,
-) -> Minimum:
+) -> Solution:
     """Return the minimum of half the sum of squares of the residual within bounds.
 
     Parameters
@@ -70,6 +72,12 @@ def least_squares(
         Whether the Jacobian at the minimum may be such a corrected one.
     """
     lower, upper = bounds
+    near = NEARLY_BOUND * np.minimum(upper - lower, 1.0)
+
+    def found(message: str, *, converged: bool = True) -> Solution:
+        at_bound = (x - lower < near) | (upper - x < near)
+        return Solution(x, at_bound, r, J, converged, message, evaluations)
+
     x = np.clip(start, lower, upper)
     r, exact = residual(x), slopes is None
     J = jacobian(x) if slopes is None else slopes
@@ -87,7 +95,7 @@ def least_squares(
         reliable = exact or values_only
         if predicted <= tolerance * (LAST if reliable and slopes is not None else 1.0) * squares:
             if reliable:
-                return Minimum(x, r, J, True, "no step reduces the squares further", evaluations)
+                return found("no step reduces the squares further")
             J, exact = jacobian(x), True
             continue
         trial = residual(x + step)
@@ -104,16 +112,14 @@ def least_squares(
                 J = _corrected(J, step, r - before, np.diag(gram))
             damping = max(damping / 10.0, 1e-12)
             if last:
-                return Minimum(x, r, J, True, "the last step is within the tolerance", evaluations)
+                return found("the last step is within the tolerance")
         elif exact:
             damping *= 10.0
             if smallest or damping > MOST_DAMPING:
-                return Minimum(x, r, J, True, "no step reduces the squares", evaluations)
+                return found("no step reduces the squares")
         else:
             J, exact = jacobian(x), True
-    return Minimum(
-        x, r, J, False, f"squares still decreasing after {most} evaluations", evaluations
-    )
+    return found(f"squares still decreasing after {most} evaluations", converged=False)
 
 
 def _bounded_step(

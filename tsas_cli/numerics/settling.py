@@ -3,17 +3,18 @@
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Values
 
 
 @kernel
-def exponential_drift(rate: float, settling_per_s: float, time_s: float) -> float:
+def exponential_drift(rate: float, settling_per_s: float, time_s: Values) -> Values:
     """Return rate·(1 − exp(−ν t))/ν, which is rate·t where ν is zero: a drift that never ends.
 
     The initial rate is in any unit per second, ν [1/s] the inverse of the time constant.
     """
     if settling_per_s == 0.0:
         return rate * time_s
-    settled: float = -np.expm1(-settling_per_s * time_s)
+    settled: Values = -np.expm1(-settling_per_s * time_s)
     return rate * settled / settling_per_s
 
 

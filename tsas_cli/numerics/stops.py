@@ -13,12 +13,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.support.arrays import Floats
 
 ELEMENTS, GAPS, KNOTS = 6, 4, 5  # elements without and with a gap
 RATIO = 0.25  # width of each element over that of the one before
 GAP = 0.5  # share of the width of an element with a gap, within which its spring is loose
+
+
+@kernel
+def yielded(before: float, rise: float, limit: float) -> float:
+    """Return an element's state after a rise of its input; it yields at ±limit (Prandtl)."""
+    return min(max(before + rise, -limit), limit)
 
 
 def widths_of(longest: float) -> Floats:

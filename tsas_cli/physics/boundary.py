@@ -5,13 +5,13 @@ from typing import NamedTuple
 from tsas_cli.effects.load_friction import LoadFriction, guide_friction
 from tsas_cli.effects.load_hysteresis import LoadHysteresis
 from tsas_cli.effects.load_relaxation import LoadRelaxation
-from tsas_cli.effects.load_ripple import LoadRipple, spring_wave
 from tsas_cli.effects.load_spring_nonlinearity import (
     LoadSpringNonlinearity,
     spring_force,
     spring_tangent,
 )
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import Wave, wave_at
 from tsas_cli.physics.rig import Rig
 
 DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # the given quantity at an end
@@ -40,7 +40,7 @@ class LoadEnd(NamedTuple):
     given: int
     stiffness_N_per_mm: float
     nonlinearity: LoadSpringNonlinearity
-    ripple: LoadRipple
+    ripple: Wave
     friction: LoadFriction
     mass_kg: float
     damping_N_s_per_mm: float
@@ -108,7 +108,7 @@ def spring_law(x: float, load: LoadEnd) -> tuple[float, float]:
     force = spring_force(x, stiffness, load.nonlinearity)
     slope = spring_tangent(x, stiffness, load.nonlinearity)
     if load.ripple.sine_mm != 0.0 or load.ripple.cosine_mm != 0.0:
-        wave, steeper = spring_wave(x, load.ripple)
+        wave, steeper = wave_at(x, load.ripple)
         force += stiffness * wave
         slope += stiffness * steeper
     return force, slope

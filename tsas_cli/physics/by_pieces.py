@@ -1,79 +1,33 @@
 """Simulate a run that is too long for memory piece by piece; the solver's state is carried over.
 
-The result is that of `simulate` for the whole run: each piece starts from the final state of the
-one before. Speeds and delays need samples before and after; so a piece is computed with some of its
-neighbours' samples, which each neighbour computes again.
+The result is that of `simulate` for the whole run: the model goes on from piece to piece. Speeds
+and delays need samples before and after; so the model runs ahead of each piece by the longest
+delay, and some samples of the piece before are kept.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
-from copy import deepcopy
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import chain
-from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.physics.closed_form.branches import (
-    BranchState,
-    at_rest_before,
-    follow_branches,
-    with_room,
-)
-from tsas_cli.physics.closed_form.static import StaticState, follow_static
-from tsas_cli.physics.course import Output
-from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
+from tsas_cli.physics.course import DIRECTION, DRIVE, TRAVEL, Output, samples_of
+from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.response import (
-    CLOSED,
-    NODES,
     Dynamics,
     Prediction,
-    at_drive_sensor,
+    advanced,
+    at_rest,
     history,
-    is_closed,
+    nodes_of,
     readings_of,
     solver_of,
-    with_spring_load,
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import new_memory, sensed
-from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 from tsas_cli.support.arrays import Floats
 
-State = BranchState | ChainState | StaticState
-
-OVERLAP = 2  # samples of a neighbour: one for a speed, one more for an acceleration
-STATIC = -1  # nodes of the lumped model
-
-
-class Start(NamedTuple):
-    """Start of a piece: states of solver and sensors, and of the drive.
-
-    Its position [mm], the direction of its last motion, and the travel since its last reversal.
-    """
-
-    state: State
-    memory: Floats  # of the sensors
-    position: float
-    direction: float
-    travel: float
-
-
-@dataclass(frozen=True)
-class _OverlappingPiece:
-    """A piece with samples of its neighbours, indexed from the first of them.
-
-    The piece is `first` … `end`−1. The model runs from `begin` to `until`−1, the range that delays
-    and speeds need. The next piece's samples begin at `handover` and its model at `next_begin`;
-    both are None in the last piece.
-    """
-
-    drive: DriveInput
-    first: int
-    end: int
-    begin: int
-    until: int
-    handover: int | None
-    next_begin: int | None
+OVERLAP = 3  # samples of a neighbour: for a speed, an acceleration, an interpolation
 
 
 def simulate_pieces(
@@ -81,7 +35,6 @@ def simulate_pieces(
     drives: Iterable[DriveInput],
     dynamics: Dynamics = "slip",
     *,
-    on_mesh: bool = False,
     nodes: int | None = None,
 ) -> Iterator[Prediction]:
     """Yield the response of each piece of a run, equal to that of `simulate` for the whole run.
@@ -93,102 +46,44 @@ def simulate_pieces(
     """
     if dynamics == "lugre":
         raise ValueError("the dynamic model cannot be simulated in pieces")
-    start: Start | None = None
-    mesh = 0
-    for piece in _overlapping(drives, _longest_delay(rig)):
-        ends = ends_of(rig, piece.drive, start and (start.position, start.direction, start.travel))
-        if start is None:
-            closed = is_closed(rig, piece.drive) and not on_mesh
-            mesh = STATIC if dynamics == "static" else CLOSED if closed else nodes or NODES
-            before = [] if mesh == STATIC else history(rig, ends, piece.drive.start_f_in_N, mesh)
-            past_inputs = ends.first().after(before)
-            state, memory = _at_rest(rig, past_inputs, mesh), new_memory()
-            if before:
-                _, state = _follow(rig, past_inputs.part(0, len(before)), mesh, state)
-        else:
-            state, memory = start.state, start.memory
-        to = piece.until if piece.next_begin is None else piece.next_begin
-        outputs, state = _follow(rig, ends.part(piece.begin, to), mesh, state)
-        signals = _read(rig, piece, ends, outputs, slice(piece.begin, to), memory)
-        if piece.handover is not None:
-            at = piece.handover
-            of_drive = (float(part[at]) for part in (ends.drive, ends.direction, ends.travel))
-            start = Start(deepcopy(state), memory.copy(), *of_drive)
-            further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
-            further = _read(rig, piece, ends, further, slice(to, piece.until), memory)
-            signals = _concatenated(signals, further)
-        drive = _part(piece.drive, piece.begin, piece.until)
-        response = readings_of(rig, drive, signals, solver_of(mesh, dynamics))
-        yield _own_samples(response, piece.first - piece.begin, piece.end - piece.begin)
-
-
-def _read(
-    rig: Rig,
-    piece: _OverlappingPiece,
-    ends: EndInputs,
-    outputs: Output,
-    at: slice,
-    memory: Floats,
-) -> Output:
-    """Return the signals of some samples of a piece, with the memory of the sensors."""
-    motor = piece.drive.motor_mm
-    own = None if motor is None else motor[at]
-    return sensed(outputs, _times(piece.drive)[at], rig, ends.boundary, memory, own)
-
-
-def _at_rest(rig: Rig, ends: EndInputs, mesh: int) -> State:
-    if mesh == STATIC:
-        return StaticState(0.0, rig.preload_N, rig.preload_N)
-    if mesh == CLOSED:
-        return at_rest_before(ends.drive, rig.preload_N)
-    return initial_state(ends.course, rig, ends.boundary, mesh)
-
-
-def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output, State]:
-    """Return the output and the final state."""
-    if isinstance(state, BranchState):
-        state = with_room(state, ends.drive)
-        return with_spring_load(rig, ends, follow_branches(ends.drive, rig, state, None)), state
-    if isinstance(state, StaticState):
-        tensions, state = follow_static(ends.drive, rig, state)
-        return with_spring_load(rig, ends, tensions), state
-    output, state = follow(ends.course, state, rig, ends.boundary, mesh, None)
-    return at_drive_sensor(rig, ends, output), state
-
-
-def _longest_delay(rig: Rig) -> float:
-    return max(abs(delay) for delay in rig.effects.channel_delay)
-
-
-def _overlapping(drives: Iterable[DriveInput], delay_s: float) -> Iterator[_OverlappingPiece]:
-    """Yield each piece with samples of its neighbours, over more than twice the longest delay."""
-    tail: DriveInput | None = None
-    begin = 0
+    delay_s = max(map(abs, rig.effects.channel_delay))
     upcoming = iter(drives)
-    now = next(upcoming)
+    drive = next(upcoming)
+    ends = ends_of(rig, drive)
+    mesh = nodes_of(rig, drive, dynamics, nodes)
+    before = history(rig, ends, drive.start_f_in_N, mesh)
+    past = ends.first().after(before)
+    state, memory, start = at_rest(rig, past, mesh), new_memory(), None
+    if before:
+        _, state = advanced(rig, past.part(0, len(before)), mesh, state)
+    signals: Output | None = None
+    first = solved = 0  # of the present samples, of the piece and not yet solved
     for after in chain(upcoming, (None,)):
-        first = 0 if tail is None else tail.values.size
-        end = first + now.values.size
-        head = None if after is None else _head(now, after, delay_s)
-        drive = _concatenated_drives([part for part in (tail, now, head) if part is not None])
-        size = drive.values.size
+        end = until = drive.values.size
+        whole = drive
+        if after is not None:
+            last_s, next_s = float(_times(drive)[-1]), _times(after)
+            ahead = np.searchsorted(next_s, last_s + 2.0 * delay_s, side="right") + OVERLAP
+            whole = _joined(drive, after.part(slice(int(ahead))))
+            until = int(np.searchsorted(_times(whole), last_s + delay_s)) + 1
+        time_s, ends = _times(whole), ends_of(rig, whole, start)
+        output, state = advanced(rig, ends.part(solved, until), mesh, state)
+        motor = None if whole.motor_mm is None else whole.motor_mm[solved:until]
+        read = sensed(output, time_s[solved:until], rig, ends.boundary, memory, motor)
+        signals = read if signals is None else _concatenated(signals, read)
+        response = readings_of(rig, whole.part(slice(until)), signals, solver_of(mesh))
+        yield _own_samples(response, first, end)
         if after is None:
-            yield _OverlappingPiece(drive, first, end, begin, size, None, None)
             return
-        time_s = _times(drive)
-        next_s = float(_times(after)[0])
-        handover = int(np.searchsorted(time_s, next_s - 2.0 * delay_s)) - OVERLAP
-        if handover < begin:
+        kept_s = float(time_s[end]) - 2.0 * delay_s
+        if delay_s > 0.0 and kept_s < time_s[first]:
             raise ValueError("a piece is shorter than a channel's delay")
-        far_enough = int(np.searchsorted(time_s, time_s[handover + 1] + delay_s))
-        next_begin = max(handover + OVERLAP, far_enough)
-        yield _OverlappingPiece(drive, first, end, begin, size - 1, handover, next_begin)
-        tail, begin, now = _part(drive, handover, end), next_begin - handover, after
-
-
-def _head(now: DriveInput, after: DriveInput, delay_s: float) -> DriveInput:
-    until = float(_times(now)[-1]) + 2.0 * delay_s
-    return _part(after, 0, int(np.searchsorted(_times(after), until, side="right")) + OVERLAP)
+        keep = max(int(np.searchsorted(time_s, kept_s)) - OVERLAP, 0)
+        position, direction, travel = ends.course[[DRIVE, DIRECTION, TRAVEL], keep].tolist()
+        start = position, direction, travel
+        signals = samples_of(signals, slice(keep, None))
+        drive = _joined(drive.part(slice(keep, None)), after)
+        first, solved = end - keep, until - keep
 
 
 def _times(drive: DriveInput) -> Floats:
@@ -197,29 +92,15 @@ def _times(drive: DriveInput) -> Floats:
     return drive.time_s
 
 
-def _part(drive: DriveInput, first: int, end: int) -> DriveInput:
-    """Return the samples first … end−1 of a drive."""
-    load = None if drive.load_values is None else drive.load_values[first:end]
-    time_s = _times(drive)[first:end]
-    motor = None if drive.motor_mm is None else drive.motor_mm[first:end]
+def _joined(one: DriveInput, other: DriveInput) -> DriveInput:
+    columns = ((one.load_values, other.load_values), (one.motor_mm, other.motor_mm))
+    load, motor = (None if a is None or b is None else np.append(a, b) for a, b in columns)
     return replace(
-        drive,
-        values=drive.values[first:end],
+        one,
+        values=np.append(one.values, other.values),
         load_values=load,
-        time_s=time_s,
+        time_s=np.append(_times(one), _times(other)),
         motor_mm=motor,
-    )
-
-
-def _concatenated_drives(parts: Sequence[DriveInput]) -> DriveInput:
-    loads = [part.load_values for part in parts if part.load_values is not None]
-    motors = [part.motor_mm for part in parts if part.motor_mm is not None]
-    return replace(
-        parts[0],
-        values=np.concatenate([part.values for part in parts]),
-        load_values=np.concatenate(loads) if loads else None,
-        time_s=np.concatenate([_times(part) for part in parts]),
-        motor_mm=np.concatenate(motors) if motors else None,
     )
 
 
@@ -232,12 +113,5 @@ def _concatenated(one: Output, other: Output) -> Output:
 
 def _own_samples(response: Prediction, first: int, end: int) -> Prediction:
     """Return a response without the samples of the neighbours."""
-    rows = slice(first, end)
-    return replace(
-        response,
-        x_in_mm=response.x_in_mm[rows],
-        x_out_mm=response.x_out_mm[rows],
-        f_in_N=response.f_in_N[rows],
-        f_out_N=response.f_out_N[rows],
-        phase=response.phase[rows],
-    )
+    names = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "phase")
+    return replace(response, **{name: getattr(response, name)[first:end] for name in names})

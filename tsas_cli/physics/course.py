@@ -1,6 +1,6 @@
 """Inputs of the tendon over a run, sample by sample, and outputs of a model.
 
-A course is one array, shape (8, m), because a compiled call counts the references of each array
+A course is one array, shape (11, m), because a compiled call counts the references of each array
 argument: with a record of rows the dynamic chain takes a quarter longer.
 """
 
@@ -15,6 +15,10 @@ PULLED, RELEASED, VISCOUS, LOST = range(4)
 DRIVE, LOAD = 4, 5  # displacement [mm] or tension at the sensor [N]; LOAD unused with a spring
 STEP = 6  # time since the sample before, infinite for a quasi-static step [s]
 TIME = 7  # since the start of the run [s]
+# For the force beside the tendon at the drive; a solver reads no row from here on.
+DIRECTION = 8  # of the last motion of the tendon's end at the drive
+TRAVEL = 9  # of that end since its last reversal, infinite before the first one [mm]
+MOTION = 10  # force at the drive's sensor for the motion of that end [N]
 
 
 class Losses(NamedTuple):

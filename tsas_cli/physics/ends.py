@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -12,18 +12,18 @@ from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
-from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import rippled
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.course import DRIVE, STEP, Losses
+from tsas_cli.physics.course import DIRECTION, DRIVE, MOTION, STEP, TRAVEL, Losses
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Indices
 
 NO_TENDON_LAW = TendonLaw()
 
@@ -48,6 +48,16 @@ class DriveInput:
     session_s: float = 0.0
     motor_mm: Floats | None = None
 
+    def part(self, at: slice | Indices) -> Self:
+        """Return some samples."""
+        load, time_s, motor = (
+            None if column is None else column[at]
+            for column in (self.load_values, self.time_s, self.motor_mm)
+        )
+        return replace(
+            self, values=self.values[at], load_values=load, time_s=time_s, motor_mm=motor
+        )
+
 
 @dataclass(frozen=True)
 class EndInputs:
@@ -55,9 +65,6 @@ class EndInputs:
 
     course: Floats  # with the rows of `course`
     boundary: Boundary
-    direction: Floats  # of the last motion of the tendon's end at the drive, shape (n,)
-    travel: Floats  # of that end since its last reversal, infinite before the first one, shape (n,)
-    motion_N: Floats  # force at the drive's sensor for the motion of that end, shape (n,)
 
     @property
     def drive(self) -> Floats:
@@ -67,14 +74,7 @@ class EndInputs:
 
     def part(self, first: int, end: int) -> "EndInputs":
         """Return the samples first … end−1."""
-        course = np.ascontiguousarray(self.course[:, first:end])
-        return replace(
-            self,
-            course=course,
-            direction=self.direction[first:end],
-            travel=self.travel[first:end],
-            motion_N=self.motion_N[first:end],
-        )
+        return replace(self, course=np.ascontiguousarray(self.course[:, first:end]))
 
     def after(self, before: list[float]) -> "EndInputs":
         """Return the inputs with positions of the drive prepended."""
@@ -82,13 +82,8 @@ class EndInputs:
         course = np.concatenate((np.repeat(self.course[:, :1], more, axis=1), self.course), axis=1)
         course[DRIVE, :more] = before
         course[STEP, : more + 1] = math.inf  # their speed is not known
-        return replace(
-            self,
-            course=course,
-            direction=np.concatenate((np.zeros(more), self.direction)),
-            travel=np.concatenate((np.full(more, math.inf), self.travel)),
-            motion_N=np.concatenate((np.zeros(more), self.motion_N)),
-        )
+        course[[DIRECTION, MOTION], :more], course[TRAVEL, :more] = 0.0, math.inf
+        return replace(self, course=course)
 
     def first(self) -> "EndInputs":
         """Return the first sample alone."""
@@ -129,9 +124,9 @@ def ends_of(
     if rig.effects.tendon_law != NO_TENDON_LAW and drive.kind == "displacement":
         rate = rate_of(at_drive, drive.time_s)
         losses[:2] *= tendon_law_factor(rig.effects.tendon_law, at_drive, travel, rate)
-    course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     motion_N = force_of_motion(speed, drive.time_s, rig.effects)
-    return EndInputs(course, boundary_of(drive), direction, travel, motion_N)
+    of_end = at_drive, at_load, step_s, time_s, direction, travel, motion_N
+    return EndInputs(np.vstack((losses, *of_end)), boundary_of(drive))
 
 
 def _follows_speed(effects: Effects) -> bool:
@@ -174,11 +169,11 @@ def tendon_end(x: Floats, effects: Effects, position: float) -> Floats:
 
     `position` is the one before the first sample.
     """
-    out = np.empty(x.size)
+    out, ripple = np.empty(x.size), effects.drive_ripple
+    waves = ripple.sine_mm != 0.0 or ripple.cosine_mm != 0.0  # sines take half the time
     for i in range(x.size):
-        position = follow_play(
-            position, rippled(x[i], effects.drive_ripple), effects.backlash.play_mm
-        )
+        moved = rippled(x[i], ripple) if waves else x[i]
+        position = follow_play(position, moved, effects.backlash.play_mm)
         out[i] = position
     return out
 
@@ -221,14 +216,6 @@ def losses_over(
 @kernel
 def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
     """Return the losses at one moment, by position and speed of the end at the drive [mm, s]."""
-    now = losses_without_speed(time_s, position, session_s, rig)
-    viscous_N = viscous_loss(speed, rig.effects.viscous_friction.coefficient_N_s_per_mm)
-    return Losses(now.pulled, now.released, viscous_N, now.preload_N)
-
-
-@kernel
-def losses_without_speed(time_s: float, position: float, session_s: float, rig: Rig) -> Losses:
-    """Return the losses at one moment without those that depend on the local sliding speed."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
@@ -237,6 +224,6 @@ def losses_without_speed(time_s: float, position: float, session_s: float, rig: 
     return Losses(
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),
-        0.0,
+        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm),
         lost_preload(effects.preload_loss, time_s),
     )

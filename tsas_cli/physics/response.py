@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 from operator import attrgetter
-from typing import Literal
+from typing import Literal, TypedDict, Unpack
 
 import numpy as np
 
@@ -11,9 +11,14 @@ from tsas_cli.effects import EFFECTS, LAWS, Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
-from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.closed_form.static import static_model
-from tsas_cli.physics.course import Output, Tensions, samples_of
+from tsas_cli.physics.closed_form.branches import (
+    BranchState,
+    branches_at_rest,
+    follow_branches,
+    with_room,
+)
+from tsas_cli.physics.closed_form.static import StaticState, follow_static
+from tsas_cli.physics.course import DIRECTION, MOTION, Output, samples_of
 from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
 from tsas_cli.physics.frames import Frames, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
@@ -21,15 +26,16 @@ from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.phases import SLACK, Phases
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import new_memory, reading, sensed
-from tsas_cli.physics.slip.chain import rest_after, slip_chain
+from tsas_cli.physics.slip.chain import ChainState, follow, initial_state, rest_after
 from tsas_cli.support.arrays import Floats, Indices
 
 Dynamics = Literal["static", "slip", "lugre"]
+State = BranchState | ChainState | StaticState
 
 NODES = 60  # of the slip chain, where the closed form is not valid
 LUMPS = 50  # of the dynamic chain
 TOLERANCE = 2.5e-6  # error that a step of the dynamic chain may add, over a tension
-CLOSED = 0  # nodes of the closed form
+CLOSED, STATIC = 0, -1  # nodes of the closed form, and of the lumped dead bands
 ELEMENTS = 60  # of the closed form's profiles along the tendon
 MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(e.name for e in (*EFFECTS, *LAWS) if not e.closed_form)
@@ -70,32 +76,29 @@ class SolvedRun:
     frames: Frames | None = None
 
 
+class Solver(TypedDict, total=False):
+    """How a run is solved.
+
+    With `nodes` a chain of that many is used even where the closed form is valid: models that are
+    compared must share a mesh. `tolerance` is the error of a tension that a step of the dynamic
+    chain may add, over the larger tension of the ends; `step_ends_s` are given steps, of another
+    run. `looked_at` are samples, increasing, shape (k,), for profiles along the tendon.
+    """
+
+    nodes: int | None
+    tolerance: float
+    step_ends_s: Floats
+    looked_at: Indices | None
+
+
 def simulate(
-    rig: Rig,
-    drive: DriveInput,
-    dynamics: Dynamics = "slip",
-    *,
-    on_mesh: bool = False,
-    nodes: int | None = None,
-    tolerance: float = TOLERANCE,
-    step_ends_s: Floats = OWN_STEPS,
-    looked_at: Indices | None = None,
+    rig: Rig, drive: DriveInput, dynamics: Dynamics = "slip", **how: Unpack[Solver]
 ) -> Prediction:
     """Return the prediction of the distributed model (`slip`), the static or the dynamic one.
 
     The parameters are those of `solve`, of which this reads the sensors.
     """
-    solved = solve(
-        rig,
-        drive,
-        dynamics,
-        on_mesh=on_mesh,
-        nodes=nodes,
-        tolerance=tolerance,
-        step_ends_s=step_ends_s,
-        looked_at=looked_at,
-    )
-    return read(rig, drive, solved)
+    return read(rig, drive, solve(rig, drive, dynamics, **how))
 
 
 def read(rig: Rig, drive: DriveInput, solved: SolvedRun) -> Prediction:
@@ -119,43 +122,36 @@ def mechanics_of(rig: Rig, drive: DriveInput) -> Rig:
 
 
 def solve(
-    rig: Rig,
-    drive: DriveInput,
-    dynamics: Dynamics = "slip",
-    *,
-    on_mesh: bool = False,
-    nodes: int | None = None,
-    tolerance: float = TOLERANCE,
-    step_ends_s: Floats = OWN_STEPS,
-    looked_at: Indices | None = None,
+    rig: Rig, drive: DriveInput, dynamics: Dynamics = "slip", **how: Unpack[Solver]
 ) -> SolvedRun:
     """Return the solution of the distributed model (`slip`), the static or the dynamic one.
 
     The distributed model uses the closed form where that is valid (`is_closed`), and the slip chain
-    elsewhere, or with `on_mesh`: models that are compared must share a mesh. The static one
-    (`static`) has the limits of the closed form; the dynamic one (`lugre`) needs the times of the
-    samples. `nodes` is the mesh of a chain; `tolerance` is the error of a tension that a step of
-    the dynamic one may add, over the larger tension of the ends; `step_ends_s` are given steps, of
-    another run. `looked_at` are samples, increasing, shape (k,), for profiles along the tendon.
+    elsewhere, or with `nodes`. The static one (`static`) has the limits of the closed form; the
+    dynamic one (`lugre`) needs the times of the samples.
     """
+    nodes, looked_at = how.get("nodes"), how.get("looked_at")
     if nodes is not None and not 2 <= nodes <= MOST_NODES:
         raise ValueError(f"{nodes} nodes; expected 2 to {MOST_NODES}")
     if dynamics == "lugre":
-        return _dynamic(rig, drive, nodes or LUMPS, StepControl(tolerance, step_ends_s), looked_at)
-    nodes = nodes or NODES
+        steps = how.get("tolerance", TOLERANCE), how.get("step_ends_s", OWN_STEPS)
+        return _dynamic(rig, drive, nodes or LUMPS, StepControl(*steps), looked_at)
+    nodes = nodes_of(rig, drive, dynamics, nodes)
     ends = ends_of(rig, drive)
-    if dynamics == "static":
-        output = with_spring_load(rig, ends, static_model(ends.drive, rig))
-        return SolvedRun(output, solver_of(nodes, dynamics))
-    if is_closed(rig, drive) and not on_mesh:
-        nodes = CLOSED
     before = history(rig, ends, drive.start_f_in_N, nodes)
     skip, frames = len(before), None
-    if looked_at is not None:
+    if looked_at is not None and nodes != STATIC:
         frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
     output = samples_of(_solve(rig, ends.after(before), nodes, frames), slice(skip, None))
     frames = frames and frames._replace(samples=frames.samples - skip)
-    return SolvedRun(output, solver_of(nodes, dynamics), frames=frames)
+    return SolvedRun(output, solver_of(nodes), frames=frames)
+
+
+def nodes_of(rig: Rig, drive: DriveInput, dynamics: Dynamics, nodes: int | None) -> int:
+    """Return the nodes of a quasi-static solver, `STATIC` or `CLOSED` where it has none."""
+    if dynamics == "static":
+        return STATIC
+    return nodes or (CLOSED if is_closed(rig, drive) else NODES)
 
 
 def _dynamic(
@@ -185,11 +181,10 @@ def _dynamic(
     return SolvedRun(output, solver, progress.step_ends_s, frames)
 
 
-def solver_of(nodes: int, dynamics: Dynamics) -> str:
-    """Return the description of the solver of the static or the distributed model."""
-    if dynamics == "static":
-        return "lumped dead bands"
-    return "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
+def solver_of(nodes: int) -> str:
+    """Return the description of a quasi-static solver."""
+    named = {STATIC: "lumped dead bands", CLOSED: "closed form"}
+    return named.get(nodes, f"slip chain, {nodes} nodes")
 
 
 def is_closed(rig: Rig, drive: DriveInput) -> bool:
@@ -215,18 +210,37 @@ def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Pr
 
 
 def _solve(rig: Rig, ends: EndInputs, nodes: int, frames: Frames | None = None) -> Output:
-    """Return the output of the closed form, or of the slip chain."""
+    """Return the output of a quasi-static solver for a motion from rest."""
+    return advanced(rig, ends, nodes, at_rest(rig, ends, nodes), frames)[0]
+
+
+def at_rest(rig: Rig, ends: EndInputs, nodes: int) -> State:
+    """Return the state of a quasi-static solver at rest at the preload, before a motion."""
+    if nodes == STATIC:
+        return StaticState(0.0, rig.preload_N, rig.preload_N)
     if nodes == CLOSED:
-        return with_spring_load(rig, ends, branches(ends.drive, rig, frames))
-    output = slip_chain(ends.course, rig, ends.boundary, nodes, frames)
-    return at_drive_sensor(rig, ends, output)
+        return branches_at_rest(rig.preload_N)
+    return initial_state(ends.course, rig, ends.boundary, nodes)
 
 
-def with_spring_load(rig: Rig, ends: EndInputs, tensions: Tensions) -> Output:
-    """Return the output of a closed-form model, with a spring load and a drive by displacement."""
+def advanced(
+    rig: Rig, ends: EndInputs, nodes: int, state: State, frames: Frames | None = None
+) -> tuple[Output, State]:
+    """Return the output of a quasi-static solver for a motion from a state, and the final state.
+
+    That of a chain is updated in place.
+    """
+    if isinstance(state, BranchState):
+        state = with_room(state, ends.drive)
+        tensions = follow_branches(ends.drive, rig, state, frames)
+    elif isinstance(state, StaticState):
+        tensions, state = follow_static(ends.drive, rig, state)
+    else:
+        output, state = follow(ends.course, state, rig, ends.boundary, nodes, frames)
+        return at_drive_sensor(rig, ends, output), state
     x_out = (tensions.f_out - rig.preload_N) / rig.load_stiffness_N_per_mm
-    f_in = tensions.f_in + force_beside_tendon(rig, ends)
-    return Output(ends.drive, x_out, f_in, tensions.f_out, tensions.phase)
+    output = Output(ends.drive, x_out, tensions.f_in, tensions.f_out, tensions.phase)
+    return at_drive_sensor(rig, ends, output), state
 
 
 def at_drive_sensor(rig: Rig, ends: EndInputs, output: Output) -> Output:
@@ -240,10 +254,12 @@ def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     """Return the forces at the drive's sensor parallel to the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-    if friction == 0.0 and stiffness == 0.0 and not ends.motion_N.any():
+    if friction == 0.0 and stiffness == 0.0 and not ends.course[MOTION].any():
         return 0.0
-    friction_N = drive_friction_force(friction, 1.0) * ends.direction
-    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive + ends.motion_N
+    friction_N = drive_friction_force(friction, 1.0) * ends.course[DIRECTION]
+    beside: Floats = friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
+    beside += ends.course[MOTION]
+    return beside
 
 
 def first_determined_sample(rig: Rig, drive: DriveInput) -> int | None:
@@ -279,7 +295,7 @@ def history(rig: Rig, ends: EndInputs, target_f_in_N: float | None, nodes: int) 
     From rest the drive moves beyond its first position and back; the distance determines the
     tension there, between those of contraction and loosening. It is found by bisection.
     """
-    if target_f_in_N is None or ends.boundary.drive == FORCE:
+    if target_f_in_N is None or ends.boundary.drive == FORCE or nodes == STATIC:
         return []
 
     def f_in(before: list[float]) -> float:

@@ -17,18 +17,16 @@ from tsas_cli.effects.force_sensor_gain_drift import drifted_gain
 from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
 from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.force_sensor_tilt import read_tilted
+from tsas_cli.effects.laws.drive_law import DriveLaw, drive_law_force
+from tsas_cli.effects.laws.load_law import LoadLaw, load_law_motion
 from tsas_cli.effects.position_sensor_gain import read_position
-from tsas_cli.effects.position_sensor_ripple import (
-    PositionSensorRipple,
-    read_rippled,
-    without_ripple,
-)
+from tsas_cli.effects.position_sensor_ripple import without_ripple
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.numerics.settling import lag_after
-from tsas_cli.physics.boundary import FORCE, Boundary
+from tsas_cli.numerics.stops import ELEMENTS, GAPS, yielded
+from tsas_cli.numerics.wave import Wave, rippled
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, Boundary
 from tsas_cli.physics.course import Output
-from tsas_cli.physics.end_laws import LAW_MEMORY, with_laws
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
@@ -66,38 +64,25 @@ def sensed(
     the motor's displacement, where it was recorded, shape (n,).
     """
     output = with_laws(output, time_s, rig, boundary, memory[:, OWN_MEMORY:], motor_mm)
-    f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
-    loops, tilts = rig.effects.force_sensor_hysteresis, rig.effects.force_sensor_tilt
-    if boundary.drive != FORCE:
-        if tilts.f_in_per_mm != 0.0:
-            f_in = tilted(f_in, tilts.f_in_per_mm, output.x_in)
-        if shares.f_in_of_f_out != 0.0:
-            f_in = f_in + with_crosstalk(0.0, 1.0, shares.f_in_of_f_out) * output.f_out
-        if loops.f_in_share != 0.0:
-            f_in = with_hysteresis(f_in, loops.f_in_share, loops.span_N, memory[0])
-    if boundary.load != FORCE:
-        if tilts.f_out_per_mm != 0.0:
-            f_out = tilted(f_out, tilts.f_out_per_mm, output.x_out)
-        if shares.f_out_of_f_in != 0.0:
-            f_out = f_out + with_crosstalk(0.0, 1.0, shares.f_out_of_f_in) * output.f_in
-        if loops.f_out_share != 0.0:
-            f_out = with_hysteresis(f_out, loops.f_out_share, loops.span_N, memory[1])
-    signals = [f_in, f_out, output.x_out]
+    effects, signals = rig.effects, [output.f_in, output.f_out, output.x_out]
+    loops = effects.force_sensor_hysteresis
+    drive = boundary.drive, output.x_in, output.f_out
+    load = boundary.load, output.x_out, output.f_in
+    for k, (given, position, other) in enumerate((drive, load)):
+        if given == FORCE:
+            continue
+        if effects.force_sensor_tilt[k] != 0.0:
+            signals[k] = read_tilted(signals[k], effects.force_sensor_tilt[k], position)
+        if effects.force_crosstalk[k] != 0.0:
+            signals[k] = with_crosstalk(signals[k], other, effects.force_crosstalk[k])
+        if loops[k] != 0.0:
+            signals[k] = with_hysteresis(signals[k], loops[k], loops.span_N, memory[k])
     if time_s is not None:
-        for k, lag_s in enumerate(rig.effects.sensor_lag):
+        for k, lag_s in enumerate(effects.sensor_lag):
             if lag_s > 0.0:
                 signals[k] = low_pass(signals[k], time_s, lag_s, memory[k])
     f_in, f_out, x_out = signals
     return output._replace(f_in=f_in, f_out=f_out, x_out=x_out)
-
-
-@kernel
-def tilted(forces: Floats, per_mm: float, positions: Floats) -> Floats:
-    """Return the readings of a sensor that tilts with the position [N]."""
-    out = np.empty(forces.size)
-    for i in range(forces.size):
-        out[i] = read_tilted(forces[i], per_mm, positions[i])
-    return out
 
 
 @kernel
@@ -140,12 +125,12 @@ def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -
 
     They are delayed, curved, scaled, shifted. Without times there is no delay, no drift.
     """
-    delayed = _delayed_by(values, time_s, _delay(channel, rig))
-    curvature, ripple = _curvature(channel, rig), _ripple(channel, rig)
-    if curvature != 0.0:
-        delayed = curved(delayed, curvature)
-    if ripple is not None:
-        delayed = with_wave(delayed, ripple)
+    k = CHANNELS.index(channel)
+    delayed = _delayed_by(values, time_s, rig.effects.channel_delay[k])
+    if channel == "x_out_mm" and not rig.effects.position_sensor_ripple.is_flat:
+        delayed = rippled(delayed, rig.effects.position_sensor_ripple)
+    elif channel != "x_out_mm" and rig.effects.force_sensor_curvature[k] != 0.0:
+        delayed = read_curved(delayed, rig.effects.force_sensor_curvature[k])
     return delayed * _gain(channel, time_s, rig) + _shift(channel, time_s, rig)
 
 
@@ -155,14 +140,14 @@ def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: R
     A low pass is inverted to first order in its time, by the rate of the signal: the exact inverse
     would multiply noise by the square of that time over the sampling period.
     """
+    k = CHANNELS.index(channel)
     delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, time_s, rig)
-    curvature, ripple = _curvature(channel, rig), _ripple(channel, rig)
-    if ripple is not None:
-        delayed = without_wave(delayed, ripple)
-    if curvature != 0.0:
-        delayed = uncurved(delayed, curvature)
-    signal = _delayed_by(delayed, time_s, -_delay(channel, rig))
-    lag_s = rig.effects.sensor_lag[CHANNELS.index(channel)]
+    if channel == "x_out_mm" and not rig.effects.position_sensor_ripple.is_flat:
+        delayed = without_wave(delayed, rig.effects.position_sensor_ripple)
+    elif channel != "x_out_mm" and rig.effects.force_sensor_curvature[k] != 0.0:
+        delayed = straightened(delayed, rig.effects.force_sensor_curvature[k])
+    signal = _delayed_by(delayed, time_s, -rig.effects.channel_delay[k])
+    lag_s = rig.effects.sensor_lag[k]
     if lag_s == 0.0 or time_s is None or signal.size < 2:
         return signal
     return signal + lag_s * np.gradient(signal, time_s)
@@ -175,102 +160,71 @@ def _delayed_by(values: Floats, time_s: Floats | None, delay_s: float) -> Floats
     return np.interp(time_s - delay_s, time_s, values)
 
 
-def _delay(channel: Channel, rig: Rig) -> float:
-    delays = rig.effects.channel_delay
-    return {
-        "f_in_N": delays.f_in_delay_s,
-        "f_out_N": delays.f_out_delay_s,
-        "x_out_mm": delays.x_out_delay_s,
-    }[channel]
-
-
-def _curvature(channel: Channel, rig: Rig) -> float:
-    if channel == "x_out_mm":
-        return 0.0
-    curves = rig.effects.force_sensor_curvature
-    return curves.f_in_per_N if channel == "f_in_N" else curves.f_out_per_N
-
-
-def _ripple(channel: Channel, rig: Rig) -> PositionSensorRipple | None:
-    ripple = rig.effects.position_sensor_ripple
-    there = channel == "x_out_mm" and (ripple.sine_mm != 0.0 or ripple.cosine_mm != 0.0)
-    return ripple if there else None
-
-
 def _gain(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     if channel == "x_out_mm":
         return read_position(1.0, rig.effects.position_sensor_gain.x_out_gain)
-    drifts, gain = rig.effects.force_sensor_gain_drift, 1.0
-    if channel == "f_out_N":
-        gain = read_gain(1.0, rig.effects.force_sensor_gain.f_out_gain)
-    rate = drifts.f_in_rate_per_s if channel == "f_in_N" else drifts.f_out_rate_per_s
-    if rate == 0.0 or time_s is None:
-        return gain
-    return drifting_gain(gain, rate, time_s)
+    gain = read_gain(1.0, rig.effects.force_sensor_gain.f_out_gain) if channel == "f_out_N" else 1.0
+    rate = rig.effects.force_sensor_gain_drift[CHANNELS.index(channel)]
+    return gain if rate == 0.0 or time_s is None else drifted_gain(gain, rate, time_s)
 
 
 def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     """Return the additive error: the zero of a displacement, offset and drift of a force."""
-    offset, drift = rig.effects.force_sensor_offset, rig.effects.force_sensor_drift
     if channel == "x_out_mm":
         return rig.x_out_zero_mm
-    here = offset.f_in_offset_N if channel == "f_in_N" else offset.f_out_offset_N
-    rate = drift.f_in_rate_N_per_s if channel == "f_in_N" else drift.f_out_rate_N_per_s
-    start = offset_reading(0.0, here)
-    if rate == 0.0 or time_s is None:
+    k, drift = CHANNELS.index(channel), rig.effects.force_sensor_drift
+    start = offset_reading(0.0, rig.effects.force_sensor_offset[k])
+    if drift[k] == 0.0 or time_s is None:
         return start
-    return drifting(start, rate, drift.settling_per_s, time_s)
+    return drift_reading(start, drift[k], drift.settling_per_s, time_s)
 
 
 @kernel
-def curved(forces: Floats, curvature: float) -> Floats:
-    """Return the readings of a curved scale [N]."""
-    out = np.empty(forces.size)
-    for i in range(forces.size):
-        out[i] = read_curved(forces[i], curvature)
-    return out
-
-
-@kernel
-def uncurved(readings: Floats, curvature: float) -> Floats:
-    """Return the forces of the readings of a curved scale [N]."""
-    out = np.empty(readings.size)
-    for i in range(readings.size):
-        out[i] = straightened(readings[i], curvature)
-    return out
-
-
-@kernel
-def with_wave(positions: Floats, ripple: PositionSensorRipple) -> Floats:
-    """Return the readings of a sensor that turns off its centre [mm]."""
-    out = np.empty(positions.size)
-    for i in range(positions.size):
-        out[i] = read_rippled(positions[i], ripple)
-    return out
-
-
-@kernel
-def without_wave(readings: Floats, ripple: PositionSensorRipple) -> Floats:
-    """Return the positions of the readings of such a sensor [mm]."""
+def without_wave(readings: Floats, ripple: Wave) -> Floats:
+    """Return the positions of the readings of a position sensor that turns off its centre [mm]."""
     out = np.empty(readings.size)
     for i in range(readings.size):
         out[i] = without_ripple(readings[i], ripple)
     return out
 
 
-@kernel
-def drifting_gain(gain: float, rate: float, time_s: Floats) -> Floats:
-    """Return a gain that drifts, at each time [1]."""
-    out = np.empty(time_s.size)
-    for i in range(time_s.size):
-        out[i] = drifted_gain(gain, rate, time_s[i])
-    return out
+NO_DRIVE_LAW, NO_LOAD_LAW = DriveLaw(), LoadLaw()
+LAW_MEMORY = 2 + ELEMENTS + GAPS
 
 
-@kernel
-def drifting(start: float, rate: float, settling_per_s: float, time_s: Floats) -> Floats:
-    """Return an offset that drifts, at each time [N]."""
-    out = np.empty(time_s.size)
-    for i in range(time_s.size):
-        out[i] = drift_reading(start, rate, settling_per_s, time_s[i])
-    return out
+def with_laws(
+    output: Output,
+    time_s: Floats | None,
+    rig: Rig,
+    boundary: Boundary,
+    memory: Floats,
+    motor_mm: Floats | None,
+) -> Output:
+    """Return an output with the laws of unnamed origin at both ends, but for a given quantity.
+
+    `memory` has a row for each of f_in, f_out and x_out: time, input and states of the elements of
+    the law that acts on it, NaN before the first sample, shape (3, LAW_MEMORY), updated in place.
+    """
+    effects, f_in, x_out = rig.effects, output.f_in, output.x_out
+    if boundary.drive != FORCE and effects.drive_law != NO_DRIVE_LAW:
+        moved = output.x_in if motor_mm is None else motor_mm
+        speed = backward_rate(moved, time_s, memory[0])
+        f_in = f_in + drive_law_force(
+            effects.drive_law, output.x_in, moved, speed, f_in, memory[0, 1:]
+        )
+    if boundary.load != DISPLACEMENT and effects.load_law != NO_LOAD_LAW:
+        x_out = x_out + load_law_motion(effects.load_law, x_out, output.f_out, memory[2, 1:])
+    return output._replace(f_in=f_in, x_out=x_out)
+
+
+def backward_rate(values: Floats, time_s: Floats | None, memory: Floats) -> Floats:
+    """Return the mean rate of a signal since the sample before, shape (n,), 0 where there is none.
+
+    `memory` has time and value of the sample before; the time is updated in place.
+    """
+    if time_s is None:
+        return np.zeros(values.size)
+    before, memory[0] = memory[0], time_s[-1]
+    changes, steps_s = np.diff(values, prepend=memory[1]), np.diff(time_s, prepend=before)
+    rate: Floats = np.nan_to_num(changes / steps_s, nan=0.0, posinf=0.0, neginf=0.0)
+    return rate

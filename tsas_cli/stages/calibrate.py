@@ -11,7 +11,7 @@ from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.identification.stiffness import Slope
+from tsas_cli.identification.transfer import Slope
 from tsas_cli.physics.closed_form.capstan import (
     dead_band_stiffness,
     slip_stiffness,

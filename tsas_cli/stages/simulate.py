@@ -6,8 +6,7 @@ from typing import Literal
 
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import compare
-from tsas_cli.identification.long_runs import open_long
-from tsas_cli.identification.long_simulation import simulate_long
+from tsas_cli.identification.long_runs import open_long, simulate_long
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import model_of, source_of, write_model
 from tsas_cli.identification.phases import segment, segment_records

@@ -20,7 +20,7 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.path import DrivePath
 from tsas_cli.controllers.sliding_mode import SlidingSettings
 from tsas_cli.effects import LAWS, Effects
-from tsas_cli.identification.dynamic_notes import unstable_sliding
+from tsas_cli.identification.comparison import unstable_sliding
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
 from tsas_cli.physics.bristles import Bristles

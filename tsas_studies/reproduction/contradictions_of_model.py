@@ -5,7 +5,8 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.effects import Effects
+from tsas_cli.effects.free_tendon import FreeTendon
 from tsas_cli.paper import Paper
 from tsas_cli.physics.closed_form.capstan import slip_stiffness
 from tsas_cli.physics.lugre.stability import Sliding, growth_rate

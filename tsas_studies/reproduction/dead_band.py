@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tsas_cli.physics.closed_form.capstan import dead_band_width
-from tsas_cli.physics.compliances import compliance_at_drive
 from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.mesh import compliance_at_drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats

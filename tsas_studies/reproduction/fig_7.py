@@ -6,7 +6,8 @@ makes recordings of the same rig, and `tsas calibrate`'s fit is made of them.
 
 import numpy as np
 
-from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.effects import Effects
+from tsas_cli.effects.free_tendon import FreeTendon
 from tsas_cli.paper import Paper, Printed
 from tsas_cli.physics.closed_form.capstan import slip_stiffness
 from tsas_cli.physics.rig import Rig

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
+from tsas_cli.effects import Effects
+from tsas_cli.effects.stribeck_friction import StribeckFriction
+from tsas_cli.effects.viscous_friction import ViscousFriction
 from tsas_cli.paper import Paper
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness

@@ -5,16 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import FREE, GROUP_A, Profile, pulled_through, wrap_of
+from tests.physics.references import FREE, GROUP_A, Profile, branches, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.closed_form.branches import (
-    DEPTH,
-    at_rest_before,
-    branches,
-    from_rest,
-    strokes,
-    with_room,
-)
+from tsas_cli.physics.closed_form.branches import from_rest, strokes
 from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)
@@ -113,12 +106,6 @@ def test_room_for_strokes_is_that_of_turns_and_rests(motion, count):
     """The way to the first sample, the first stroke, and one for each change after it."""
     x = np.array(motion)
     assert strokes(x) == count
-    state = at_rest_before(x, 25.0)
-    assert state.now.tolist() == [0.0, 25.0, 25.0, 0.0, 0.0, 0.0, 0.0]
-    assert state.reversal_x.size == state.reversal_T.size == count
-    state.now[DEPTH] = 2.0
-    roomy = with_room(state, np.array([1.0, 0.0, 1.0]))
-    assert roomy.reversal_x.size == roomy.reversal_T.size == 2 + 3
 
 
 def test_what_is_along_the_tendon_after_a_few_strokes():

@@ -5,10 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import FREE, GROUP_A, pulled_through, wrap_of
+from tests.physics.references import FREE, GROUP_A, branches, pulled_through, static_model, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.closed_form.static import static_model
 
 UP = math.exp(wrap_of(GROUP_A))
 

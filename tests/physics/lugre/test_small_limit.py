@@ -30,7 +30,7 @@ def apart(exact, found):
 
 def both(rig, drive):
     """Return both answers, and how far they are apart."""
-    slip = simulate(rig, drive, on_mesh=True, nodes=N)
+    slip = simulate(rig, drive, nodes=N)
     lugre = simulate(rig, drive, "lugre", nodes=N, tolerance=2e-4)
     assert not np.any(lugre.phase == UNCONVERGED)
     return slip, lugre, apart(slip, lugre)
@@ -67,7 +67,7 @@ def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
 
 
 def test_what_is_given_at_the_ends():
-    slip = simulate(STIFF, DriveInput(MOTION, time_s=TIME_S), on_mesh=True, nodes=N)
+    slip = simulate(STIFF, DriveInput(MOTION, time_s=TIME_S), nodes=N)
     for given in (
         {"values": MOTION, "load": "force", "load_values": slip.f_out_N},
         {"values": MOTION, "load": "displacement", "load_values": slip.x_out_mm},
@@ -97,7 +97,7 @@ def test_a_run_that_begins_in_the_middle_of_a_stroke():
 
 def test_along_the_tendon_it_is_the_slip_chain():
     at, drive = np.array([3, 11, 22, 23, 30, 40]), DriveInput(MOTION, time_s=TIME_S)
-    slip = simulate(STIFF, drive, on_mesh=True, nodes=N, looked_at=at).frames
+    slip = simulate(STIFF, drive, nodes=N, looked_at=at).frames
     lugre = simulate(STIFF, drive, "lugre", nodes=N, looked_at=at).frames
     np.testing.assert_allclose(lugre.tension_N, slip.tension_N, atol=0.02)
     np.testing.assert_array_equal(lugre.slip, slip.slip)

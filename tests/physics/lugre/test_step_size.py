@@ -8,7 +8,7 @@ from tests.physics.references import GROUP_A, LOADED_BY_SPRING
 from tsas_cli.physics.lugre.ends import EndState, StepEnds
 from tsas_cli.physics.lugre.start import lugre_laws
 from tsas_cli.physics.lugre.state import Formula, Given
-from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor, tolerances_of
+from tsas_cli.physics.lugre.step import Tolerances, fit_to_reversal, step_factor, tolerances_of
 
 
 @pytest.mark.parametrize(

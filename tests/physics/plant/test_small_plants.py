@@ -102,7 +102,7 @@ def test_a_path_to_a_force_gives_that_force(name):
     rig = with_values(GROUP_A, STARTS[name])
     time_s, path, tension = inverted(rig)
     still = with_values(rig, {"viscous_friction.coefficient_N_s_per_mm": 0.0})
-    there = simulate(still, DriveInput(path, time_s=time_s), on_mesh=True, nodes=N)
+    there = simulate(still, DriveInput(path, time_s=time_s), nodes=N)
     np.testing.assert_allclose(there.f_out_N, WANTED, atol=1e-5)
     np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
     moved = np.abs(path - inverted(GROUP_A)[1]).max()

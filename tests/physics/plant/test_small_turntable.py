@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tests.physics.references import DRIVEN_BY_FORCE, GROUP_A
-from tsas_cli.effects.drive_ripple import DriveRipple
+from tsas_cli.numerics.wave import Wave
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.plant.slip_plant import step_plant
@@ -22,8 +22,15 @@ from tsas_cli.physics.plant.turntable import (
     turntable_at,
 )
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws, with_drive
-from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Moment
+from tsas_cli.physics.slip.state import (
+    POSITION,
+    SLIP,
+    TENSION,
+    Moment,
+    chain_at_rest,
+    slip_laws,
+    with_drive,
+)
 
 F0, H = 25.0, 0.01
 ACTUATOR = Actuator(0.024, 150.0, 6e-3, 0.4, 0.02, 3000.0)
@@ -139,7 +146,7 @@ def test_a_spring_more_at_the_tendons_end_changes_nothing_else():
 )
 def test_the_ripples_tangent_has_its_value_and_slope(sine, cosine):
     w, x = 2.0 * math.pi / 0.9, 0.35
-    value, slope = ripple_tangent(x, DriveRipple(sine, cosine, 0.9))
+    value, slope = ripple_tangent(x, Wave(sine, cosine, 0.9))
     assert slope == pytest.approx(
         1.0 + w * (sine * math.cos(w * x) - cosine * math.sin(w * x)), abs=1e-3
     )

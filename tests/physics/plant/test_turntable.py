@@ -21,8 +21,14 @@ from tsas_cli.physics.plant.turntable import (
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.outputs import tension_at_sensor
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import COMPLIANCE, POSITION, TENSION, Moment
+from tsas_cli.physics.slip.state import (
+    COMPLIANCE,
+    POSITION,
+    TENSION,
+    Moment,
+    chain_at_rest,
+    slip_laws,
+)
 
 K = 2.0 * math.pi * 27.1 / (60.0 * 120.0)
 DRIVE = Actuator(K, 52.0, 0.1296 / 27.1**2, 0.007, 0.002, 3000.0)
@@ -104,7 +110,7 @@ def test_a_speed_step_without_friction_is_of_second_order(drive, spring):
 def moved_likewise(run, rig=GROUP_A):
     """Return what the model says where the drive moves the tendon's end as in a run."""
     drive = DriveInput(np.append(0.0, run.end), time_s=np.append(0.0, run.time_s))
-    return simulate(rig, drive, on_mesh=True, nodes=N)
+    return simulate(rig, drive, nodes=N)
 
 
 MOTION = there_and_back(2000.0, -600.0, 800.0, -1500.0, hold=0.05)

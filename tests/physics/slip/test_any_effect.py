@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from tests.physics.references import branches, slip_chain
 from tests.physics.test_any_rig import any_motion, any_rig, blocks
-from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import slip_chain
 
 SEEDS = range(300)
 MOST_UNSETTLED = 1e-4  # of the samples; with friction alone it is none (test_any_rig)

@@ -9,10 +9,10 @@ import pytest
 from tests.physics.references import (
     FREE,
     GROUP_A,
+    branches,
     follow,
     through,
 )
-from tsas_cli.physics.closed_form.branches import branches
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.physics.references import FREE, GROUP_A, course_of, follow, wrap_of
+from tests.physics.references import FREE, GROUP_A, course_of, follow, slip_chain, wrap_of
 from tests.physics.slip.test_small_chains import SPRINGY, N, gives, hold_everywhere
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.phases import UNCONVERGED
-from tsas_cli.physics.slip.chain import slip_chain
 from tsas_studies.challenge.rig import tendon
 from tsas_studies.challenge.rig.motions import Motion
 

@@ -15,6 +15,7 @@ from tests.physics.references import (
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
     course_of,
+    slip_chain,
     through,
     wrap_of,
 )
@@ -33,7 +34,7 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import follow, initial_state, slip_chain
+from tsas_cli.physics.slip.chain import follow, initial_state
 from tsas_cli.physics.slip.state import POSITION, SECOND, TENSION
 
 N = 3

@@ -17,12 +17,13 @@ from tests.physics.references import (
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
     course_of,
+    slip_chain,
     wrap_of,
 )
 from tsas_cli.effects import Effects
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import moment, rest_after, slip_chain
+from tsas_cli.physics.slip.chain import moment, rest_after
 
 N = 3
 A = wrap_of(GROUP_A)

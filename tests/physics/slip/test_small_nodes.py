@@ -13,8 +13,7 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
 from tsas_cli.physics.slip.ends import update_ends
 from tsas_cli.physics.slip.nodes import breakaway, set_friction, slips_backwards, update_travel
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import Moment
+from tsas_cli.physics.slip.state import Moment, chain_at_rest, slip_laws
 
 N = 3
 F0, KL = 25.0, 1.579

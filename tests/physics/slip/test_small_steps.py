@@ -14,6 +14,7 @@ from tests.physics.references import (
     at,
     course_of,
     follow,
+    slip_chain,
 )
 from tests.physics.slip.test_small_chains import SPRINGY
 from tsas_cli.physics.course import Losses
@@ -22,19 +23,11 @@ from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
-from tsas_cli.physics.slip.chain import (
-    ChainEnds,
-    between,
-    go_slack,
-    initial_state,
-    rest_after,
-    slip_chain,
-)
+from tsas_cli.physics.slip.chain import ChainEnds, between, go_slack, initial_state, rest_after
 from tsas_cli.physics.slip.chain import follow as go_on
 from tsas_cli.physics.slip.chain import moment as moment_of
 from tsas_cli.physics.slip.outputs import phase_of, tension_at_sensor
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import Moment
+from tsas_cli.physics.slip.state import Moment, chain_at_rest, slip_laws
 
 F0, KL = 25.0, 1.579
 NOW = Moment(0.9, 0.4, Losses(0.6, 0.45, 1.2, 2.0), math.inf)

@@ -12,8 +12,8 @@ from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution
+from tsas_cli.identification.fit_problem import unknown_of
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.baselines import information_criterion, write_diagnosis

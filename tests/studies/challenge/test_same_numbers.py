@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tsas_cli.physics.response import DriveInput
+from tsas_cli.physics.response import NODES, DriveInput
 from tsas_cli.physics.response import simulate as run_model
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_studies.challenge.bench import LOOSE_SHARE, RUNS, motion
@@ -62,7 +62,7 @@ def of_the_rig(rig, sensors):
 
 def of_the_model(rig, columns):
     drive = DriveInput(columns["x_in_mm"], time_s=columns["time_s"], session_s=SESSION_S)
-    response = run_model(rig, drive, on_mesh=True)
+    response = run_model(rig, drive, nodes=NODES)
     return {channel: getattr(response, channel) for channel in CHANNELS}
 
 

@@ -18,13 +18,13 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.capstan import mean_tension_ratio, tension_ratio
-from tsas_cli.physics.compliances import (
+from tsas_cli.physics.course import Tensions
+from tsas_cli.physics.frames import Frames, is_next
+from tsas_cli.physics.mesh import (
     compliance_at_drive,
     compliance_at_load,
     sheath_compliance,
 )
-from tsas_cli.physics.course import Tensions
-from tsas_cli.physics.frames import Frames, is_next
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
@@ -93,27 +93,6 @@ def strokes(x_in: Floats) -> int:
     return count
 
 
-def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
-    """Return the tensions for a motion of the drive that starts at rest at x = 0 [mm].
-
-    Parameters
-    ----------
-    x_in
-        Displacement of the drive from the state of uniform preload, shape (n,) [mm].
-    rig
-        The rig; its sensor zeros are not used.
-    frames
-        Written over with the profile along the tendon, on any number of elements.
-
-    Returns
-    -------
-    f_in, f_out, phase
-        Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
-        in loosening, 0 in a dead band, 2 where it hangs slack.
-    """
-    return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)
-
-
 # State at the last sample: position [mm] and both tensions [N], direction of the last motion,
 # depth of the stack of reversals, its base, and the phase.
 LAST_X, LAST_F_IN, LAST_F_OUT, DIRECTION, DEPTH, BASE, PHASE = range(7)
@@ -128,27 +107,39 @@ class BranchState(NamedTuple):
 
 
 @kernel
-def at_rest_before(x_in: Floats, preload: float) -> BranchState:
-    """Return the state of uniform preload, with room for the reversals of a motion."""
+def branches_at_rest(preload: float) -> BranchState:
+    """Return the state of uniform preload."""
     now = np.zeros(7)
     now[LAST_F_IN] = now[LAST_F_OUT] = preload
     now[BASE] = REST
-    room = strokes(x_in)  # growing it in the loop would cost 20 ns a sample
-    return BranchState(now, np.empty(room), np.empty(room))
+    return BranchState(now, np.empty(0), np.empty(0))
 
 
 def with_room(state: BranchState, x_in: Floats) -> BranchState:
-    """Return a copy of a state with room for the reversals of more motion."""
+    """Return a copy of a state with room for the reversals of a motion.
+
+    Growing it in the loop of `follow_branches` would cost 20 ns a sample.
+    """
     more, depth = np.empty(strokes(x_in)), int(state.now[DEPTH])
-    reversal_x, reversal_T = (
-        np.concatenate((t[:depth], more)) for t in (state.reversal_x, state.reversal_T)
-    )
+    reversal_x, reversal_T = (np.concatenate((row[:depth], more)) for row in state[1:])
     return BranchState(state.now.copy(), reversal_x, reversal_T)
 
 
 @kernel
 def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None) -> Tensions:
-    """Return the tensions for a motion from a state, which is updated in place; see `branches`."""
+    """Return the tensions for a motion from a state, which is updated in place.
+
+    Parameters
+    ----------
+    x_in
+        Displacement of the drive from the state of uniform preload, shape (n,) [mm].
+    rig
+        The rig; its sensor zeros are not used.
+    state
+        The state before the motion, `with_room` for it.
+    frames
+        Written over with the profile along the tendon, on any number of elements.
+    """
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
     c = compliance_at_drive(rig)

@@ -12,8 +12,8 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.branches import SMALLEST_WRAP, full_slip
 from tsas_cli.physics.closed_form.capstan import dead_band_stiffness, tension_ratio
-from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.course import Tensions
+from tsas_cli.physics.mesh import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
@@ -27,17 +27,9 @@ class StaticState(NamedTuple):
     f_out: float
 
 
-def static_model(x_in: Floats, rig: Rig) -> Tensions:
-    """Return the tensions for a motion of the drive from rest at x = 0 [mm], with a spring load.
-
-    Parameters and results are those of `branches`.
-    """
-    return follow_static(x_in, rig, StaticState(0.0, rig.preload_N, rig.preload_N))[0]
-
-
 @kernel
 def follow_static(x_in: Floats, rig: Rig, state: StaticState) -> tuple[Tensions, StaticState]:
-    """Return the tensions for a motion from a state, and the final state."""
+    """Return the tensions for a motion of the drive [mm] from a state, and the final state."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     free = compliance_at_drive(rig)
     stiffness = dead_band_stiffness(wrap, 1.0, 1.0 / sheath_compliance(rig))

@@ -36,11 +36,23 @@ from tsas_cli.physics.lugre.frames import (
     write_slack_frames,
 )
 from tsas_cli.physics.lugre.input import next_reversal, step_at
-from tsas_cli.physics.lugre.slack import end_of_slack, is_slack, without_tension, write_slack
+from tsas_cli.physics.lugre.slack import (
+    end_of_slack,
+    is_slack,
+    load_position,
+    slack_state,
+    write_slack,
+)
 from tsas_cli.physics.lugre.start import clear_state, lugre_laws, start_at_rest
 from tsas_cli.physics.lugre.state import ROWS, LugreLaws
-from tsas_cli.physics.lugre.step import accept_step, bdf2
-from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
+from tsas_cli.physics.lugre.step import (
+    accept_step,
+    bdf2,
+    fit_to_reversal,
+    step_factor,
+    tolerances_of,
+    try_step,
+)
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import Rig
@@ -89,7 +101,7 @@ def lugre_chain(
     Parameters
     ----------
     course
-        Inputs of the tendon, with the rows of `course`, shape (8, m), and increasing times;
+        Inputs of the tendon, with the rows of `course`, shape (11, m), and increasing times;
         friction without its dependence on speed, which each lump has by itself.
     start
         Positions of the nodes and tensions of the segments behind them at the first sample, shape
@@ -108,7 +120,7 @@ def lugre_chain(
     Returns
     -------
     output
-        As that of `slip_chain`; where the run is aborted, the rest has phase 3 and the last values.
+        As that of the slip chain; where a run is aborted, the rest has phase 3 and the last values.
     progress
         Statistics of the run.
     """
@@ -177,7 +189,7 @@ def lugre_chain(
             write_slack(columns, phase, Samples(since, k + 1), s, course, laws)
             lands = True
             if k < m - 1:
-                start = without_tension(s, course, k, t, laws)
+                start = slack_state(s, load_position(course, k, t, laws), laws)
                 ends = start_at_rest(s, start, course, k, t, laws)
             if frames is not None:
                 written = write_slack_frames(frames, written, k)

@@ -5,18 +5,9 @@ from typing import NamedTuple
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import FORCE, SPRING, share_before_sensor
 from tsas_cli.physics.course import DRIVE, LOAD, TIME
+from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.input import Cubic, hermite
-from tsas_cli.physics.lugre.state import (
-    FRICTION,
-    POSITION_HISTORY,
-    POSITION_NEW,
-    RATE,
-    STIFFNESS,
-    TENSION,
-    Given,
-    LugreLaws,
-    Step,
-)
+from tsas_cli.physics.lugre.state import Given, LugreLaws, Step
 from tsas_cli.support.arrays import Floats
 
 X_IN, X_OUT, F_IN, F_OUT = range(4)  # rows of the columns
@@ -59,22 +50,22 @@ def ends_after(s: Floats, step: Step, laws: LugreLaws) -> StepEnds:
     """Return the ends after a step; write the nodes' positions to POSITION_NEW."""
     n, last = laws.n, laws.n + 1
     for i in range(n + 2):
-        s[POSITION_NEW + i] = s[POSITION_HISTORY + i] + step.gh * s[RATE + i]
+        s[at.POSITION_NEW + i] = s[at.POSITION_HISTORY + i] + step.gh * s[at.RATE + i]
     drive = EndState(
         step.drive,
-        s[POSITION_NEW],
-        s[RATE],
-        s[TENSION],
-        s[STIFFNESS] * (s[RATE] - s[RATE + 1]),
+        s[at.POSITION_NEW],
+        s[at.RATE],
+        s[at.TENSION],
+        s[at.STIFFNESS] * (s[at.RATE] - s[at.RATE + 1]),
     )
     load = EndState(
         step.load,
-        s[POSITION_NEW + last] + step.frame.value,
-        s[RATE + last] + step.frame.rate,
-        s[TENSION + n],
-        s[STIFFNESS + n] * (s[RATE + n] - s[RATE + last]),
+        s[at.POSITION_NEW + last] + step.frame.value,
+        s[at.RATE + last] + step.frame.rate,
+        s[at.TENSION + n],
+        s[at.STIFFNESS + n] * (s[at.RATE + n] - s[at.RATE + last]),
     )
-    return StepEnds(drive, load, s[FRICTION + last])
+    return StepEnds(drive, load, s[at.FRICTION + last])
 
 
 @kernel

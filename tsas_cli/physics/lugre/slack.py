@@ -83,12 +83,6 @@ def write_slack(
 
 
 @kernel
-def without_tension(s: Floats, course: Floats, k: int, t: float, laws: LugreLaws) -> Floats:
-    """Return the state of rest of a tendon without tension; see `slack_state`."""
-    return slack_state(s, load_position(course, k, t, laws), laws)
-
-
-@kernel
 def slack_state(s: Floats, load: float, laws: LugreLaws) -> Floats:
     """Return a taut tendon without tension up to the load's position, shape (2, n + 2)."""
     start = np.zeros((2, laws.n + 2))

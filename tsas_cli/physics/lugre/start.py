@@ -6,30 +6,11 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import SPRING, Boundary, DriveEnd, drive_end, load_end
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
 from tsas_cli.physics.course import DRIVE
+from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.balance import balance, set_limits
 from tsas_cli.physics.lugre.ends import StepEnds, ends_after
 from tsas_cli.physics.lugre.input import step_at, value_at
-from tsas_cli.physics.lugre.state import (
-    DAMPING,
-    DEFLECTION,
-    DEFLECTION_HISTORY,
-    LIMIT,
-    LOAD_STATE,
-    LOAD_STATE_HISTORY,
-    POSITION,
-    POSITION_HISTORY,
-    RATE,
-    RESIDUAL,
-    ROWS,
-    SPEED,
-    SPEED_HISTORY,
-    STIFFNESS,
-    TENSION_HISTORY,
-    TENSION_SLOPE,
-    LugreLaws,
-    Lump,
-    Step,
-)
+from tsas_cli.physics.lugre.state import ROWS, LugreLaws, Lump, Step
 from tsas_cli.physics.lugre.step import bdf2
 from tsas_cli.physics.mesh import PITCH, segment_compliances
 from tsas_cli.physics.rig import Rig
@@ -93,7 +74,7 @@ def set_segments(s: Floats, rig: Rig, n: int) -> None:
     """Set stiffness and damping of the tendon's segments."""
     stiffness, damping = segments(rig, n)
     for j in range(n + 1):
-        s[STIFFNESS + j], s[DAMPING + j] = stiffness[j], damping[j]
+        s[at.STIFFNESS + j], s[at.DAMPING + j] = stiffness[j], damping[j]
 
 
 @kernel
@@ -116,21 +97,25 @@ def rest_at(s: Floats, start: Floats, step: Step, laws: LugreLaws) -> StepEnds:
     """
     last = laws.n + 1
     for i in range(laws.n + 2):
-        s[POSITION + i] = s[POSITION_HISTORY + i] = start[0, i] - step.frame.value
-        s[TENSION_HISTORY + i], s[TENSION_SLOPE + i] = start[1, i], 0.0
-        s[SPEED + i] = s[SPEED_HISTORY + i] = s[RATE + i] = s[DEFLECTION_HISTORY + i] = 0.0
-    s[LOAD_STATE_HISTORY] = s[LOAD_STATE_HISTORY + 1] = s[LOAD_STATE + 1] = 0.0
+        s[at.POSITION + i] = s[at.POSITION_HISTORY + i] = start[0, i] - step.frame.value
+        s[at.TENSION_HISTORY + i], s[at.TENSION_SLOPE + i] = start[1, i], 0.0
+        s[at.SPEED + i] = s[at.SPEED_HISTORY + i] = s[at.RATE + i] = s[
+            at.DEFLECTION_HISTORY + i
+        ] = 0.0
+    s[at.LOAD_STATE_HISTORY] = s[at.LOAD_STATE_HISTORY + 1] = s[at.LOAD_STATE + 1] = 0.0
     balance(s, step, laws)
     element_N = laws.load.hysteresis.force_N if laws.load.given == SPRING else 0.0
-    s[LOAD_STATE] = min(max(s[RESIDUAL + last], -element_N), element_N)  # before the guide
+    s[at.LOAD_STATE] = min(max(s[at.RESIDUAL + last], -element_N), element_N)  # before the guide
     for i in range(1, laws.n + 1):
-        s[DEFLECTION_HISTORY + i] = s[RESIDUAL + i]  # its sign decides between the limits
+        s[at.DEFLECTION_HISTORY + i] = s[at.RESIDUAL + i]  # its sign decides between the limits
     set_limits(s, step, laws)
     for i in range(1, laws.n + 1):
-        share = min(max(s[RESIDUAL + i] / s[LIMIT + i], -1.0), 1.0)
-        s[DEFLECTION + i] = (
-            s[RESIDUAL + i] / laws.lump.bristle.stiffness + share * laws.lump.bristle.travel
+        share = min(max(s[at.RESIDUAL + i] / s[at.LIMIT + i], -1.0), 1.0)
+        s[at.DEFLECTION + i] = (
+            s[at.RESIDUAL + i] / laws.lump.bristle.stiffness + share * laws.lump.bristle.travel
         )
-    s[DEFLECTION] = s[RESIDUAL] / laws.end_bristle.stiffness
-    s[DEFLECTION + last] = (s[RESIDUAL + last] - s[LOAD_STATE]) / laws.end_bristle.stiffness
+    s[at.DEFLECTION] = s[at.RESIDUAL] / laws.end_bristle.stiffness
+    s[at.DEFLECTION + last] = (
+        s[at.RESIDUAL + last] - s[at.LOAD_STATE]
+    ) / laws.end_bristle.stiffness
     return ends_after(s, step, laws)

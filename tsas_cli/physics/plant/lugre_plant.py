@@ -20,7 +20,8 @@ from tsas_cli.physics.boundary import (
     share_before_sensor,
     with_spring,
 )
-from tsas_cli.physics.ends import losses_without_speed
+from tsas_cli.physics.ends import losses_at
+from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.balance import balance_drive
 from tsas_cli.physics.lugre.ends import EndState, StepEnds, ends_after
 from tsas_cli.physics.lugre.input import lump_share
@@ -33,27 +34,16 @@ from tsas_cli.physics.lugre.start import (
     set_segments,
     with_drive,
 )
-from tsas_cli.physics.lugre.state import (
-    DEFLECTION,
-    DEFLECTION_HISTORY,
-    DEFLECTION_NEW,
-    DIAGONAL,
-    FRICTION,
-    POSITION,
-    POSITION_HISTORY,
-    RATE,
-    RESIDUAL,
-    ROWS,
-    SPEED,
-    SPEED_HISTORY,
-    TENSION,
-    TENSION_SLOPE,
-    Given,
-    LugreLaws,
-    Step,
+from tsas_cli.physics.lugre.state import ROWS, Given, LugreLaws, Step
+from tsas_cli.physics.lugre.step import (
+    MOST_ITERATIONS,
+    accept_step,
+    bdf2,
+    fit_to_reversal,
+    step_factor,
+    tolerances_of,
+    try_step,
 )
-from tsas_cli.physics.lugre.step import MOST_ITERATIONS, accept_step, bdf2
-from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.plant.turntable import (
     DriveStep,
@@ -98,7 +88,7 @@ def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> Lu
         start[0, j], start[1, j] = chain[slip.POSITION + j], chain[slip.TENSION + j]
     step = step_of_rest(f_in, 0.0, start[0, 0], rig, n)
     ends = rest_at(s, start, step, laws)
-    if s[POSITION] < taut_position(s, step, laws):
+    if s[at.POSITION] < taut_position(s, step, laws):
         return slack_tendon(step, laws)
     return restarted(ends, True)
 
@@ -125,7 +115,7 @@ def step_lumped_plant(
     Returns the turntable, the tendon, and whether its steps converged within their error. Where
     Newton's method fails the tendon lags until the next step.
     """
-    p, h = s[POSITION], step.h
+    p, h = s[at.POSITION], step.h
     spring = spring_of(table, p, rig, step)
     given = step_of_rest(spring.force, step.time_s, p, rig, laws.n)
     if tendon.touched != spring.touches and not tendon.slack:
@@ -146,12 +136,12 @@ def step_lumped_plant(
     if not spring.touches:
         f_in += tendon.ends.drive.tension - tension
     else:
-        if tendon.ends.drive.tension < 0.0 and s[POSITION] <= taut_position(s, given, laws):
-            s[POSITION] = (given.drive.value - s[FRICTION]) / driven.drive.spring_N_per_mm
+        if tendon.ends.drive.tension < 0.0 and s[at.POSITION] <= taut_position(s, given, laws):
+            s[at.POSITION] = (given.drive.value - s[at.FRICTION]) / driven.drive.spring_N_per_mm
             tendon = slack_tendon(given, laws)
         if arrived:
-            x, f_in = turntable_at(s[POSITION], spring)
-    return advance_turntable(table, x, f_in, (s[POSITION] - p) / h, h), tendon, solved
+            x, f_in = turntable_at(s[at.POSITION], spring)
+    return advance_turntable(table, x, f_in, (s[at.POSITION] - p) / h, h), tendon, solved
 
 
 @kernel
@@ -193,23 +183,27 @@ def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[Lumped
 
     Returns the tendon and whether the end's position converged.
     """
-    position, deflection = s[POSITION], s[DEFLECTION]
-    s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = position, deflection, 0.0
-    s[SPEED_HISTORY] = s[SPEED]
-    s[TENSION] = s[TENSION_SLOPE] = 0.0
+    position, deflection = s[at.POSITION], s[at.DEFLECTION]
+    s[at.POSITION_HISTORY], s[at.DEFLECTION_HISTORY], s[at.RATE] = position, deflection, 0.0
+    s[at.SPEED_HISTORY] = s[at.SPEED]
+    s[at.TENSION] = s[at.TENSION_SLOPE] = 0.0
     step, solved = with_drive_force(step, step.drive.value, h), False
     for _ in range(MOST_ITERATIONS):
         balance_drive(s, step, laws)
-        solved = abs(s[RESIDUAL]) <= 1e-9 * laws.preload_N
+        solved = abs(s[at.RESIDUAL]) <= 1e-9 * laws.preload_N
         if solved:
             break
-        s[RATE] += s[RESIDUAL] / s[DIAGONAL]
-    s[POSITION], s[SPEED], s[DEFLECTION] = position + h * s[RATE], s[RATE], s[DEFLECTION_NEW]
-    if s[POSITION] <= taut_position(s, step, laws):
+        s[at.RATE] += s[at.RESIDUAL] / s[at.DIAGONAL]
+    s[at.POSITION], s[at.SPEED], s[at.DEFLECTION] = (
+        position + h * s[at.RATE],
+        s[at.RATE],
+        s[at.DEFLECTION_NEW],
+    )
+    if s[at.POSITION] <= taut_position(s, step, laws):
         return slack_tendon(step, laws), solved
     start = slack_state(s, unloaded_load(step.lost_N, laws), laws)
     ends = rest_at(s, start, with_drive_force(step, 0.0, NO_TIME_S), laws)
-    s[DEFLECTION] = deflection
+    s[at.DEFLECTION] = deflection
     return restarted(ends, True), True
 
 
@@ -231,7 +225,7 @@ def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
 @kernel
 def step_of_rest(force: float, time_s: float, position: float, rig: Rig, n: int) -> Step:
     """Return a step of zero length with a force at the drive [N], which is at a position [mm]."""
-    losses = losses_without_speed(time_s, position, 0.0, rig)
+    losses = losses_at(time_s, position, 0.0, 0.0, rig)
     pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
     none = Given(0.0, 0.0)
     return Step(NO_TIME_S, Given(force, 0.0), none, none, pulled, released, losses.preload_N)

@@ -11,18 +11,10 @@ from tsas_cli.physics.plant.turntable import (
     turntable_at,
 )
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.chain import advance, go_slack
 from tsas_cli.physics.slip.ends import drive_tangent, update_end_speeds
-from tsas_cli.physics.slip.start import with_drive
-from tsas_cli.physics.slip.state import (
-    END_SPEED,
-    POSITION,
-    POSITION_BEFORE,
-    SLIP,
-    TENSION,
-    Moment,
-    SlipLaws,
-)
+from tsas_cli.physics.slip.state import Moment, SlipLaws, with_drive
 from tsas_cli.support.arrays import Floats
 
 
@@ -34,10 +26,10 @@ def step_plant(
 
     Returns the turntable, the moment of the chain after the step, and whether it converged.
     """
-    p = chain[POSITION]
+    p = chain[at.POSITION]
     spring = spring_of(table, p, rig, step)
     converged, now, x, f_in = True, before, spring.x, table.f_in
-    mass_speed = chain[END_SPEED]
+    mass_speed = chain[at.END_SPEED]
     if spring.touches:
         losses = losses_at(step.time_s, p, table.speed, 0.0, rig)
         now = Moment(spring.force, 0.0, losses, step.h)
@@ -45,14 +37,14 @@ def step_plant(
         stiffness = drive.spring_N_per_mm + spring.stiffness
         driven = with_drive(laws, with_spring(drive, drive.given, stiffness))
         converged = advance(chain, before, now, driven)
-        if chain[TENSION] < 0.0:
+        if chain[at.TENSION] < 0.0:
             go_slack(chain, now, laws)
-            chain[POSITION_BEFORE], chain[END_SPEED] = p, mass_speed
+            chain[at.POSITION_BEFORE], chain[at.END_SPEED] = p, mass_speed
             slope, value = drive_tangent(chain, now, driven)
-            friction_N = chain[SLIP] * drive.friction_N
-            chain[POSITION] = (spring.force - friction_N - value) / slope
+            friction_N = chain[at.SLIP] * drive.friction_N
+            chain[at.POSITION] = (spring.force - friction_N - value) / slope
             update_end_speeds(chain, step.h, laws.n)
-            chain[POSITION_BEFORE] = chain[POSITION]
-        x, f_in = turntable_at(chain[POSITION], spring)
-    speed = (chain[POSITION] - p) / step.h
+            chain[at.POSITION_BEFORE] = chain[at.POSITION]
+        x, f_in = turntable_at(chain[at.POSITION], spring)
+    speed = (chain[at.POSITION] - p) / step.h
     return advance_turntable(table, x, f_in, speed, step.h), now, converged

@@ -17,8 +17,8 @@ crosses its play the tendon's end rests under tension, and the play has friction
 import math
 from typing import NamedTuple
 
-from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.rig import Rig
 
 FLANK = 1.0 - 1e-9  # of half the play, from which the drive is in contact with its flank
@@ -162,7 +162,7 @@ def across_play(x: float, x_now: float, p: float, gear: Tangent, play: Play) -> 
 
 
 @kernel
-def ripple_tangent(x: float, ripple: DriveRipple) -> Tangent:
+def ripple_tangent(x: float, ripple: Wave) -> Tangent:
     """Return the tangent of the gear's output over its input."""
     if ripple.sine_mm == ripple.cosine_mm == 0.0:
         return Tangent(0.0, 1.0)

@@ -34,32 +34,15 @@ from tsas_cli.physics.course import (
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import (
     update_end_speeds,
     update_load_state,
 )
-from tsas_cli.physics.slip.frames import write_frame
 from tsas_cli.physics.slip.nodes import accept, update_speeds
-from tsas_cli.physics.slip.outputs import phase_of, tension_at_drive, tension_at_sensor
+from tsas_cli.physics.slip.outputs import phase_of, tension_at_drive, tension_at_sensor, write_frame
 from tsas_cli.physics.slip.pair import accept_pair, solve_pair
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import (
-    COMPLIANCE,
-    ELEMENT,
-    END_SPEED,
-    POSITION,
-    POSITION_BEFORE,
-    SECOND,
-    SHARE_BEFORE,
-    SLIP,
-    STRETCH,
-    TENSION,
-    TENSION_BEFORE,
-    TENSION_RISE,
-    TRAVEL,
-    Moment,
-    SlipLaws,
-)
+from tsas_cli.physics.slip.state import Moment, SlipLaws, chain_at_rest, slip_laws
 from tsas_cli.physics.slip.step import solve_sample
 from tsas_cli.support.arrays import Floats
 
@@ -68,38 +51,11 @@ MOST_STEPS = 60  # between two samples, unconverged ones included
 SHORTEST_STEP = 1e-3  # of the interval between two samples; shorter steps do not converge either
 
 
-def slip_chain(
-    course: Floats, rig: Rig, boundary: Boundary, n: int, frames: Frames | None = None
-) -> Output:
-    """Return the output for the motion of both ends from rest at the preload.
-
-    Parameters
-    ----------
-    course
-        Inputs of the tendon, with the rows of `course`, shape (8, m).
-    rig
-        The rig; its friction and bend are those of the course.
-    boundary
-        The given quantity at each end.
-    n
-        Number of nodes.
-    frames
-        Written over with the profile along the tendon, n elements with a node in each.
-
-    Returns
-    -------
-        Positions and tensions at both ends: the tension at the drive is that behind the drive's
-        friction (or the given one), the one at the load is its sensor's. A sample of phase 3 is not
-        converged; after many such samples the run is aborted: the rest has the last values.
-    """
-    return follow(course, initial_state(course, rig, boundary, n), rig, boundary, n, frames)[0]
-
-
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
     """Return positions of the nodes and tensions behind them after a course, shape (2, n + 2)."""
     start = initial_state(course, rig, boundary, n)
     chain = follow(course, start, rig, boundary, n, None)[1].chain
-    return np.stack([chain[row : row + n + 2] for row in (POSITION, TENSION)])
+    return np.stack([chain[row : row + n + 2] for row in (at.POSITION, at.TENSION)])
 
 
 class ChainEnds(NamedTuple):
@@ -139,7 +95,29 @@ def follow(
     n: int,
     frames: Frames | None,  # a default would be compiled apart from None
 ) -> tuple[Output, ChainState]:
-    """Return the output of a chain for a course from a state, and the final state."""
+    """Return the output of a chain for the motion of both ends from a state, and the final state.
+
+    Parameters
+    ----------
+    course
+        Inputs of the tendon, with the rows of `course`, shape (11, m).
+    state
+        That of `initial_state`, or the final one of the course before.
+    rig
+        The rig; its friction and bend are those of the course.
+    boundary
+        The given quantity at each end.
+    n
+        Number of nodes.
+    frames
+        Written over with the profile along the tendon, n elements with a node in each.
+
+    Returns
+    -------
+        Positions and tensions at both ends: the tension at the drive is that behind the drive's
+        friction (or the given one), the one at the load is its sensor's. A sample of phase 3 is not
+        converged; after many such samples the run is aborted: the rest has the last values.
+    """
     m = course.shape[1]
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phases = np.zeros(m, dtype=np.int8)
@@ -168,15 +146,15 @@ def follow_sample(
     """Advance to one sample; return the phase and the ends there."""
     last = laws.n + 1
     if laws.load.given == DISPLACEMENT and now.load != before.load:
-        chain[SLIP + last] = 1 if now.load > before.load else -1
+        chain[at.SLIP + last] = 1 if now.load > before.load else -1
     converged = advance(chain, before, now, laws)
     phase = phase_of(chain, laws) if converged else UNCONVERGED
-    if laws.antagonist.preload_N == 0.0 and laws.load.given != FORCE and chain[TENSION] < 0.0:
+    if laws.antagonist.preload_N == 0.0 and laws.load.given != FORCE and chain[at.TENSION] < 0.0:
         phase = SLACK
         go_slack(chain, now, laws)
     f_in = now.drive if laws.drive.given == FORCE else tension_at_drive(chain, laws)
     f_out = tension_at_sensor(chain, now, laws)
-    return phase, ChainEnds(chain[POSITION], chain[POSITION + last], f_in, f_out)
+    return phase, ChainEnds(chain[at.POSITION], chain[at.POSITION + last], f_in, f_out)
 
 
 @kernel
@@ -213,7 +191,7 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
         else:
             go_back(chain, laws.n)
             if paired:
-                go_back(chain[SECOND:], laws.n)
+                go_back(chain[at.SECOND :], laws.n)
             step *= 0.5
     return False
 
@@ -222,12 +200,12 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
 def go_back(tendon: Floats, n: int) -> None:
     """Set a tendon back to the end of the last step, with no node slipping."""
     for j in range(n + 2):
-        tendon[POSITION + j], tendon[TENSION + j], tendon[SLIP + j] = (
-            tendon[POSITION_BEFORE + j],
-            tendon[TENSION_BEFORE + j],
+        tendon[at.POSITION + j], tendon[at.TENSION + j], tendon[at.SLIP + j] = (
+            tendon[at.POSITION_BEFORE + j],
+            tendon[at.TENSION_BEFORE + j],
             0.0,
         )
-        tendon[TRAVEL + j] = 0.0
+        tendon[at.TRAVEL + j] = 0.0
 
 
 @kernel
@@ -249,15 +227,19 @@ def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     last = laws.n + 1
     if laws.load.given != DISPLACEMENT:
         preload_N = laws.preload_N - now.losses.preload_N - laws.load.hysteresis.force_N
-        chain[ELEMENT] = -laws.load.hysteresis.force_N  # the load has returned far enough
-        chain[POSITION + last] = unloaded_position(chain[POSITION + last], preload_N, laws.load)
+        chain[at.ELEMENT] = -laws.load.hysteresis.force_N  # the load has returned far enough
+        chain[at.POSITION + last] = unloaded_position(
+            chain[at.POSITION + last], preload_N, laws.load
+        )
     for j in range(last - 1, -1, -1):
-        chain[TENSION + j] = 0.0
+        chain[at.TENSION + j] = 0.0
         if j > 0:
-            chain[POSITION + j] = chain[POSITION + j + 1] - chain[COMPLIANCE + j] * laws.preload_N
-            chain[SLIP + j] = 1.0
-    chain[SLIP + last] = 1.0
-    chain[END_SPEED] = chain[END_SPEED + last] = chain[STRETCH] = 0.0
+            chain[at.POSITION + j] = (
+                chain[at.POSITION + j + 1] - chain[at.COMPLIANCE + j] * laws.preload_N
+            )
+            chain[at.SLIP + j] = 1.0
+    chain[at.SLIP + last] = 1.0
+    chain[at.END_SPEED] = chain[at.END_SPEED + last] = chain[at.STRETCH] = 0.0
     accept(chain, laws)
     for j in range(laws.n + 2):
-        chain[SHARE_BEFORE + j], chain[TRAVEL + j], chain[TENSION_RISE + j] = 1.0, 0.0, 0.0
+        chain[at.SHARE_BEFORE + j], chain[at.TRAVEL + j], chain[at.TENSION_RISE + j] = 1.0, 0.0, 0.0

@@ -12,25 +12,9 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.settling import lag_after
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, moving_friction, spring_law
+from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.nodes import slips_backwards
-from tsas_cli.physics.slip.state import (
-    BALANCED,
-    ELEMENT,
-    END_SPEED,
-    IS_SLACK,
-    POSITION,
-    POSITION_BEFORE,
-    SECOND,
-    SLIP,
-    STRETCH,
-    SWEEP_P,
-    SWEEP_Q,
-    SWEEP_R,
-    TENSION,
-    TOLERANCE,
-    Moment,
-    SlipLaws,
-)
+from tsas_cli.physics.slip.state import BALANCED, TOLERANCE, Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 SLIPS_ALONG_S = 0.01  # time constant of a mass's speed; without it the mass would oscillate
@@ -40,7 +24,7 @@ SLIPS_ALONG_S = 0.01  # time constant of a mass's speed; without it the mass wou
 def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
     """Return slope and value at x = 0 of the tangent of the load's force [N/mm, N]."""
     n = laws.n
-    x = chain[POSITION + n + 1]
+    x = chain[at.POSITION + n + 1]
     force, slope = spring_law(x, laws.load)
     value = force - slope * x
     value += laws.load_preload_N - now.losses.preload_N
@@ -48,23 +32,25 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
-        extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[END_SPEED + n + 1]
+        extrapolated_speed = (
+            chain[at.POSITION_BEFORE + n + 1] / now.step_s + chain[at.END_SPEED + n + 1]
+        )
         value -= inertia_force(per_speed * extrapolated_speed, mass)
     damping = laws.load.damping_N_s_per_mm
     if damping > 0.0 and now.step_s < math.inf:
         per_mm = load_damper_force(1.0 / now.step_s, damping)
         slope += per_mm
-        value -= per_mm * chain[POSITION_BEFORE + n + 1]
+        value -= per_mm * chain[at.POSITION_BEFORE + n + 1]
     if laws.load.hysteresis.force_N > 0.0:
-        moved = x - chain[POSITION_BEFORE + n + 1]
-        force, stiffness = element_force(chain[ELEMENT], moved, laws.load.hysteresis)
+        moved = x - chain[at.POSITION_BEFORE + n + 1]
+        force, stiffness = element_force(chain[at.ELEMENT], moved, laws.load.hysteresis)
         slope += stiffness
         value += force - stiffness * x
     if laws.load.relaxation.share > 0.0:
         kept, gained = relaxing_stretch(chain, now.step_s, laws)
         share, stiffness = laws.load.relaxation.share, laws.load.stiffness_N_per_mm
         slope += relaxing_force(gained, stiffness, share)
-        at_zero = kept - gained * chain[POSITION_BEFORE + n + 1]
+        at_zero = kept - gained * chain[at.POSITION_BEFORE + n + 1]
         value += relaxing_force(at_zero, stiffness, share)
     return slope, value
 
@@ -76,17 +62,17 @@ def pull_at_load(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     It holds the load and the antagonist, if there is one; the guide's friction is not in it.
     """
     slope, value = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
-    if laws.antagonist.preload_N > 0.0 and chain[SECOND + IS_SLACK] == 0.0:
-        r = chain[SECOND + SWEEP_R]
-        slope += chain[SECOND + SWEEP_P] / r
-        value += chain[SECOND + SWEEP_Q] / r
+    if laws.antagonist.preload_N > 0.0 and chain[at.SECOND + at.IS_SLACK] == 0.0:
+        r = chain[at.SECOND + at.SWEEP_R]
+        slope += chain[at.SECOND + at.SWEEP_P] / r
+        value += chain[at.SECOND + at.SWEEP_Q] / r
     return slope, value
 
 
 @kernel
 def tension_of_second(chain: Floats, j: int, laws: SlipLaws) -> float:
     """Return the tension of an antagonist's segment, 0 at the load and n at the drive [N]."""
-    return float(chain[SECOND + TENSION + j]) if laws.antagonist.preload_N > 0.0 else 0.0
+    return float(chain[at.SECOND + at.TENSION + j]) if laws.antagonist.preload_N > 0.0 else 0.0
 
 
 @kernel
@@ -94,27 +80,27 @@ def update_end_speeds(chain: Floats, step_s: float, n: int) -> None:
     """Update the speeds of the masses at both ends after a step."""
     share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
     for end in (0, n + 1):
-        speed = (chain[POSITION + end] - chain[POSITION_BEFORE + end]) / step_s
-        chain[END_SPEED + end] += share * (speed - chain[END_SPEED + end])
+        speed = (chain[at.POSITION + end] - chain[at.POSITION_BEFORE + end]) / step_s
+        chain[at.END_SPEED + end] += share * (speed - chain[at.END_SPEED + end])
 
 
 @kernel
 def relaxing_stretch(chain: Floats, step_s: float, laws: SlipLaws) -> tuple[float, float]:
     """Return what a step leaves of the relaxing spring's stretch [mm], and adds for each mm."""
     time_s = laws.load.relaxation.time_s
-    return lag_after(chain[STRETCH], 0.0, step_s, time_s), lag_after(0.0, 1.0, step_s, time_s)
+    return lag_after(chain[at.STRETCH], 0.0, step_s, time_s), lag_after(0.0, 1.0, step_s, time_s)
 
 
 @kernel
 def update_load_state(chain: Floats, step_s: float, laws: SlipLaws) -> None:
     """Update the state of what is beside the load spring after a step."""
     if laws.load.relaxation.share > 0.0:
-        moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
+        moved = chain[at.POSITION + laws.n + 1] - chain[at.POSITION_BEFORE + laws.n + 1]
         kept, gained = relaxing_stretch(chain, step_s, laws)
-        chain[STRETCH] = kept + gained * moved
+        chain[at.STRETCH] = kept + gained * moved
     if laws.load.hysteresis.force_N > 0.0:
-        moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
-        chain[ELEMENT] = element_force(chain[ELEMENT], moved, laws.load.hysteresis)[0]
+        moved = chain[at.POSITION + laws.n + 1] - chain[at.POSITION_BEFORE + laws.n + 1]
+        chain[at.ELEMENT] = element_force(chain[at.ELEMENT], moved, laws.load.hysteresis)[0]
 
 
 @kernel
@@ -123,11 +109,11 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     if laws.drive.given == DISPLACEMENT:
         return now.drive
     friction = laws.drive.friction_N
-    if chain[SLIP] == 0 and friction > 0.0:
-        return float(chain[POSITION_BEFORE])
-    p, q, r = chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R]
+    if chain[at.SLIP] == 0 and friction > 0.0:
+        return float(chain[at.POSITION_BEFORE])
+    p, q, r = chain[at.SWEEP_P], chain[at.SWEEP_Q], chain[at.SWEEP_R]
     slope, value = drive_tangent(chain, now, laws)
-    return float(((now.drive - value - chain[SLIP] * friction) * r - q) / (p + slope * r))
+    return float(((now.drive - value - chain[at.SLIP] * friction) * r - q) / (p + slope * r))
 
 
 @kernel
@@ -138,20 +124,20 @@ def drive_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, fl
         per_mm = drive_damper_force(1.0 / now.step_s, laws.drive.damping_N_s_per_mm)
         per_speed = drive_inertia_force(1.0 / (SLIPS_ALONG_S + now.step_s), laws.drive.mass_kg)
         slope += per_mm + per_speed / now.step_s
-        value -= (per_mm + per_speed / now.step_s) * chain[POSITION_BEFORE]
-        value -= per_speed * chain[END_SPEED]
+        value -= (per_mm + per_speed / now.step_s) * chain[at.POSITION_BEFORE]
+        value -= per_speed * chain[at.END_SPEED]
     return slope, value
 
 
 @kernel
 def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLaws) -> bool:
     """Update slip or stick of an end with constant friction; return whether it changed."""
-    if chain[SLIP + i] != 0:
+    if chain[at.SLIP + i] != 0:
         if slips_backwards(i, chain, laws):
-            chain[SLIP + i] = 0
+            chain[at.SLIP + i] = 0
             return True
     elif abs(pull) > friction * (1.0 + TOLERANCE):
-        chain[SLIP + i] = 1 if pull > 0.0 else -1
+        chain[at.SLIP + i] = 1 if pull > 0.0 else -1
         return True
     return False
 
@@ -163,17 +149,19 @@ def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     unsolved = False
     if laws.drive.given == FORCE:
         slope, value = drive_tangent(chain, now, laws)
-        pull = now.drive - chain[TENSION] - slope * chain[POSITION] - value
+        pull = now.drive - chain[at.TENSION] - slope * chain[at.POSITION] - value
         if laws.drive.friction_N > 0.0:
             unsolved = update_end(0, pull, laws.drive.friction_N, chain, laws)
     if laws.load.given != DISPLACEMENT:
-        pull = chain[TENSION + n] - load_force(chain, now, laws)
+        pull = chain[at.TENSION + n] - load_force(chain, now, laws)
         friction = moving_friction(laws.load)
         if friction > 0.0:
             unsolved = update_end(n + 1, pull, friction, chain, laws) or unsolved
-        if friction == 0.0 or chain[SLIP + n + 1] != 0:
-            imbalance = abs(pull - chain[SLIP + n + 1] * friction)
-            unsolved = imbalance > BALANCED * (abs(chain[TENSION + n]) + laws.preload_N) or unsolved
+        if friction == 0.0 or chain[at.SLIP + n + 1] != 0:
+            imbalance = abs(pull - chain[at.SLIP + n + 1] * friction)
+            unsolved = (
+                imbalance > BALANCED * (abs(chain[at.TENSION + n]) + laws.preload_N) or unsolved
+            )
     return unsolved
 
 
@@ -181,4 +169,4 @@ def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 def load_force(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     """Return the first tendon's tension that balances the load as it is, without friction [N]."""
     slope, value = pull_at_load(chain, now, laws)
-    return float(slope * chain[POSITION + laws.n + 1] + value)
+    return float(slope * chain[at.POSITION + laws.n + 1] + value)

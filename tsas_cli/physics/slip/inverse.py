@@ -19,8 +19,15 @@ from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance
 from tsas_cli.physics.slip.outputs import tension_at_sensor
-from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import POSITION, ROWS, TENSION, Moment, SlipLaws
+from tsas_cli.physics.slip.state import (
+    POSITION,
+    ROWS,
+    TENSION,
+    Moment,
+    SlipLaws,
+    chain_at_rest,
+    slip_laws,
+)
 from tsas_cli.support.arrays import Floats
 
 EXACT_N = 1e-7  # tolerance of the force
@@ -89,7 +96,7 @@ def reach_force(
     for _ in range(MOST_TRIALS):
         x = a - error_a * (b - a) / (error_b - error_a) if bracketed else b + step
         copy_rows(saved, chain, laws.n)
-        now = driven_to(now, x)
+        now = Moment(x, now.load, now.losses, now.step_s)
         error = wanted_N - force_at_sensor(chain, before, now, laws)
         if abs(error) <= EXACT_N:
             return now, True
@@ -104,12 +111,6 @@ def reach_force(
         b, error_b = x, error
     copy_rows(saved, chain, laws.n)
     return before, False
-
-
-@kernel
-def driven_to(now: Moment, x: float) -> Moment:
-    """Return the same moment with the tendon's end at another position."""
-    return Moment(x, now.load, now.losses, now.step_s)
 
 
 @kernel

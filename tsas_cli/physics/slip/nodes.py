@@ -15,33 +15,8 @@ from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
-from tsas_cli.physics.slip.state import (
-    BALANCED,
-    COMPLIANCE,
-    DROP,
-    DROP_SLOPE,
-    FACTOR,
-    POSITION,
-    POSITION_BEFORE,
-    RATIO,
-    RATIO_PULLED,
-    RATIO_RELEASED,
-    SHARE,
-    SHARE_BEFORE,
-    SLIP,
-    SPEED,
-    TENSION,
-    TENSION_BEFORE,
-    TENSION_RISE,
-    TOLERANCE,
-    TRAVEL,
-    WRAP_LIMIT,
-    WRAP_PULLED,
-    WRAP_RELEASED,
-    WRAP_SIGNED,
-    Moment,
-    SlipLaws,
-)
+from tsas_cli.physics.slip import state as at
+from tsas_cli.physics.slip.state import BALANCED, TOLERANCE, Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
@@ -59,25 +34,25 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     if uniform and laws.stribeck.excess == 0.0:
         ratio_pulled, ratio_released = math.exp(-pulled), math.exp(-released)
         for i in range(1, n + 1):
-            chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i] = pulled, released
-            chain[RATIO_PULLED + i], chain[RATIO_RELEASED + i] = ratio_pulled, ratio_released
+            chain[at.WRAP_PULLED + i], chain[at.WRAP_RELEASED + i] = pulled, released
+            chain[at.RATIO_PULLED + i], chain[at.RATIO_RELEASED + i] = ratio_pulled, ratio_released
         return
     per_N = 0.5 / laws.load_preload_N
     for i in range(1, n + 1):  # short loops: in one, the compiler runs out of registers
-        mean = (chain[TENSION + i - 1] + chain[TENSION + i]) * per_N
-        chain[WRAP_PULLED + i] = load_exponent(mean, laws.friction_exponent)
+        mean = (chain[at.TENSION + i - 1] + chain[at.TENSION + i]) * per_N
+        chain[at.WRAP_PULLED + i] = load_exponent(mean, laws.friction_exponent)
     for i in range(1, n + 1):
-        factor = exponential(chain[WRAP_PULLED + i])
+        factor = exponential(chain[at.WRAP_PULLED + i])
         factor *= place_factor((i - 0.5) / n, laws.friction_slope)
         if laws.stribeck.excess != 0.0:
-            factor *= stribeck_factor(chain[SPEED + i], laws.stribeck)
-        chain[WRAP_PULLED + i] = min(pulled * factor, MOST_WRAP)
-        chain[WRAP_RELEASED + i] = min(released * factor, MOST_WRAP)
+            factor *= stribeck_factor(chain[at.SPEED + i], laws.stribeck)
+        chain[at.WRAP_PULLED + i] = min(pulled * factor, MOST_WRAP)
+        chain[at.WRAP_RELEASED + i] = min(released * factor, MOST_WRAP)
     if laws.presliding_mm == 0.0:
         for i in range(1, n + 1):
-            chain[RATIO_PULLED + i] = exponential(-chain[WRAP_PULLED + i])
+            chain[at.RATIO_PULLED + i] = exponential(-chain[at.WRAP_PULLED + i])
         for i in range(1, n + 1):
-            chain[RATIO_RELEASED + i] = exponential(-chain[WRAP_RELEASED + i])
+            chain[at.RATIO_RELEASED + i] = exponential(-chain[at.WRAP_RELEASED + i])
 
 
 @kernel
@@ -90,8 +65,8 @@ def update_speeds(chain: Floats, step_s: float, laws: SlipLaws) -> None:
         return
     share = 1.0 - math.exp(-step_s / FRICTIONAL_LAG_S)
     for i in range(1, laws.n + 1):
-        speed = abs(chain[POSITION + i] - chain[POSITION_BEFORE + i]) / step_s
-        chain[SPEED + i] += share * (speed - chain[SPEED + i])
+        speed = abs(chain[at.POSITION + i] - chain[at.POSITION_BEFORE + i]) / step_s
+        chain[at.SPEED + i] += share * (speed - chain[at.SPEED + i])
 
 
 @kernel
@@ -112,8 +87,8 @@ def is_linear(laws: SlipLaws) -> bool:
 @kernel
 def capstan_ratio(direction: float, i: int, chain: Floats) -> float:
     """Return T[i]/T[i−1] of a node that slips in a direction, 1 or −1."""
-    ratio: float = chain[RATIO_PULLED + i] if direction > 0.0 else chain[RATIO_RELEASED + i]
-    negative = chain[TENSION + i - 1] + chain[TENSION + i] < 0.0
+    ratio: float = chain[at.RATIO_PULLED + i] if direction > 0.0 else chain[at.RATIO_RELEASED + i]
+    negative = chain[at.TENSION + i - 1] + chain[at.TENSION + i] < 0.0
     return ratio if (direction > 0.0) != negative else 1.0 / ratio
 
 
@@ -126,7 +101,7 @@ def update_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     if laws.friction_exponent == 0.0:
         return set_capstan_relations(chain, now, laws)
     for i in range(1, laws.n + 1):
-        chain[SHARE + i] = chain[SLIP + i]
+        chain[at.SHARE + i] = chain[at.SLIP + i]
     return set_tangent_relations(chain, now, laws)
 
 
@@ -136,12 +111,12 @@ def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     n = laws.n
     changed = False
     for i in range(1, n + 1):
-        slip = chain[SLIP + i]
+        slip = chain[at.SLIP + i]
         if slip != 0.0:
             ratio = capstan_ratio(slip, i, chain)
             half = 0.5 * slip * now.losses.viscous_N / n
-            changed = changed or ratio != chain[FACTOR + i]
-            chain[FACTOR + i], chain[DROP + i] = ratio, half + ratio * half
+            changed = changed or ratio != chain[at.FACTOR + i]
+            chain[at.FACTOR + i], chain[at.DROP + i] = ratio, half + ratio * half
     return changed
 
 
@@ -158,17 +133,25 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     loss = now.losses.viscous_N / n
     unbalanced = 0
     for i in range(1, n + 1):
-        share, mean = chain[SHARE + i], chain[TENSION + i - 1] + chain[TENSION + i]
-        pulled, released = chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i]
+        share, mean = chain[at.SHARE + i], chain[at.TENSION + i - 1] + chain[at.TENSION + i]
+        pulled, released = chain[at.WRAP_PULLED + i], chain[at.WRAP_RELEASED + i]
         limit = pulled if share > 0.0 else released
-        chain[WRAP_LIMIT + i] = limit
-        chain[WRAP_SIGNED + i] = -share * limit if mean >= 0.0 else share * limit
-        chain[RATIO + i] = exponential(chain[WRAP_SIGNED + i])
+        chain[at.WRAP_LIMIT + i] = limit
+        chain[at.WRAP_SIGNED + i] = -share * limit if mean >= 0.0 else share * limit
+        chain[at.RATIO + i] = exponential(chain[at.WRAP_SIGNED + i])
     for i in range(1, n + 1):
-        share, before, behind = chain[SHARE + i], chain[TENSION + i - 1], chain[TENSION + i]
+        share, before, behind = (
+            chain[at.SHARE + i],
+            chain[at.TENSION + i - 1],
+            chain[at.TENSION + i],
+        )
         half, mean = 0.5 * share * loss, before + behind
         carried = before - half
-        limit, wrap, ratio = chain[WRAP_LIMIT + i], chain[WRAP_SIGNED + i], chain[RATIO + i]
+        limit, wrap, ratio = (
+            chain[at.WRAP_LIMIT + i],
+            chain[at.WRAP_SIGNED + i],
+            chain[at.RATIO + i],
+        )
         residual = behind + half - ratio * carried
         ratio_change = (
             wrap * ratio * laws.friction_exponent * carried / (mean if mean != 0.0 else math.inf)
@@ -176,10 +159,10 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         ratio_change = min(max(ratio_change, -MOST_RATIO_CHANGE), MOST_RATIO_CHANGE)
         inverse = 1.0 / (1.0 - ratio_change)
         factor = (ratio + ratio_change) * inverse
-        chain[FACTOR + i] = factor
-        chain[DROP + i] = factor * before - behind + residual * inverse
+        chain[at.FACTOR + i] = factor
+        chain[at.DROP + i] = factor * before - behind + residual * inverse
         # Derivative of the drop by the share; pre-sliding multiplies it by that of the share by x.
-        chain[DROP_SLOPE + i] = (
+        chain[at.DROP_SLOPE + i] = (
             0.5 * (1.0 + ratio) * loss + ratio * abs(carried) * limit
         ) * inverse
         unbalanced += abs(share * residual) > BALANCED * abs(share) * (abs(before) + laws.preload_N)
@@ -192,10 +175,10 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 def add_presliding_slope(chain: Floats, laws: SlipLaws) -> None:
     """Add the derivative of the drop of tension by a node's travel, at the tangent's point."""
     for i in range(1, laws.n + 1):
-        moved = chain[TRAVEL + i]
-        rate = friction_share_rate(chain[SHARE + i], moved, laws.presliding_mm)
-        chain[DROP_SLOPE + i] *= rate
-        chain[DROP + i] -= chain[DROP_SLOPE + i] * (chain[POSITION_BEFORE + i] + moved)
+        moved = chain[at.TRAVEL + i]
+        rate = friction_share_rate(chain[at.SHARE + i], moved, laws.presliding_mm)
+        chain[at.DROP_SLOPE + i] *= rate
+        chain[at.DROP + i] -= chain[at.DROP_SLOPE + i] * (chain[at.POSITION_BEFORE + i] + moved)
 
 
 @kernel
@@ -206,12 +189,12 @@ def update_travel(chain: Floats, laws: SlipLaws) -> bool:
     """
     stopped = 0
     for i in range(1, laws.n + 1):
-        moved = chain[POSITION + i] - chain[POSITION_BEFORE + i]
-        reversed_sign = moved * chain[TRAVEL + i] < 0.0
-        stopped += reversed_sign and abs(moved - chain[TRAVEL + i]) > TOLERANCE * laws.scale_mm
+        moved = chain[at.POSITION + i] - chain[at.POSITION_BEFORE + i]
+        reversed_sign = moved * chain[at.TRAVEL + i] < 0.0
+        stopped += reversed_sign and abs(moved - chain[at.TRAVEL + i]) > TOLERANCE * laws.scale_mm
         moved = 0.0 if reversed_sign else moved
-        chain[TRAVEL + i] = moved
-        chain[SHARE + i] = friction_share(chain[SHARE_BEFORE + i], moved, laws.presliding_mm)
+        chain[at.TRAVEL + i] = moved
+        chain[at.SHARE + i] = friction_share(chain[at.SHARE_BEFORE + i], moved, laws.presliding_mm)
     return stopped > 0
 
 
@@ -219,8 +202,8 @@ def update_travel(chain: Floats, laws: SlipLaws) -> bool:
 def extrapolate(chain: Floats, laws: SlipLaws) -> None:
     """Extrapolate the last step, the point of the tangents of nonlinear laws."""
     for j in range(laws.n + 2):
-        chain[POSITION + j] = chain[POSITION_BEFORE + j] + chain[TRAVEL + j]
-        chain[TENSION + j] = chain[TENSION_BEFORE + j] + chain[TENSION_RISE + j]
+        chain[at.POSITION + j] = chain[at.POSITION_BEFORE + j] + chain[at.TRAVEL + j]
+        chain[at.TENSION + j] = chain[at.TENSION_BEFORE + j] + chain[at.TENSION_RISE + j]
 
 
 @kernel
@@ -228,26 +211,26 @@ def accept(chain: Floats, laws: SlipLaws) -> None:
     """Accept the present state as the solution of the step."""
     if laws.presliding_mm > 0.0:
         for i in range(1, laws.n + 1):
-            share = chain[SHARE + i]
+            share = chain[at.SHARE + i]
             direction = 1.0 if share > 0.0 else -1.0
-            chain[SHARE_BEFORE + i] = share
-            chain[SLIP + i] = direction if abs(share) > SLIDING_SHARE else 0.0
+            chain[at.SHARE_BEFORE + i] = share
+            chain[at.SLIP + i] = direction if abs(share) > SLIDING_SHARE else 0.0
     if not is_linear(laws):
         for j in range(laws.n + 2):
-            chain[TRAVEL + j] = chain[POSITION + j] - chain[POSITION_BEFORE + j]
-            chain[TENSION_RISE + j] = chain[TENSION + j] - chain[TENSION_BEFORE + j]
+            chain[at.TRAVEL + j] = chain[at.POSITION + j] - chain[at.POSITION_BEFORE + j]
+            chain[at.TENSION_RISE + j] = chain[at.TENSION + j] - chain[at.TENSION_BEFORE + j]
     for j in range(laws.n + 2):
-        chain[POSITION_BEFORE + j], chain[TENSION_BEFORE + j] = (
-            chain[POSITION + j],
-            chain[TENSION + j],
+        chain[at.POSITION_BEFORE + j], chain[at.TENSION_BEFORE + j] = (
+            chain[at.POSITION + j],
+            chain[at.TENSION + j],
         )
 
 
 @kernel
 def slips_backwards(i: int, chain: Floats, laws: SlipLaws) -> bool:
     """Return whether a slipping node has slid against its own direction."""
-    slid = chain[POSITION + i] - chain[POSITION_BEFORE + i]
-    return bool(chain[SLIP + i] * slid < -TOLERANCE * laws.scale_mm)
+    slid = chain[at.POSITION + i] - chain[at.POSITION_BEFORE + i]
+    return bool(chain[at.SLIP + i] * slid < -TOLERANCE * laws.scale_mm)
 
 
 @kernel
@@ -258,16 +241,16 @@ def slip_after_backwards(i: int, loss: float, chain: Floats) -> float:
     friction of both directions the node cannot stick. Without this, nodes with little friction
     between two ends that stretch the tendon stick and slip in turn, without an end.
     """
-    slid = abs(chain[POSITION + i] - chain[POSITION_BEFORE + i])
-    force = slid * (1.0 / chain[COMPLIANCE + i - 1] + 1.0 / chain[COMPLIANCE + i])
+    slid = abs(chain[at.POSITION + i] - chain[at.POSITION_BEFORE + i])
+    force = slid * (1.0 / chain[at.COMPLIANCE + i - 1] + 1.0 / chain[at.COMPLIANCE + i])
     limits = 1.0 / capstan_ratio(-1.0, i, chain) - capstan_ratio(1.0, i, chain)
-    return -chain[SLIP + i] if force > abs(limits * chain[TENSION + i]) + 2.0 * loss else 0.0
+    return -chain[at.SLIP + i] if force > abs(limits * chain[at.TENSION + i]) + 2.0 * loss else 0.0
 
 
 @kernel
 def breakaway(i: int, loss: float, chain: Floats) -> float:
     """Return the direction in which the tensions exceed a sticking node's friction, else 0."""
-    before, behind, half = chain[TENSION + i - 1], chain[TENSION + i], 0.5 * loss
+    before, behind, half = chain[at.TENSION + i - 1], chain[at.TENSION + i], 0.5 * loss
     margin = TOLERANCE * abs(before)
     if behind + half < capstan_ratio(1.0, i, chain) * (before - half) - margin:
         return 1.0

@@ -12,8 +12,9 @@ set, in between which all tensions are affine.
 
 from tsas_cli.effects.antagonist import is_taut, net_force
 from tsas_cli.numerics.compiled import kernel, seldom_kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, moving_friction
+from tsas_cli.physics.boundary import DISPLACEMENT, DriveEnd, moving_friction
 from tsas_cli.physics.course import Losses
+from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import (
     drive_tangent,
     pull_at_load,
@@ -28,25 +29,7 @@ from tsas_cli.physics.slip.nodes import (
     update_relations,
     update_speeds,
 )
-from tsas_cli.physics.slip.start import driven_by_displacement, laws_of_second
-from tsas_cli.physics.slip.state import (
-    COMPLIANCE,
-    FIRST_IS_SLACK,
-    FIRST_WAS_SLACK,
-    IS_SLACK,
-    POSITION,
-    POSITION_BEFORE,
-    SECOND,
-    SHARE_BEFORE,
-    SLIP,
-    TENSION,
-    TENSION_BEFORE,
-    TENSION_RISE,
-    TRAVEL,
-    WAS_SLACK,
-    Moment,
-    SlipLaws,
-)
+from tsas_cli.physics.slip.state import Moment, SlipLaws, laws_of_second, with_drive
 from tsas_cli.physics.slip.step import (
     changes_at,
     most_iterations,
@@ -61,18 +44,18 @@ from tsas_cli.support.arrays import Floats
 def solve_pair(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     """Solve the static problem of both tendons at a moment; return whether it converged."""
     n = laws.n
-    second, own, mirrored = chain[SECOND:], laws_of_second(laws), seen_by_second(now, laws)
-    chain[FIRST_IS_SLACK], second[IS_SLACK] = chain[FIRST_WAS_SLACK], second[WAS_SLACK]
+    second, own, mirrored = chain[at.SECOND :], laws_of_second(laws), seen_by_second(now, laws)
+    chain[at.FIRST_IS_SLACK], second[at.IS_SLACK] = chain[at.FIRST_WAS_SLACK], second[at.WAS_SLACK]
     begin(chain, now, laws)
     begin(second, mirrored, own)
     for iteration in range(most_iterations(2 * n)):
         set_both_in_motion(chain, now, laws)
         limit, reverse = changes_at(iteration, 2 * n)
-        unsolved = update_slack(chain, FIRST_IS_SLACK, FIRST_WAS_SLACK, chain, laws)
-        unsolved = update_slack(second, IS_SLACK, WAS_SLACK, chain, own) or unsolved
-        if chain[FIRST_IS_SLACK] == 0.0:
+        unsolved = update_slack(chain, at.FIRST_IS_SLACK, at.FIRST_WAS_SLACK, chain, laws)
+        unsolved = update_slack(second, at.IS_SLACK, at.WAS_SLACK, chain, own) or unsolved
+        if chain[at.FIRST_IS_SLACK] == 0.0:
             unsolved = update_nodes(chain, now, laws, limit, reverse) or unsolved
-        if second[IS_SLACK] == 0.0:
+        if second[at.IS_SLACK] == 0.0:
             unsolved = update_nodes(second, mirrored, own, limit, reverse) or unsolved
         if not unsolved or limit > 1:
             unsolved = update_ends(chain, felt_at_drive(chain, now, laws), laws) or unsolved
@@ -110,14 +93,14 @@ def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int, revers
 @kernel
 def set_both_in_motion(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set positions and tensions of both tendons for their active sets."""
-    driven = driven_by_displacement(laws)
+    driven = with_drive(laws, DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0))
     if laws.drive.given == DISPLACEMENT:
         sweep_both(chain, now.drive, now, driven)
         return
-    if chain[SLIP] == 0.0 and laws.drive.friction_N > 0.0:
-        sweep_both(chain, chain[POSITION_BEFORE], now, driven)
+    if chain[at.SLIP] == 0.0 and laws.drive.friction_N > 0.0:
+        sweep_both(chain, chain[at.POSITION_BEFORE], now, driven)
         return
-    x = chain[POSITION]
+    x = chain[at.POSITION]
     sweep_both(chain, x, now, driven)
     here = excess_at_drive(chain, now, laws)
     sweep_both(chain, x + laws.scale_mm, now, driven)
@@ -138,7 +121,12 @@ def felt_at_drive(chain: Floats, now: Moment, laws: SlipLaws) -> Moment:
 def excess_at_drive(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     """Return by how much the drive holds more than the given force [N]."""
     slope, value = drive_tangent(chain, now, laws)
-    held = chain[TENSION] + slope * chain[POSITION] + value + chain[SLIP] * laws.drive.friction_N
+    held = (
+        chain[at.TENSION]
+        + slope * chain[at.POSITION]
+        + value
+        + chain[at.SLIP] * laws.drive.friction_N
+    )
     return float(held - felt_at_drive(chain, now, laws).drive)
 
 
@@ -146,17 +134,17 @@ def excess_at_drive(chain: Floats, now: Moment, laws: SlipLaws) -> float:
 def sweep_both(chain: Floats, x_in: float, now: Moment, driven: SlipLaws) -> None:
     """Set positions and tensions of both tendons for a position of the drive [mm]."""
     last = driven.n + 1
-    second, own, losses = chain[SECOND:], laws_of_second(driven), now.losses
-    if second[IS_SLACK] == 0.0:
+    second, own, losses = chain[at.SECOND :], laws_of_second(driven), now.losses
+    if second[at.IS_SLACK] == 0.0:
         eliminate(second, Moment(0.0, x_in, losses, now.step_s), own)
-    if chain[FIRST_IS_SLACK] == 0.0:
+    if chain[at.FIRST_IS_SLACK] == 0.0:
         first = Moment(x_in, now.load, losses, now.step_s)
         eliminate(chain, first, driven)
         substitute(chain, first, driven)
     else:
         hang(chain, x_in, load_without_first(chain, now, driven), driven.n)
-    x_out = chain[POSITION + last]
-    if second[IS_SLACK] == 0.0:
+    x_out = chain[at.POSITION + last]
+    if second[at.IS_SLACK] == 0.0:
         substitute(second, Moment(x_out, x_in, losses, now.step_s), own)
     else:
         hang(second, x_out, x_in, driven.n)
@@ -180,20 +168,20 @@ def load_without_first(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     last, guide = laws.n + 1, moving_friction(laws.load)
     if laws.load.given == DISPLACEMENT:
         return now.load
-    if chain[SLIP + last] == 0.0 and guide > 0.0:
-        return float(chain[POSITION_BEFORE + last])
+    if chain[at.SLIP + last] == 0.0 and guide > 0.0:
+        return float(chain[at.POSITION_BEFORE + last])
     slope, value = pull_at_load(chain, now, laws)
     if slope <= 0.0:  # both are slack, and no spring holds the load
-        return float(chain[POSITION_BEFORE + last])
-    return float(-(value + chain[SLIP + last] * guide) / slope)
+        return float(chain[at.POSITION_BEFORE + last])
+    return float(-(value + chain[at.SLIP + last] * guide) / slope)
 
 
 @kernel
 def hang(tendon: Floats, x_first: float, x_last: float, n: int) -> None:
     """Set a slack tendon between the positions of its ends [mm]."""
-    tendon[POSITION], tendon[POSITION + n + 1] = x_first, x_last
+    tendon[at.POSITION], tendon[at.POSITION + n + 1] = x_first, x_last
     for j in range(n + 1):
-        tendon[TENSION + j] = 0.0
+        tendon[at.TENSION + j] = 0.0
 
 
 @kernel
@@ -204,13 +192,13 @@ def update_slack(
     n = laws.n
     compliance = 0.0
     for j in range(n + 1):
-        compliance += tendon[COMPLIANCE + j]
-    taut = is_taut(tendon[POSITION] - tendon[POSITION + n + 1], compliance, laws.preload_N)
+        compliance += tendon[at.COMPLIANCE + j]
+    taut = is_taut(tendon[at.POSITION] - tendon[at.POSITION + n + 1], compliance, laws.preload_N)
     if taut == (tendon[is_slack] == 0.0):
         return False
     tendon[is_slack] = 0.0 if taut else 1.0
     if taut and tendon[was_slack] != 0.0:
-        lay(tendon, chain[POSITION] - chain[POSITION_BEFORE], laws)
+        lay(tendon, chain[at.POSITION] - chain[at.POSITION_BEFORE], laws)
     return True
 
 
@@ -219,30 +207,30 @@ def lay(tendon: Floats, moved: float, laws: SlipLaws) -> None:
     """Lay a tendon taut without tension, about to be pulled along by a motion of the drive."""
     n, last = laws.n, laws.n + 1
     direction = 1.0 if moved > 0.0 else -1.0
-    x = tendon[POSITION_BEFORE + last] if moved > 0.0 else tendon[POSITION_BEFORE]
+    x = tendon[at.POSITION_BEFORE + last] if moved > 0.0 else tendon[at.POSITION_BEFORE]
     for k in range(1, n + 1):
         i = last - k if moved > 0.0 else k
-        shorter = tendon[COMPLIANCE + (i if moved > 0.0 else i - 1)] * laws.preload_N
+        shorter = tendon[at.COMPLIANCE + (i if moved > 0.0 else i - 1)] * laws.preload_N
         x -= direction * shorter
-        tendon[POSITION + i] = tendon[POSITION_BEFORE + i] = x
+        tendon[at.POSITION + i] = tendon[at.POSITION_BEFORE + i] = x
     for j in range(n + 2):
-        tendon[TENSION + j] = tendon[TENSION_BEFORE + j] = 0.0
-        tendon[TRAVEL + j] = tendon[TENSION_RISE + j] = 0.0
-        tendon[SHARE_BEFORE + j] = direction
+        tendon[at.TENSION + j] = tendon[at.TENSION_BEFORE + j] = 0.0
+        tendon[at.TRAVEL + j] = tendon[at.TENSION_RISE + j] = 0.0
+        tendon[at.SHARE_BEFORE + j] = direction
     for i in range(1, n + 1):
-        tendon[SLIP + i] = direction
+        tendon[at.SLIP + i] = direction
 
 
 @seldom_kernel
 def accept_pair(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Accept the present state of both tendons as the solution of the step."""
-    second, own = chain[SECOND:], laws_of_second(laws)
-    moved = chain[POSITION] - chain[POSITION_BEFORE]
+    second, own = chain[at.SECOND :], laws_of_second(laws)
+    moved = chain[at.POSITION] - chain[at.POSITION_BEFORE]
     update_speeds(second, now.step_s, own)
     accept(chain, laws)
     accept(second, own)
-    chain[FIRST_WAS_SLACK], second[WAS_SLACK] = chain[FIRST_IS_SLACK], second[IS_SLACK]
-    if chain[FIRST_IS_SLACK] != 0.0:
+    chain[at.FIRST_WAS_SLACK], second[at.WAS_SLACK] = chain[at.FIRST_IS_SLACK], second[at.IS_SLACK]
+    if chain[at.FIRST_IS_SLACK] != 0.0:
         lay(chain, moved, laws)
-    if second[IS_SLACK] != 0.0:
+    if second[at.IS_SLACK] != 0.0:
         lay(second, moved, own)

@@ -15,6 +15,7 @@ friction follows its magnitude.
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, moving_friction
+from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import drive_position, pull_at_load, update_ends
 from tsas_cli.physics.slip.nodes import (
     breakaway,
@@ -25,21 +26,7 @@ from tsas_cli.physics.slip.nodes import (
     slips_backwards,
     update_relations,
 )
-from tsas_cli.physics.slip.state import (
-    COMPLIANCE,
-    DROP,
-    DROP_SLOPE,
-    FACTOR,
-    POSITION,
-    POSITION_BEFORE,
-    SLIP,
-    SWEEP_P,
-    SWEEP_Q,
-    SWEEP_R,
-    TENSION,
-    Moment,
-    SlipLaws,
-)
+from tsas_cli.physics.slip.state import Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 NODES_PER_DIVISION = 16  # in the elimination with presliding
@@ -94,16 +81,16 @@ def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
     last = laws.n + 1
     guide = moving_friction(laws.load)
-    compliance, F0 = chain[COMPLIANCE + laws.n], laws.preload_N
+    compliance, F0 = chain[at.COMPLIANCE + laws.n], laws.preload_N
     if laws.load.given == DISPLACEMENT:
         p, q, r = 1.0, compliance * F0 - now.load, compliance
-    elif chain[SLIP + last] == 0.0 and guide > 0.0:
-        p, q, r = 1.0, compliance * F0 - chain[POSITION_BEFORE + last], compliance
+    elif chain[at.SLIP + last] == 0.0 and guide > 0.0:
+        p, q, r = 1.0, compliance * F0 - chain[at.POSITION_BEFORE + last], compliance
     else:
         p, q = pull_at_load(chain, now, laws)
-        q += chain[SLIP + last] * guide + p * compliance * F0
+        q += chain[at.SLIP + last] * guide + p * compliance * F0
         r = 1.0 + p * compliance
-    chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r
+    chain[at.SWEEP_P + laws.n], chain[at.SWEEP_Q + laws.n], chain[at.SWEEP_R + laws.n] = p, q, r
     if laws.presliding_mm > 0.0:
         eliminate_presliding(chain, p, q, r, laws)
     else:
@@ -116,14 +103,14 @@ def eliminate_sliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaw
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k  # node i, then the segment before it
-        compliance = chain[COMPLIANCE + i - 1]
-        if chain[SLIP + i] == 0.0:
-            p, q, r = 1.0, compliance * F0 - chain[POSITION_BEFORE + i], compliance
+        compliance = chain[at.COMPLIANCE + i - 1]
+        if chain[at.SLIP + i] == 0.0:
+            p, q, r = 1.0, compliance * F0 - chain[at.POSITION_BEFORE + i], compliance
         else:
             pull = p * compliance
-            q += chain[DROP + i] * r + pull * F0
-            r = chain[FACTOR + i] * r + pull
-        chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
+            q += chain[at.DROP + i] * r + pull * F0
+            r = chain[at.FACTOR + i] * r + pull
+        chain[at.SWEEP_P + i - 1], chain[at.SWEEP_Q + i - 1], chain[at.SWEEP_R + i - 1] = p, q, r
 
 
 @kernel
@@ -134,64 +121,70 @@ def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: Slip
         i = laws.n - k
         if k % NODES_PER_DIVISION == 0:  # without any division they would outgrow a float
             p, q, r = p / r, q / r, 1.0
-        p += chain[DROP_SLOPE + i] * r
-        pull = p * chain[COMPLIANCE + i - 1]
-        q += chain[DROP + i] * r + pull * F0
-        r = chain[FACTOR + i] * r + pull
-        chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
+        p += chain[at.DROP_SLOPE + i] * r
+        pull = p * chain[at.COMPLIANCE + i - 1]
+        q += chain[at.DROP + i] * r + pull * F0
+        r = chain[at.FACTOR + i] * r + pull
+        chain[at.SWEEP_P + i - 1], chain[at.SWEEP_Q + i - 1], chain[at.SWEEP_R + i - 1] = p, q, r
 
 
 @kernel
 def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set positions and tensions, from the drive on."""
     n, last = laws.n, laws.n + 1
-    chain[POSITION] = drive_position(chain, now, laws)
+    chain[at.POSITION] = drive_position(chain, now, laws)
     if laws.presliding_mm > 0.0:
         substitute_presliding(chain, laws)
     else:
         substitute_sliding(chain, laws)
-    chain[POSITION + last] = chain[POSITION + n] - chain[COMPLIANCE + n] * (
-        chain[TENSION + n] - laws.preload_N
+    chain[at.POSITION + last] = chain[at.POSITION + n] - chain[at.COMPLIANCE + n] * (
+        chain[at.TENSION + n] - laws.preload_N
     )
     if laws.load.given == DISPLACEMENT:
-        chain[POSITION + last] = now.load
-    elif chain[SLIP + last] == 0.0 and moving_friction(laws.load) > 0.0:
-        chain[POSITION + last] = chain[POSITION_BEFORE + last]
+        chain[at.POSITION + last] = now.load
+    elif chain[at.SLIP + last] == 0.0 and moving_friction(laws.load) > 0.0:
+        chain[at.POSITION + last] = chain[at.POSITION_BEFORE + last]
 
 
 @kernel
 def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
     """Set positions and tensions of nodes that slip or stick."""
-    chain[TENSION] = (chain[SWEEP_P] * chain[POSITION] + chain[SWEEP_Q]) / chain[SWEEP_R]
+    chain[at.TENSION] = (chain[at.SWEEP_P] * chain[at.POSITION] + chain[at.SWEEP_Q]) / chain[
+        at.SWEEP_R
+    ]
     for i in range(1, laws.n + 1):
-        if chain[SLIP + i] != 0.0:
-            elongation = chain[COMPLIANCE + i - 1] * (chain[TENSION + i - 1] - laws.preload_N)
-            chain[POSITION + i] = chain[POSITION + i - 1] - elongation
-            chain[TENSION + i] = chain[FACTOR + i] * chain[TENSION + i - 1] - chain[DROP + i]
+        if chain[at.SLIP + i] != 0.0:
+            elongation = chain[at.COMPLIANCE + i - 1] * (chain[at.TENSION + i - 1] - laws.preload_N)
+            chain[at.POSITION + i] = chain[at.POSITION + i - 1] - elongation
+            chain[at.TENSION + i] = (
+                chain[at.FACTOR + i] * chain[at.TENSION + i - 1] - chain[at.DROP + i]
+            )
         else:
-            chain[POSITION + i] = chain[POSITION_BEFORE + i]
-            chain[TENSION + i] = (
-                chain[SWEEP_P + i] * chain[POSITION + i] + chain[SWEEP_Q + i]
-            ) / chain[SWEEP_R + i]
+            chain[at.POSITION + i] = chain[at.POSITION_BEFORE + i]
+            chain[at.TENSION + i] = (
+                chain[at.SWEEP_P + i] * chain[at.POSITION + i] + chain[at.SWEEP_Q + i]
+            ) / chain[at.SWEEP_R + i]
 
 
 @kernel
 def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
     """Set positions and tensions of nodes with presliding; positions alone are a recursion."""
     for j in range(laws.n + 1):
-        inverse = 1.0 / chain[SWEEP_R + j]
-        chain[SWEEP_P + j] *= inverse
-        chain[SWEEP_Q + j] *= inverse
-        chain[SWEEP_R + j] = 1.0
-    position = chain[POSITION]
+        inverse = 1.0 / chain[at.SWEEP_R + j]
+        chain[at.SWEEP_P + j] *= inverse
+        chain[at.SWEEP_Q + j] *= inverse
+        chain[at.SWEEP_R + j] = 1.0
+    position = chain[at.POSITION]
     for i in range(1, laws.n + 1):
-        compliance = chain[COMPLIANCE + i - 1]
-        position = (1.0 - compliance * chain[SWEEP_P + i - 1]) * position + compliance * (
-            laws.preload_N - chain[SWEEP_Q + i - 1]
+        compliance = chain[at.COMPLIANCE + i - 1]
+        position = (1.0 - compliance * chain[at.SWEEP_P + i - 1]) * position + compliance * (
+            laws.preload_N - chain[at.SWEEP_Q + i - 1]
         )
-        chain[POSITION + i] = position
+        chain[at.POSITION + i] = position
     for j in range(laws.n + 1):
-        chain[TENSION + j] = chain[SWEEP_P + j] * chain[POSITION + j] + chain[SWEEP_Q + j]
+        chain[at.TENSION + j] = (
+            chain[at.SWEEP_P + j] * chain[at.POSITION + j] + chain[at.SWEEP_Q + j]
+        )
 
 
 @kernel
@@ -204,12 +197,12 @@ def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, limit: int, re
     loss = now.losses.viscous_N / n
     changed = 0
     for i in range(1, n + 1):
-        before = chain[SLIP + i]
+        before = chain[at.SLIP + i]
         if before == 0.0:
-            chain[SLIP + i] = breakaway(i, loss, chain)
+            chain[at.SLIP + i] = breakaway(i, loss, chain)
         elif slips_backwards(i, chain, laws):
-            chain[SLIP + i] = slip_after_backwards(i, loss, chain) if reverse else 0.0
-        if chain[SLIP + i] != before:
+            chain[at.SLIP + i] = slip_after_backwards(i, loss, chain) if reverse else 0.0
+        if chain[at.SLIP + i] != before:
             changed += 1
             if changed == limit:
                 break

@@ -85,13 +85,10 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
         run.time_s,
         [run.inputs.series(run.id, run.file.rows, n, given.stage) for n in TENSIONS if n in there],
     )
-    on_mesh = given.nodes is not None
     followed: dict[Source, tuple[Rig, Frames]] = {}
     for source, model in given.models.items():
         rig = model.rig(entry)
-        found = simulate(
-            rig, drive, given.dynamics, on_mesh=on_mesh, nodes=given.nodes, looked_at=at
-        )
+        found = simulate(rig, drive, given.dynamics, nodes=given.nodes, looked_at=at)
         if found.frames is not None:
             followed[source] = rig, found.frames
     record_tendons(recorder, run.entity("tendon"), run.times.at(at), followed)

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tsas_cli.numerics.interpolated import interpolated
-from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.numerics.noise import interpolated, noise_sd
 from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
