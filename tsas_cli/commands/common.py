@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-import tsas_cli as tsas
 from tsas_cli.commands.completion import run_ids
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -127,15 +126,18 @@ class _Said(logging.Handler):
         self.bar.say(record.getMessage())
 
 
-def run(stage: str, *, rrd: bool = False, quiet: bool, as_json: bool, **given: Any) -> Any:
+def run(
+    stage: Callable[..., Any], *, rrd: bool = False, quiet: bool, as_json: bool, **given: Any
+) -> Any:
     """Return the result of a stage, called under a progress bar, after printing it.
 
-    `given` are the arguments of its function; those that are None were not asked for. With `rrd`
-    the stage also writes `stream.rrd`.
+    `given` are its arguments, by name as the command has them; those that are None were not asked
+    for. With `rrd` the stage also writes `stream.rrd`.
     """
     asked = {name: value for name, value in given.items() if value is not None}
-    with progress(stage.replace("_", "-"), quiet=quiet) as step, with_stream(rrd, step):
-        result = getattr(tsas, stage)(**asked, step=step)
+    label = stage.__name__.replace("_", "-")
+    with progress(label, quiet=quiet) as step, with_stream(rrd, step):
+        result = stage(**asked, step=step)
     present(result, quiet=quiet, as_json=as_json)
     return result
 

@@ -32,7 +32,7 @@ def report(
 
     With `--pdf`, report.html is also printed to report.pdf.
     """
-    run("report", **locals())
+    run(tsas.report, **locals())
 
 
 def view(

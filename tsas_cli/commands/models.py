@@ -47,7 +47,7 @@ def calibrate(
     as_json: Json = False,
 ) -> None:
     """Fit the nominal model and the stiffness km of each phase to a dataset."""
-    run("calibrate", **locals())
+    run(tsas.calibrate, **locals())
 
 
 def identify_harmonic_drive(
@@ -68,7 +68,7 @@ def identify_harmonic_drive(
     as_json: Json = False,
 ) -> None:
     """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
-    run("identify_harmonic_drive", **locals())
+    run(tsas.identify_harmonic_drive, **locals())
 
 
 def simulate(
@@ -100,7 +100,7 @@ def simulate(
     name = f"{data.manifest.name} · simulation"
     with watched(given.pop("live"), name, quiet=quiet) as stream:
         each = partial(stream.simulated, data) if stream else None
-        run("simulate", dataset=data, each=each, **given)
+        run(tsas.simulate, dataset=data, each=each, **given)
 
 
 def diagnose(
@@ -165,7 +165,7 @@ def predict(
         raise InputError(
             "one argument alone", where=dataset, expected="MODEL… DATASET, the dataset last"
         )
-    run("predict", models=models, dataset=dataset, **options)
+    run(tsas.predict, models=models, dataset=dataset, **options)
 
 
 def compare(
@@ -188,7 +188,7 @@ def compare(
 
     A and B are model files, or outputs of `tsas calibrate`, `diagnose`, `simulate` or `track`.
     """
-    run("compare", **locals())
+    run(tsas.compare, **locals())
 
 
 def plan(
@@ -203,7 +203,7 @@ def plan(
     as_json: Json = False,
 ) -> None:
     """Compute the smallest detectable size of each effect, and the most useful further run."""
-    run("plan", runs=path, out=out, force=force, quiet=quiet, as_json=as_json)
+    run(tsas.plan, runs=path, out=out, force=force, quiet=quiet, as_json=as_json)
 
 
 def export(

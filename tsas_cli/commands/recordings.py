@@ -60,7 +60,7 @@ def ingest(
         )
     else:
         shown = {"quiet": quiet, "as_json": as_json}
-        run("ingest", sources=sources, map=map_path, out=out, force=force, **shown)
+        run(tsas.ingest, sources=sources, map=map_path, out=out, force=force, **shown)
 
 
 def check(
@@ -77,7 +77,7 @@ def check(
     """Check recordings for faults before a model is fitted."""
     if rrd and out is None:
         raise InputError("--rrd has no folder to write to", remedy="set --out")
-    run("check", **locals())
+    run(tsas.check, **locals())
 
 
 def runs(
@@ -144,7 +144,7 @@ def upload(
     as_json: Json = False,
 ) -> None:
     """Copy a dataset to object storage, where every command reads it by its address."""
-    run("upload", **locals())
+    run(tsas.upload, **locals())
 
 
 def verify(
@@ -161,7 +161,7 @@ def verify(
     The exit code is 2 if a file has changed or is missing. A file without a recorded checksum is
     listed, but is no fault.
     """
-    result = run("verify", **locals())
+    result = run(tsas.verify, **locals())
     sys.stdout.flush()
     if wrong := result.wrong:
         some = ", ".join(dict.fromkeys(one.file for one in wrong[:3]))

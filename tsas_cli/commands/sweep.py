@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands.common import Json, OutFolder, Quiet, run
 from tsas_cli.support.errors import InputError
 
@@ -48,7 +49,7 @@ def sweep(
     Completed tasks are kept: the same call again runs only pending or changed ones.
     """
     result = run(
-        "sweep",
+        tsas.sweep,
         plan=_plan(what, datasets or [], options or [], each_run=each_run),
         out=out,
         workers=workers,

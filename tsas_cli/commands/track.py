@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands import common, completion
 
 
@@ -72,4 +73,4 @@ def track(
     """Track a reference of the distal tension with controllers that measure x_in only."""
     given = locals()
     with common.watched(given.pop("live"), "tracking", quiet=quiet) as stream:
-        common.run("track", **given, each=stream.tracked if stream else None)
+        common.run(tsas.track, **given, each=stream.tracked if stream else None)
