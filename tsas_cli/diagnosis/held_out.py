@@ -173,14 +173,16 @@ def _prediction_variance(trial: Hypothesis, folds: Folds, fold: int) -> tuple[Fl
     Of each residual, shape (k,), and the logarithm of the determinant of the whole covariance,
     noise included.
     """
+    from scipy.linalg import solve_triangular
+
     free = ~(own_of_fold(trial, folds, fold) | trial.solution.at_bound)
     J, held_out = trial.solution.jacobian[:, free], folds.fold == fold
-    gram = J[~held_out].T @ J[~held_out] + np.diag(_weak(trial)[free])
-    predicted = np.linalg.solve(gram, J[held_out].T)
-    whole = np.eye(len(gram)) + predicted @ J[held_out]  # of the same determinant
-    variance = np.einsum("ij,ji->i", J[held_out], predicted)
+    known = np.vstack((J[~held_out], np.diag(np.sqrt(_weak(trial)[free]))))
+    root = np.linalg.qr(known, mode="r")
+    spread = solve_triangular(root, J[held_out].T, trans="T", check_finite=False)
+    whole = np.eye(len(spread)) + spread @ spread.T  # of the same determinant
     with np.errstate(invalid="ignore"):  # NaN, which convinces nobody, without finite slopes
-        return variance, float(np.linalg.slogdet(whole)[1])
+        return np.sum(spread**2, axis=0), float(np.linalg.slogdet(whole)[1])
 
 
 def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
