@@ -92,6 +92,26 @@ def test_counts_that_an_encoder_misses_are_said_as_steps(tmp_path):
     assert found.sentence.count(" mm less since about ") == 3
 
 
+def test_the_time_constant_of_an_amplifier_is_found_between_those_that_are_tried(tmp_path):
+    values = {"channels": ("f_out_N",), "time_s": 27.0}
+    (found,) = diagnose(
+        made(tmp_path, "recording", Hidden("ac_coupled_amplifier", values))
+    ).record.faults
+    assert (found.code, found.run, found.column) == ("ac-coupled", None, "f_out_N")
+    said = float(found.sentence.split(" within about ")[1].split(" s,")[0])
+    assert said == pytest.approx(27.0, rel=0.1)
+
+
+@pytest.mark.parametrize(("run", "rate"), [("b", 0.003), (None, -0.002)])
+def test_a_clock_is_said_with_its_pace(run, rate, tmp_path):
+    values = {"run": run, "channels": ("x_out_mm",), "rate": rate}
+    fault = "clock_of_a_run" if run else "second_logger"
+    (found,) = diagnose(made(tmp_path, "recording", Hidden(fault, values))).record.faults
+    assert (found.code, found.run, found.column) == ("clock", run, "x_out_mm")
+    way = "slower" if rate > 0.0 else "faster"
+    assert f" runs {100.0 * abs(rate):.1g} % {way} than" in found.sentence
+
+
 def test_a_sensor_that_saturates_softly_is_said(tmp_path):
     values = {"channels": ("f_in_N",), "depth": 1.5, "knee": 1.5}
     result = diagnose(made(tmp_path, "recording", Hidden("soft_saturation", values)))

@@ -71,6 +71,17 @@ def test_a_common_factor_of_both_forces_is_told_with_its_interval(factor, unit):
     assert unit is None or f"(both look like {unit})" in said
 
 
+@pytest.mark.parametrize("width", [1e-3, 0.1])
+def test_the_interval_of_a_factor_is_of_the_data_sheet_and_the_fit(width):
+    """A data sheet is off by 10, 5 and 10 %; the fit's errors add in squares, by their weights."""
+    (said,) = contradictions(sheet(), forces(0.5, width=width))
+    sd_of_fit = math.log((1.0 + width) / (1.0 - width)) / (2.0 * 1.96)
+    sd = sum(1.0 / (stated**2 + sd_of_fit**2) for stated in (0.1, 0.05, 0.1)) ** -0.5
+    low, high = (float(end) for end in said.split("[")[1].split("]")[0].split(", "))
+    ends = 0.5 * math.exp(-1.96 * sd), 0.5 * math.exp(1.96 * sd)
+    assert (low, high) == pytest.approx(ends, rel=2e-3)
+
+
 @pytest.mark.parametrize("factor", [0.5, 1 / 25.4])
 def test_a_common_factor_of_both_displacements_leaves_the_preload(factor):
     names = ("load_stiffness_N_per_mm", "tendon_stiffness_N")
