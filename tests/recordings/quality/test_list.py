@@ -13,6 +13,7 @@ from tsas_cli.recordings.quality.checks import (
     noise,
     of_dataset,
     pairs,
+    repeats,
     rows,
 )
 
@@ -20,7 +21,9 @@ ROOT = Path(__file__).parents[3]
 EXPLAINED = {check.code: getdoc(check.find) for check in quality.CHECKS}
 
 
-@pytest.mark.parametrize("module", [clock, extremes, motion, noise, of_dataset, pairs, rows])
+@pytest.mark.parametrize(
+    "module", [clock, extremes, motion, noise, of_dataset, pairs, repeats, rows]
+)
 def test_every_function_of_the_checks_is_in_the_list(module):
     public = {
         name.replace("_", "-")

@@ -28,6 +28,7 @@ from tsas_cli.recordings.quality.checks import (
     noise,
     of_dataset,
     pairs,
+    repeats,
     rows,
 )
 from tsas_cli.recordings.quality.finding import (
@@ -61,8 +62,8 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(noise.hum),
     QualityCheck(rows.repeated_rows),
     QualityCheck(rows.repeated_buffer),
-    QualityCheck(rows.repeated_values),
-    QualityCheck(rows.slow_channel),
+    QualityCheck(repeats.repeated_values),
+    QualityCheck(repeats.slow_channel),
     QualityCheck(noise.filtered),
     QualityCheck(extremes.ac_coupled, needs=("x_in_mm",)),
     QualityCheck(extremes.clipped),
