@@ -71,6 +71,7 @@ class Search:
     trials: dict[tuple[Names, bool], HypothesisFit] = field(default_factory=dict)
     squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
     scattered: dict[tuple[Names, bool], Floats] = field(default_factory=dict)  # by own frictions
+    in_line: dict[tuple[Names, bool], bool] = field(default_factory=dict)  # own frictions
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
     tolerated: dict[bool, Floats] = field(default_factory=dict)  # at the nominal model, by mesh
     leads: Names = frozenset()
@@ -116,8 +117,11 @@ class Search:
 
     def scatters(self, names: Names, mesh: bool) -> bool:
         """Return whether the frictions of the runs beside a set of effects are mere scatter."""
-        session_s = np.array([run.run.session_s for run in self.bench.closed])
-        return not is_in_line(self.trial(names, on_mesh=mesh), self.folds.run, session_s)
+        if (names, mesh) not in self.in_line:
+            session_s = np.array([run.run.session_s for run in self.bench.closed])
+            trial = self.trial(names, on_mesh=mesh)
+            self.in_line[names, mesh] = is_in_line(trial, self.folds.run, session_s)
+        return not self.in_line[names, mesh]
 
     def gain(self, before: Names, after: Names) -> Reduction:
         """Return the reduction between two sets of effects, both on the mesh if one needs it."""

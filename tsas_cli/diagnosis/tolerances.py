@@ -20,6 +20,7 @@ from tsas_cli.support.arrays import Floats, Indices
 FRICTION = "friction_coefficient"
 PLAUSIBLE = 2.0  # standard deviations of it
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
+OF_A_LINE = 2  # frictions, that a line goes through
 COINCIDENCE = 1e-3  # probability below which frictions in line are no coincidence
 BEND = "bend_slope", "bend_bow"  # the modes of an uneven bend
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
@@ -196,19 +197,28 @@ def is_in_line(trial: HypothesisFit, run: Indices, session_s: Floats) -> bool:
     `session_s` is the start of each run in the session [s], shape (runs,). They are where their
     scatter about a line is too small for a coincidence (F test).
     """
-    from scipy.special import fdtrc
-
     columns = friction_of_runs(trial, run)
-    free = columns.shape[1] - 2
-    if free < 1 or np.ptp(session_s) == 0.0:
+    if columns.shape[1] <= OF_A_LINE or np.ptp(session_s) == 0.0:
         return False
-    about_it = _beside(projector(trial), columns)
-    frictions = np.linalg.lstsq(about_it, trial.solution.residual, rcond=1e-6)[0]
+    frictions = _left_of_frictions(trial, columns)
     line = np.column_stack((np.ones(session_s.size), session_s / np.ptp(session_s)))
     fitted = line @ np.linalg.lstsq(line, frictions, rcond=None)[0]
-    size, scatter = np.sum((fitted - fitted.mean()) ** 2), np.sum((frictions - fitted) ** 2)
-    by_chance = fdtrc(1, free, size * free / scatter) if scatter > 0.0 else 0.0
-    return bool(by_chance < COINCIDENCE)
+    return _by_chance(fitted, frictions - fitted) < COINCIDENCE
+
+
+def _left_of_frictions(trial: HypothesisFit, columns: Floats) -> Floats:
+    """Return the friction of each run that the residual of a fit has left, in deviations."""
+    beside = _beside(projector(trial), columns)
+    return np.asarray(np.linalg.lstsq(beside, trial.solution.residual, rcond=1e-6)[0])
+
+
+def _by_chance(line: Floats, scatter: Floats) -> float:
+    """Return the probability of frictions on a line, with a scatter about it (F test)."""
+    from scipy.special import fdtrc
+
+    free, squares = line.size - OF_A_LINE, float(scatter @ scatter)
+    size = float(np.sum((line - line.mean()) ** 2))
+    return float(fdtrc(1, free, size * free / squares)) if squares > 0.0 else 0.0
 
 
 def within_scatter(trial: HypothesisFit, effect: str, run: Indices) -> bool:
@@ -216,8 +226,6 @@ def within_scatter(trial: HypothesisFit, effect: str, run: Indices) -> bool:
 
     It is more where the scatter of the frictions about it is too small for a coincidence (F test).
     """
-    from scipy.special import fdtrc
-
     columns = friction_of_runs(trial, run)
     own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
     J = trial.solution.jacobian
@@ -230,10 +238,9 @@ def within_scatter(trial: HypothesisFit, effect: str, run: Indices) -> bool:
     left = change - columns @ frictions
     if float(left @ left) > 0.5 * float(change @ change):
         return False
-    about_it = _beside(projector(trial), columns)
-    scatter = np.linalg.lstsq(about_it, trial.solution.residual, rcond=1e-6)[0]
-    size, free = float(np.sum((frictions - frictions.mean()) ** 2)), columns.shape[1] - 2
-    by_chance = fdtrc(1, free, size * free / float(scatter @ scatter)) if free else 1.0
+    size = float(np.sum((frictions - frictions.mean()) ** 2))
+    few = frictions.size <= OF_A_LINE
+    by_chance = 1.0 if few else _by_chance(frictions, _left_of_frictions(trial, columns))
     return size <= PLAUSIBLE**2 and by_chance > COINCIDENCE
 
 

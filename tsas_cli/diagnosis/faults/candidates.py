@@ -160,8 +160,8 @@ def _of_run(k: int, shapes: RunShapes, left: Beside, run: Indices) -> Iterator[C
             yield from one(code, k, channels, left.project(whole)[:, 0], left)
     for channels in _groups(tuple(shapes.clocked)):
         for rate in RATES:
-            whole = _sum({name: shapes.clocked[name][rate] for name in channels}, channels)
-            column = left.project(_in_run(whole[:, None], run == k))[:, 0]
+            whole = _in_run(shapes.at_pace(channels, rate)[:, None], run == k)
+            column = left.project(whole)[:, 0]
             yield from _of_rate(one("clock", k, channels, column, left), rate)
 
 
@@ -174,7 +174,7 @@ def _of_clocks(shapes: Sequence[RunShapes], left: Beside) -> Iterator[Candidate]
                 yield from _of_all(code, channels, [_sum(own, channels) for own in of_runs], left)
     for channels in _groups(tuple(shapes[0].clocked)):
         for rate in RATES if all(set(channels) <= set(own.clocked) for own in shapes) else ():
-            parts = [np.sum([own.clocked[n][rate] for n in channels], axis=0) for own in shapes]
+            parts = [own.at_pace(channels, rate) for own in shapes]
             yield from _of_rate(_of_all("clock", channels, parts, left), rate)
 
 

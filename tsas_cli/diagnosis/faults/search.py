@@ -127,17 +127,16 @@ def _with_ends(c: Candidate, read: ReadRun, left: Beside, run: Indices) -> Candi
     for end in ("first_s", "last_s"):
         at_s = getattr(c, end)
         if at_s is not None:
-            others = [
-                _in_part(replace(c, **{end: at_s + f * part_s}), read, left, run) for f in FINER
-            ]
-            c = max((c, *others), key=lambda other: other.reduction)
+            others = (replace(c, **{end: at_s + f * part_s}) for f in FINER)
+            fitted = [_fitted(other, _of_part(other, read, run), left) for other in others]
+            c = max((c, *fitted), key=lambda other: other.reduction)
     return c
 
 
-def _in_part(c: Candidate, read: ReadRun, left: Beside, run: Indices) -> Candidate:
-    """Return a fault with the amount that fits best."""
-    column = left.project(_of_part(c, read, run)[:, None])[:, 0]
-    for found in one(c.code, c.run, c.channels, column, left):
+def _fitted(c: Candidate, column: Floats, left: Beside) -> Candidate:
+    """Return a fault with the amount that fits best, by its column, shape (n,)."""
+    beside_it = left.project(column[:, None])[:, 0]
+    for found in one(c.code, c.run, c.channels, beside_it, left):
         return replace(c, amount=found.amount, reduction=found.reduction)
     return replace(c, reduction=0.0)
 
@@ -153,10 +152,11 @@ def _of_steps(zero: Candidate, read: ReadRun, left: Beside, run: Indices) -> Ite
     """Yield several steps of the zero of one channel in one run, one after the other."""
     squares, excess = left.squares, left.squares - run.size
     starts_s = np.linspace(0.0, float(read.time_s[-1]), WINDOWS + 1)[1:-1]
+    since = [replace(zero, first_s=float(s), last_s=None, edges=1) for s in starts_s]
+    columns = [_of_part(c, read, run) for c in since]
     steps: list[Candidate] = []
     for _ in range(MOST_STEPS):
-        since = replace(zero, last_s=None, edges=1)
-        each = [_in_part(replace(since, first_s=float(s)), read, left, run) for s in starts_s]
+        each = [_fitted(c, column, left) for c, column in zip(since, columns, strict=True)]
         step = _with_ends(max(each, key=lambda c: c.reduction), read, left, run)
         if step.reduction < STEP * excess:
             break

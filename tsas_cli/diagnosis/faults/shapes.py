@@ -1,6 +1,6 @@
 """What a fault of the recording by one unit does to the residuals of a run."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -85,6 +85,10 @@ class RunShapes:
     pace: Mapping[str, Floats]
     clocked: Mapping[str, Mapping[float, Floats]]
 
+    def at_pace(self, channels: Iterable[str], rate: float) -> Floats:
+        """Return the column of channels on a clock of a pace, shape (r,)."""
+        return np.asarray(np.sum([self.clocked[name][rate] for name in channels], axis=0))
+
 
 def runs_at(bench: Bench, trial: HypothesisFit) -> list[ReadRun]:
     """Return the runs of a bench at a trial's rigs."""
@@ -121,18 +125,8 @@ def passed(time_s: Floats, values: Floats, constant_s: float) -> Floats:
     """Return what an amplifier passes that is coupled to AC with a time constant."""
     from scipy.signal import lfilter
 
-    return np.asarray(lfilter([1.0, -1.0], [1.0, -_decay(time_s, constant_s)], values))
-
-
-def before_amplifier(time_s: Floats, values: Floats, constant_s: float) -> Floats:
-    """Return what an amplifier read that is coupled to AC: the inverse of `passed`."""
-    from scipy.signal import lfilter
-
-    return np.asarray(lfilter([1.0, -_decay(time_s, constant_s)], [1.0, -1.0], values))
-
-
-def _decay(time_s: Floats, constant_s: float) -> float:
-    return float(np.exp(-np.diff(time_s).mean() / constant_s))
+    decay = np.exp(-np.diff(time_s).mean() / constant_s)
+    return np.asarray(lfilter([1.0, -1.0], [1.0, -decay], values))
 
 
 def _parts(since: Floats) -> Floats:
