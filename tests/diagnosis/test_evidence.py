@@ -27,7 +27,18 @@ def test_one_block_alone_convinces_nobody_however_much_it_gains():
 def test_blocks_that_gain_nothing_do_not_speak():
     after = BEFORE.copy()
     after[:20] *= 0.5
-    assert gain(BEFORE, after).test_statistic == pytest.approx(np.sqrt(20.0))
+    ranks = np.arange(21.0, 41.0)  # the upper half
+    assert gain(BEFORE, after).test_statistic == pytest.approx(ranks.sum() / np.sqrt(ranks @ ranks))
+
+
+def test_blocks_that_gain_more_do_not_outvote_the_others():
+    """All of twelve gain, three of them twenty times as much as the rest: 1 in 4096 by chance."""
+    after = np.ones(12)
+    before = np.exp(np.linspace(0.1, 0.2, 12))
+    before[-3:] *= 20.0
+    assert gain(before, after).convincing
+    before[:5] = 1.0 / before[:5]
+    assert not gain(before, after).convincing
 
 
 def test_chance_is_rarely_convincing():
@@ -40,7 +51,7 @@ def test_chance_is_rarely_convincing():
 
 def test_a_sure_gain_that_is_tiny_does_not_matter():
     found = gain(BEFORE, 0.999 * BEFORE)
-    assert found.test_statistic > 6.0
+    assert found.test_statistic == pytest.approx(np.sqrt(1.5 * 40 * 41 / 81))
     assert not found.convincing
 
 
@@ -66,13 +77,13 @@ def test_what_changes_nothing_is_not_sure():
     assert (same.part, same.test_statistic) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize(("blocks", "needed"), [(4, 1.6), (9, 2.4), (10, 0.8 * 10**0.5), (11, 2.6)])
+@pytest.mark.parametrize(("blocks", "needed"), [(1, 0.9), (4, 9 / 30**0.5), (9, 40.5 / 285**0.5), (11, 2.6)])
 def test_few_blocks_have_to_agree(blocks, needed):
-    """Four fifths of their root, where that is less than 2.6."""
+    """Nine tenths of what they say together, where that is less than 2.6."""
     assert gain(np.ones(blocks), np.ones(blocks)).needed == pytest.approx(needed)
 
 
-def test_the_test_statistic_is_the_sum_of_relative_gains_over_that_with_random_signs():
+def test_the_test_statistic_is_that_of_signed_ranks():
     found = gain(np.array([np.e, 1.0, np.e**3]), np.array([1.0, np.e**2, 1.0]))
     assert found.test_statistic == pytest.approx((1.0 - 2.0 + 3.0) / np.sqrt(1.0 + 4.0 + 9.0))
     assert found.part == pytest.approx(1.0 - (2.0 + np.e**2) / (1.0 + np.e + np.e**3))

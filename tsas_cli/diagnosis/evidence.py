@@ -8,7 +8,7 @@ import numpy as np
 from tsas_cli.support.arrays import Floats
 
 CRITICAL_VALUE = 2.6  # critical value of the test statistic; 1 in 200 by chance
-AGREE = 0.8  # of its largest possible value, the critical value for few blocks
+AGREE = 0.9  # of its largest possible value, the critical value for few blocks
 LEAST_REDUCTION = 0.025  # least reduction of the squares by a cause; conditioning leaves up to 0.01
 LEAST_DIFFERENCE = 0.01  # least reduction of the squares that distinguishes a cause from a rival
 LEAST_REDUCTION_PER_COMPLEXITY = (
@@ -21,10 +21,10 @@ RESAMPLED = 2000  # bootstrap samples
 class Reduction:
     """Reduction of the held-out squares by a hypothesis compared with another one.
 
-    `part` is the share of all squares; `test_statistic` is the sum of the blocks'
-    relative reductions over the standard deviation of the same sum with random signs (a sign-flip
-    test: a block without a change has no weight). It is at most the square root of the number of
-    blocks, so that most of few blocks have to agree: `needed` is the critical value.
+    `part` is the share of all squares; `test_statistic` that of Wilcoxon's signed-rank test of the
+    blocks' relative reductions, in standard deviations by chance: a block without a change has no
+    weight, and one with a large change not much more than others. It is largest where all blocks
+    agree, so that most of few have to: `needed` is the critical value.
     """
 
     part: float
@@ -44,10 +44,12 @@ class Reduction:
 def gain(before: Floats, after: Floats) -> Reduction:
     """Return the reduction between the squares of two hypotheses by block, shape (blocks,)."""
     relative = np.log(before / after)
-    spread = math.sqrt(float(relative @ relative))
+    ranks = np.argsort(np.argsort(np.abs(relative))) + 1.0
+    by_chance = math.sqrt(float(np.sum(ranks[relative != 0.0] ** 2)))
     part = 1.0 - float(after.sum()) / float(before.sum())
-    test_statistic = float(relative.sum()) / spread if spread > 0.0 else 0.0
-    return Reduction(part, test_statistic, min(CRITICAL_VALUE, AGREE * math.sqrt(before.size)))
+    test_statistic = float(np.sign(relative) @ ranks) / by_chance if by_chance > 0.0 else 0.0
+    most = float(ranks.sum()) / math.sqrt(float(ranks @ ranks))
+    return Reduction(part, test_statistic, min(CRITICAL_VALUE, AGREE * most))
 
 
 def gain_percent(

@@ -14,6 +14,7 @@ from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import projector
+from tsas_cli.numerics.covariance import inverse_gram
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -282,7 +283,7 @@ def _estimated(
     """Return the estimated tolerances, by one Gauss-Newton step, and their standard errors."""
     solution, count = trial.solution, tolerated.shape[1]
     J = np.hstack((solution.jacobian * ~solution.at_bound, tolerated))
-    step = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ solution.residual)
+    step = -inverse_gram(J) @ (J.T @ solution.residual)
     free = replace(trial, solution=replace(solution, jacobian=J[:, :-count]))
     names = [(f"tolerance {k}", None, 1.0) for k in range(count)]
     extended = free.with_columns(names, tolerated)

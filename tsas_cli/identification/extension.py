@@ -1,6 +1,6 @@
 """The calibrated runs with effects freed: every hypothesis is fitted in the same way."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -12,6 +12,7 @@ from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
+from tsas_cli.numerics.covariance import inverse_gram
 from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.response import ON_CHAIN, is_closed
@@ -22,6 +23,7 @@ TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of ma
 MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
 NODES, COARSE_NODES = 40, 12  # of the slip chain, in fits and in screening
 FAR = 1e9  # bounds that are never active
+PROBED = (0.1, 0.3)  # of its plausible size, where a size that ended at its bound is tried again
 UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
 
 
@@ -52,13 +54,12 @@ class HypothesisFit:
         free = ~self.solution.at_bound
         J = self.solution.jacobian[:, free]
         moves = np.zeros((free.size, changes.shape[1]))
-        moves[free] = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ changes)
+        moves[free] = -inverse_gram(J) @ (J.T @ changes)
         return moves
 
     def correlation(self) -> Floats:
         """Return the correlation of the unknowns by noise alone, shape (p, p), without bounds."""
-        J = self.solution.jacobian
-        return correlation_of(np.asarray(np.linalg.pinv(J.T @ J, hermitian=True)))
+        return correlation_of(inverse_gram(self.solution.jacobian))
 
     def with_columns(
         self,
@@ -166,15 +167,24 @@ class Bench:
         def residuals(k: int, values: Floats) -> Floats:
             return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, values))
 
-        slopes = None if near is None else near.slopes_of(unknowns)
-        solution = solve(
+        def solved(start: Sequence[Unknown], slopes: Floats | None) -> Solution:
+            return solve(
+                start,
+                runs,
+                residuals,
+                tolerance=tolerance,
+                known=slopes,
+                values_only=values_only,
+            )
+
+        solution = solved(unknowns, None if near is None else near.slopes_of(unknowns))
+        inside = off_bounds(
             unknowns,
-            runs,
-            residuals,
-            tolerance=tolerance,
-            known=slopes,
-            values_only=values_only,
+            solution,
+            lambda values: np.concatenate(each(lambda k: residuals(k, values), range(runs))),
         )
+        if inside is not None:
+            solution = solved(inside, solution.jacobian)
         sizes = tuple(residuals(k, solution.values).size for k in range(runs))
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
 
@@ -219,6 +229,32 @@ class Bench:
     def rig(self, trial: HypothesisFit, k: int) -> Rig:
         """Return the rig of run k with a trial's values."""
         return rig_at(self.rigs[k], k, trial.unknowns, trial.solution.values)
+
+
+def off_bounds(
+    unknowns: Sequence[Unknown], solution: Solution, residuals: Callable[[Floats], Floats]
+) -> list[Unknown] | None:
+    """Return initial values with a size that ended at its bound where the squares are smaller.
+
+    None where there are none. The squares need not fall from the bound on: a play that is smaller
+    than what else is wrong begins with a hill.
+    """
+    best, least = None, float(solution.residual @ solution.residual)
+    for j in np.flatnonzero(solution.at_bound):
+        quantity = QUANTITIES[unknowns[j].name]
+        neutral = quantity.scaled(quantity.default)
+        if "." not in quantity.name or quantity.shape or solution.values[j] != neutral:
+            continue
+        side = 1.0 if unknowns[j].upper > neutral else -1.0
+        for part in PROBED:
+            tried = solution.values.copy()
+            tried[j] += side * part
+            errors = residuals(tried)
+            if float(errors @ errors) < least:
+                best, least = tried, float(errors @ errors)
+    if best is None:
+        return None
+    return [replace(u, initial=float(v)) for u, v in zip(unknowns, best, strict=True)]
 
 
 def bench_of(base: FittedModel) -> Bench:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tsas_cli.numerics.covariance import jackknife
+from tsas_cli.numerics.covariance import inverse_gram, jackknife
 from tsas_cli.numerics.least_squares import Solution, least_squares
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -190,13 +190,12 @@ def with_errors(
 
 def _without_a_run(J: Floats, run: Indices) -> Floats:
     """Return by how much the variance of each parameter grows, at most, without one run."""
-    scaled = J / np.maximum(np.linalg.norm(J, axis=0), np.finfo(float).tiny)
-    whole = np.diag(np.linalg.pinv(scaled.T @ scaled, hermitian=True))
+    whole = np.diag(inverse_gram(J))
     most = np.ones(J.shape[1])
     for k in np.unique(run):
-        rest = scaled[run != k]
+        rest = J[run != k]
         shared = np.any(rest != 0.0, axis=0)
-        less = np.diag(np.linalg.pinv(rest[:, shared].T @ rest[:, shared], hermitian=True))
+        less = np.diag(inverse_gram(rest[:, shared]))
         most[shared] = np.maximum(most[shared], less / whole[shared])
     return most
 
@@ -207,7 +206,6 @@ def _errors(J: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats
     Infinite errors where the residuals do not determine a parameter at all.
     """
     covariance, t = jackknife(J, residual, block)
-    gram = J.T @ J
-    determined = np.diag(np.linalg.pinv(gram, hermitian=True) @ gram)
+    determined = np.diag(inverse_gram(J) @ (J.T @ J))
     errors = np.sqrt(np.diag(covariance))
     return np.where(np.abs(determined - 1.0) < UNDETERMINED, errors, np.inf), t

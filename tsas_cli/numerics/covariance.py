@@ -15,6 +15,7 @@ from tsas_cli.support.arrays import Floats, Indices
 
 FEWEST_BLOCKS = 8
 MEMORIES_PER_BLOCK = 4.0
+DETERMINED = 1e-4  # least singular value of columns of length one: their differences' accuracy
 
 
 def memory(residual: Floats) -> float:
@@ -56,6 +57,18 @@ def block_numbers(sizes: list[int], length: int) -> Indices:
     return np.concatenate(out)
 
 
+def inverse_gram(jacobian: Floats) -> Floats:
+    """Return (J'J)⁻¹ of a Jacobian J, shape (p, p), without directions that it does not determine.
+
+    In two parameters whose sum alone shows, all but the sum is an error of finite differences.
+    """
+    lengths = np.linalg.norm(jacobian, axis=0)
+    lengths[lengths == 0.0] = 1.0
+    scaled = jacobian / lengths
+    inverse = np.linalg.pinv(scaled.T @ scaled, rcond=DETERMINED**2, hermitian=True)
+    return np.asarray(inverse / np.outer(lengths, lengths))
+
+
 def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
     """Return the covariance of least-squares parameters and Student's t for 95 % intervals.
 
@@ -66,7 +79,7 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     from scipy.special import stdtrit  # a fifth of the time that scipy.stats takes to load
 
     p = jacobian.shape[1]
-    bread = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
+    bread = inverse_gram(jacobian)
     order = np.argsort(block, kind="stable")
     starts = np.flatnonzero(np.diff(block[order], prepend=-1))
     scores = np.add.reduceat((jacobian * residual[:, None])[order], starts)
