@@ -189,3 +189,23 @@ def test_an_uneven_sheath_is_bent_by_a_twentieth_more_here_than_there(bench):
     expected = np.zeros((10, 2))
     expected[[3, 8], 0] = expected[[4, 9], 1] = 0.05
     np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+PLAY = "backlash.play_mm"
+
+
+@pytest.mark.parametrize(
+    ("name", "at", "errors", "start"),
+    [
+        (PLAY, 0.0, {0.1: 2.0, 0.3: 0.5}, 0.3),  # behind a hill
+        (PLAY, 0.0, {0.1: 0.4, 0.3: 0.5}, 0.1),
+        (PLAY, 0.0, {0.1: 1.0, 0.3: 1.0}, None),
+        (PLAY, 200.0, {0.1: 0.0, 0.3: 0.0}, None),  # at its other bound
+        ("friction_coefficient", 0.0, {0.1: 0.0, 0.3: 0.0}, None),
+    ],
+)
+def test_a_size_at_zero_is_tried_where_the_squares_may_be_smaller(name, at, errors, start):
+    unknowns = [zero_of(0), unknown_of(name, at)]
+    solution = trial_of(values=[1.5, at], residual=np.ones(1), at_bound=[False, True]).solution
+    found = e.off_bounds(unknowns, solution, lambda v: np.array([errors[round(v[1], 6)]]))
+    assert (found and [u.initial for u in found]) == (start and [1.5, start])

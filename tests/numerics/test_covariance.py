@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from tsas_cli.numerics.covariance import block_length, jackknife, memory
+from tsas_cli.numerics.covariance import block_length, inverse_gram, jackknife, memory
 
 
 def coloured(rng, n, rho):
@@ -51,3 +51,20 @@ def test_one_wild_block_widens_the_interval():
     wild -= wild.mean()
     block = np.arange(100) // 10
     assert jackknife(J, wild, block)[0][0, 0] > 50.0 * jackknife(J, calm + 1e-3, block)[0][0, 0]
+
+
+def test_what_shows_only_together_leaves_the_intervals_of_others_alone():
+    """Two columns that are alike but for the errors of finite differences."""
+    rng = np.random.default_rng(4)
+    J, residual, block = rng.normal(size=(400, 3)), rng.normal(size=400), np.arange(400) // 10
+    alike = J[:, 2] + 1e-6 * rng.normal(size=400)
+    alone, both = (jackknife(K, residual, block)[0] for K in (J, np.column_stack((J, alike))))
+    assert np.diag(both)[:2] == pytest.approx(np.diag(alone)[:2], rel=1e-3)
+
+
+def test_the_inverse_is_that_of_the_normal_equations_in_any_units():
+    J = np.random.default_rng(5).normal(size=(50, 3)) * [1e-6, 1.0, 1e6]
+    product = inverse_gram(J) @ (J.T @ J)
+    assert np.diag(product) == pytest.approx(np.ones(3))
+    none = np.column_stack((J[:, 1], np.zeros(50)))
+    assert inverse_gram(none) == pytest.approx(np.diag([1.0 / (J[:, 1] @ J[:, 1]), 0.0]))
