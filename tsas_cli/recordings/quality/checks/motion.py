@@ -134,7 +134,8 @@ def interference(trial: RunSignals) -> Remarks:
     In the dead band after a reversal of the drive the load rests, so nothing there can jump with
     it. What does is an interference that follows the direction of the motor: its current in the
     cable of a sensor, or a correction by the sign of the speed. Beside it f_in may jump too; that
-    looks like friction of the drive.
+    looks like friction of the drive. A load with a mass jumps too, against the direction, where it
+    stops braking.
     """
     even = trial.increases and trial.batches is None
     if not trial.on_spring or not even or len(trial.strokes) <= _FEWEST_REVERSALS:
@@ -149,10 +150,13 @@ def interference(trial: RunSignals) -> Remarks:
         mean, error = float(jumps.mean()), float(jumps.std(ddof=1)) / math.sqrt(jumps.size)
         if abs(mean) > max(_VISIBLE * trial.sizes[name].noise, _CRITICAL * error):
             unit = name.rsplit("_", 1)[1]
+            brakes = name == "f_out_N" and mean < 0.0
             yield Remark(
-                "error",
+                "warning" if brakes else "error",
                 f"{name} jumps by {abs(mean):.2g} {unit} when the drive reverses, "
-                "where the load still rests: interference that follows the motor's direction",
+                "where the load still rests: "
+                + ("mass of the load, or " if brakes else "")
+                + "interference that follows the motor's direction",
                 "shield the sensor's cable from the motor's, and look for corrections by the sign "
                 "of the speed",
                 name,
