@@ -77,7 +77,9 @@ def test_what_changes_nothing_is_not_sure():
     assert (same.part, same.test_statistic) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize(("blocks", "needed"), [(1, 0.9), (4, 9 / 30**0.5), (9, 40.5 / 285**0.5), (11, 2.6)])
+@pytest.mark.parametrize(
+    ("blocks", "needed"), [(1, 0.9), (4, 9 / 30**0.5), (9, 40.5 / 285**0.5), (11, 2.6)]
+)
 def test_few_blocks_have_to_agree(blocks, needed):
     """Nine tenths of what they say together, where that is less than 2.6."""
     assert gain(np.ones(blocks), np.ones(blocks)).needed == pytest.approx(needed)

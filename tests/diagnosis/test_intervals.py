@@ -1,6 +1,7 @@
 """Intervals of estimates, with what tolerances move."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 from tsas_cli.diagnosis import intervals
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import HypothesisFit
-from tsas_cli.identification.fit import Fitted, Solution, Unknown
+from tsas_cli.identification.fit import Fitted, Unknown
+from tsas_cli.identification.quantities import QUANTITIES
 
 
 def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
@@ -38,10 +39,10 @@ def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
     trial = SimpleNamespace(unknowns=[], solution=None, effects=(), correlation=lambda: np.eye(2))
     search = SimpleNamespace(folds=folds, bench=bench)
     found = intervals.estimates_with_tolerances(search, trial, np.zeros((6, 7)))
-    half = 2.0 * np.sqrt(10.0)
+    half = np.hypot(2.0 * 1.0, 1.96 * 3.0)  # Student's t is of the noise alone
     assert [e.value for e in found.estimates] == [7.0, 7.0]
     assert [e.value for e in found.moved] == [9.0, -2.0]
-    assert [e.stderr for e in found.estimates] == pytest.approx([np.sqrt(10.0)] * 2)
+    assert [e.stderr for e in found.estimates] == pytest.approx([half / 2.0] * 2)
     lows, highs = zip(*((e.interval_low, e.interval_high) for e in found.estimates), strict=True)
     assert lows == pytest.approx((9.0 - half, -2.0 - half))
     assert highs == pytest.approx((9.0 + half, 7.0))  # the value is held
@@ -49,40 +50,28 @@ def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
     assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
 
 
-def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():
-    """The tendon need not be the first unknown."""
-    unknowns = [
-        Unknown("friction_coefficient", None, 0.0, -9.0, 9.0, 1.0),
-        Unknown("tendon_stiffness_N", None, 0.0, math.log(0.5), math.log(2.0), 1.0),
-    ]
-    solution = Solution(
-        np.array([5.0, math.log(1.25)]),
-        np.zeros(2, bool),
-        np.zeros(1),
-        np.zeros((1, 2)),
-        True,
-        "",
-        1,
-    )
-    trial = HypothesisFit((), tuple(unknowns), solution, (1,), on_mesh=False)
-    found = intervals._with_data_sheet_interval(
-        Estimate(intervals.SHEATH, 1.0, "1", "fitted"), trial
-    )
-    assert found.interval_low == 0.0  # 2 · 0.5/1.25 is less than 1
-    assert found.interval_high == pytest.approx(2.0 * 2.0 / 1.25 - 1.0)
-    assert found.stderr == pytest.approx((2.0 * 2.0 / 1.25 - 2.0) / 1.96)
+@pytest.mark.parametrize(
+    ("log_EA", "ratio", "stated"),
+    [(-0.2, 0.2, (0.0, 1.2 * math.exp(0.2) - 1.0)), (0.2, 0.1, (0.2, 0.1))],
+)
+def test_a_sheath_is_stated_for_the_tendon_of_the_data_sheet(log_EA, ratio, stated):
+    """(1 + ratio)/EA is what the recordings determine; a ratio is not negative."""
+    names = ("free_tendon.distal_length_mm", intervals.TENDON, intervals.SHEATH)
+    sheath = QUANTITIES[intervals.SHEATH]
+    unknowns = [Unknown(name, None, 0.0, -0.3, 0.3, 1.0) for name in names]
+    values = np.array([2.0, log_EA, sheath.scaled(ratio)])
+    found = intervals._at_data_sheet(values, SimpleNamespace(unknowns=unknowns))
+    assert (found[1], sheath.unscaled(found[2])) == pytest.approx(stated)
+    assert found[0] == pytest.approx(2.0 * math.exp(stated[0] - log_EA))
+    assert intervals._at_data_sheet(values, SimpleNamespace(unknowns=unknowns[:2])) is values
 
 
 def test_a_sheath_is_as_unsure_as_the_tendons_data_sheet():
     """(1 + ratio)/EA is what is told: with EA 20 % up or down the ratio follows."""
-    unknown = Unknown("tendon_stiffness_N", None, 0.0, math.log(0.8), math.log(1.2), 1.0)
-    trial = SimpleNamespace(unknowns=[unknown], solution=SimpleNamespace(values=np.zeros(1)))
     ratio = Estimate("sheath_compression.compliance_ratio", 0.5, "1", "fitted", None, 0.0, 0.5, 0.5)
-    found = intervals._with_data_sheet_interval(ratio, trial)
+    found = intervals._with_data_sheet_interval(ratio, (math.log(0.8), math.log(1.2)))
     assert found.interval_low == pytest.approx(1.5 * 0.8 - 1.0)
     assert found.interval_high == pytest.approx(1.5 * 1.2 - 1.0)
     assert found.stderr == pytest.approx(0.3 / 1.96)
-    low = intervals._with_data_sheet_interval(Estimate("r", 0.1, "1", "fitted"), trial)
-    assert low.interval_low == 0.0
-    without = SimpleNamespace(unknowns=[], solution=trial.solution)
-    assert intervals._with_data_sheet_interval(ratio, without) is ratio
+    low = replace(ratio, value=0.1)
+    assert intervals._with_data_sheet_interval(low, (math.log(0.8), 0.1)).interval_low == 0.0

@@ -1,16 +1,26 @@
 """What an effect fails to prove."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.proof import failures, may_be_zero, split_in_words
+from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.identification.estimate import Estimate
 
 CLEAR, CHANCE = Reduction(0.5, 9.0), Reduction(0.5, 2.0)
-SAME = {"f_in_N": 0.1, "x_out_mm": 0.01}
 NOISE = {"f_in_N": 0.05, "x_out_mm": 0.01}
+
+
+def errors(rmse, noise=NOISE):
+    return HeldOutFit(rmse, {n: v / noise[n] for n, v in rmse.items()}, np.zeros(0), {})
+
+
+SAME_N_mm = {"f_in_N": 0.1, "x_out_mm": 0.01}
+SAME = errors(SAME_N_mm)
 
 
 def estimate(name, value, low, high, *, unit="N", at_bound=False):
@@ -23,9 +33,9 @@ OFFSETS = (
 )
 
 
-def of(*offsets, gain=CLEAR, after=SAME):
+def of(*offsets, gain=CLEAR, after=SAME_N_mm):
     zero = may_be_zero("force_sensor_offset", offsets)
-    return failures("force_sensor_offset", offsets, gain, SAME, after, NOISE, zero=zero)
+    return failures("force_sensor_offset", offsets, gain, SAME, errors(after), zero=zero)
 
 
 def test_one_size_that_is_not_neutral_and_a_gain_are_enough():
@@ -61,7 +71,7 @@ def test_a_gain_has_its_neutral_value_at_one():
     def gain(low, high):
         value = estimate("force_sensor_gain.f_out_gain", 1.02, low, high, unit="1")
         zero = may_be_zero("force_sensor_gain", (value,))
-        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME, NOISE, zero=zero)
+        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME, zero=zero)
 
     assert gain(1.01, 1.03) == ()
     assert gain(0.99, 1.05)
@@ -79,16 +89,26 @@ def test_no_channel_may_become_worse():
 
 def test_a_channel_may_become_a_little_worse_where_another_gains_far_more():
     before, after = {"f_in_N": 1.0, "x_out_mm": 0.01}, {"f_in_N": 0.05, "x_out_mm": 0.011}
-    assert failures("force_sensor_offset", OFFSETS, CLEAR, before, after, NOISE) == ()
+    assert failures("force_sensor_offset", OFFSETS, CLEAR, errors(before), errors(after)) == ()
     after["x_out_mm"] = 0.04
-    assert failures("force_sensor_offset", OFFSETS, CLEAR, before, after, NOISE)
+    assert failures("force_sensor_offset", OFFSETS, CLEAR, errors(before), errors(after))
+
+
+def test_a_channel_is_worse_where_its_normalised_residual_is_too():
+    """At a steep reversal a small error of x_in is a large one of f_in, and weighs little."""
+    before, after = errors({"f_in_N": 0.1, "x_out_mm": 0.01}), {"f_in_N": 0.2, "x_out_mm": 0.01}
+    worse = errors(after)
+    steep = replace(worse, normalised=before.normalised | {"f_in_N": 1.9})
+    assert failures("force_sensor_offset", OFFSETS, CLEAR, before, worse)
+    assert failures("force_sensor_offset", OFFSETS, CLEAR, before, steep) == ()
 
 
 @pytest.mark.parametrize(("tolerance_N", "refused"), [(0.028, False), (0.026, True)])
 def test_a_rise_within_a_load_cells_tolerance_is_none(tolerance_N, refused):
     """0.1036² − 0.1² is 0.0271²; one of another channel has no such tolerance."""
     before, after = {"f_in_N": 0.1, "x_out_mm": 0.01}, {"f_in_N": 0.1036, "x_out_mm": 0.01}
-    rest = "force_sensor_offset", OFFSETS, CLEAR, before, after, {"f_in_N": 0.01, "x_out_mm": 0.01}
+    noise = {"f_in_N": 0.01, "x_out_mm": 0.01}
+    rest = "force_sensor_offset", OFFSETS, CLEAR, errors(before, noise), errors(after, noise)
     assert bool(failures(*rest, tolerance_N={"f_in_N": tolerance_N})) == refused
     assert failures(*rest, tolerance_N={"f_out_N": 1.0})
 
@@ -96,7 +116,7 @@ def test_a_rise_within_a_load_cells_tolerance_is_none(tolerance_N, refused):
 @pytest.mark.parametrize(("value", "refused"), [(1e-6, False), (1e9, True)])
 def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refused):
     friction = estimate("drive_friction.friction_N", value, value / 2, value, at_bound=True)
-    said = failures("drive_friction", (friction,), CLEAR, SAME, SAME, NOISE)
+    said = failures("drive_friction", (friction,), CLEAR, SAME, SAME)
     assert bool(said) == refused
 
 
@@ -112,19 +132,22 @@ def test_an_offset_that_is_the_same_for_both_sensors_may_be_friction(f_out, refu
     assert of(f_in) == ()
 
 
-@pytest.mark.parametrize(("effect", "refused"), [("tilt", True), ("curvature", False)])
-def test_a_tilt_that_is_the_same_for_both_sensors_may_be_a_force_along_the_way(effect, refused):
-    unit = {"tilt": "mm", "curvature": "N"}[effect]
+@pytest.mark.parametrize(
+    ("effect", "parameter", "refused"),
+    [("tilt", "per_mm", True), ("gain_drift", "rate_per_s", True), ("curvature", "per_N", False)],
+)
+def test_what_is_the_same_for_both_sensors_may_be_of_the_tendon(effect, parameter, refused):
+    """A force along the way is a tilt of both; a load that softens takes a share of both."""
     name = f"force_sensor_{effect}"
-    both = [estimate(f"{name}.{f}_per_{unit}", 0.01, 0.009, 0.011) for f in ("f_in", "f_out")]
-    assert bool(failures(name, both, CLEAR, SAME, SAME, NOISE)) == refused
+    both = [estimate(f"{name}.{f}_{parameter}", 0.01, 0.009, 0.011) for f in ("f_in", "f_out")]
+    assert bool(failures(name, both, CLEAR, SAME, SAME)) == refused
 
 
 @pytest.mark.parametrize("effect", ["drive_ripple", "load_ripple", "position_sensor_ripple"])
 def test_a_wave_whose_period_is_longer_than_the_strokes_is_refused(effect):
     sine = estimate(f"{effect}.sine_mm", 0.1, 0.09, 0.11, unit="mm")
     period = estimate(f"{effect}.period_mm", 8.0, 7.9, 8.1, unit="mm")
-    rest = (sine, period), CLEAR, SAME, SAME, NOISE
+    rest = (sine, period), CLEAR, SAME, SAME
     assert failures(effect, *rest) == failures(effect, *rest, stroke_mm=8.1) == ()
     (said,) = failures(effect, *rest, stroke_mm=7.9)
     assert said == "has a period of 8 mm, longer than the strokes of 7.9 mm"

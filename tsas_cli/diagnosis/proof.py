@@ -14,6 +14,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.signals import RUN, signal_in_words
 from tsas_cli.effects import EFFECTS, Effect, Parameter
 from tsas_cli.identification.estimate import Estimate
@@ -28,8 +29,10 @@ MOST_PARTS = 4  # of a split that a sentence lists
 ALIKE = 0.1  # relative difference of two sensors' errors within which they are alike
 
 # What adds to both forces alike is something else: a law of friction μ(T + c) is the capstan's with
-# c added to both, and a force along the way that the tendon passes on is a tilt of both.
+# c added to both, a force along the way that the tendon passes on is a tilt of both, and a load that
+# softens takes the same share of both.
 BOTH_SENSORS = {
+    "force_sensor_gain_drift": "a load whose stiffness changes",
     "force_sensor_offset": "friction that does not vanish with the tension",
     "force_sensor_tilt": "a force along the way of the tendon",
 }
@@ -62,9 +65,8 @@ def failures(
     effect: str,
     estimates: Sequence[Estimate],
     refitted_gain: Reduction,
-    without: Mapping[str, float],
-    with_it: Mapping[str, float],
-    noise: Mapping[str, float],
+    without: HeldOutFit,
+    with_it: HeldOutFit,
     *,
     tolerance_N: Mapping[str, float] | None = None,
     stroke_mm: float = math.inf,
@@ -73,7 +75,9 @@ def failures(
     """Return what an effect fails to prove, in sentences without their subject.
 
     `refitted_gain` is its reduction of the squares on held-out data by new fits, `without` and
-    `with_it` are the RMS of each channel there. `tolerance_N` is by how much a force sensor of a
+    `with_it` are the errors there. A channel becomes worse where both its RMS and that of its
+    normalised residual rise: the first alone may rise where a reversal is steep.
+    `tolerance_N` is by how much a force sensor of a
     sound rig may be wrong, `stroke_mm` the longest way of the drive, infinite where it is not
     known, and `zero` whether the effect `may_be_zero`.
     """
@@ -103,17 +107,14 @@ def failures(
             f"is the same for both sensors ({alike[0]:.3g} and {alike[1]:.3g} "
             f"{sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
         )
-    changes = {
-        name: (after**2 - without[name] ** 2) / noise[name] ** 2 for name, after in with_it.items()
-    }
+    changes = {n: after**2 - without.normalised[n] ** 2 for n, after in with_it.normalised.items()}
     fall = -sum(min(change, 0.0) for change in changes.values())
     out += [
-        f"makes {name} worse on held-out data ({number_text(without[name])} to "
-        f"{number_text(with_it[name])})"
-        for name, change in changes.items()
-        if with_it[name] > (1.0 + LEAST_RISE) * without[name]
-        and change > RISE_OF_FALL * fall
-        and with_it[name] ** 2 - without[name] ** 2 > (tolerance_N or {}).get(name, 0.0) ** 2
+        f"makes {name} worse on held-out data ({number_text(before)} to {number_text(after)})"
+        for (name, before), after in zip(without.rmse.items(), with_it.rmse.values(), strict=True)
+        if after > (1.0 + LEAST_RISE) * before
+        and changes[name] > RISE_OF_FALL * fall
+        and after**2 - before**2 > (tolerance_N or {}).get(name, 0.0) ** 2
     ]
     return tuple(out)
 

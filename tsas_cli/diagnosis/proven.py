@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.constancy import absorbed_by, beside_tolerances, worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
@@ -131,10 +130,9 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, last.tolerated)
     again = gain(fewer.squares, all_of_them.squares)
     zero = may_be_zero(name, moved, found.correlation[np.ix_(at, at)])
-    noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
     stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
-        *(name, own, again, fewer.rmse, all_of_them.rmse, noise),
+        *(name, own, again, fewer, all_of_them),
         tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
         stroke_mm=stroke_mm,
         zero=zero,

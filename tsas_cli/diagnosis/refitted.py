@@ -22,11 +22,13 @@ from tsas_cli.support.arrays import Floats, Mask
 class HeldOutFit:
     """Errors of one hypothesis on held-out data.
 
-    `rmse` is the RMS of each channel, in its unit, `by_run` that of each run's number and channel;
-    `squares` the sum of squares of the weighted residuals in each block, shape (blocks,).
+    `rmse` is the RMS of each channel, in its unit, `normalised` that of its weighted residuals,
+    `by_run` the RMS of each run's number and channel; `squares` the sum of squares of the weighted
+    residuals in each block, shape (blocks,).
     """
 
     rmse: dict[str, float]
+    normalised: dict[str, float]
     squares: Floats
     by_run: dict[tuple[int, str], float]
 
@@ -62,8 +64,10 @@ def refitted(
         name: rms_of([part for (_, n), parts in raw.items() if n == name for part in parts])
         for name in sorted({name for _, name in raw})
     }
+    channel = np.array([name for run in runs for name in run.channel_of_each()])
+    normalised = {name: rms_of([weighted[channel == name]]) for name in rmse}
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
-    return HeldOutFit(rmse, squares.astype(np.float64), by_run)
+    return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run)
 
 
 def _with_own_friction(

@@ -109,6 +109,10 @@ class RunErrors:
         none = np.zeros(self.run.time_s.size)
         return _means({n: self._weighted(n, changes.get(n, none)) for n in self.samples})
 
+    def channel_of_each(self) -> list[str]:
+        """Return the channel of each residual of the run."""
+        return [name for name, at in self.samples.items() for _ in mean_edges(at.size)]
+
     def spread(self, name: str, chosen: Mask) -> Mask:
         """Return which samples of a channel belong to the chosen residuals of the run."""
         start = 0
