@@ -29,8 +29,8 @@ MOST_PARTS = 4  # of a split that a sentence lists
 ALIKE = 0.1  # relative difference of two sensors' errors within which they are alike
 
 # What adds to both forces alike is something else: a law of friction μ(T + c) is the capstan's with
-# c added to both, a force along the way that the tendon passes on is a tilt of both, and a load that
-# softens takes the same share of both.
+# c added to both, a force along the way that the tendon passes on is a tilt of both, a load that
+# softens takes a share of both.
 BOTH_SENSORS = {
     "force_sensor_gain_drift": "a load whose stiffness changes",
     "force_sensor_offset": "friction that does not vanish with the tension",
