@@ -40,6 +40,12 @@ BOTH_SENSORS = {
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
 
+def place(effect: str) -> str:
+    """Return where an effect acts: the drive, the tendon, the load, or which sensors."""
+    acts_on = BY_NAME[effect].acts_on
+    return effect.partition("_sensor_")[0] if acts_on == "sensor" else acts_on
+
+
 @dataclass(frozen=True)
 class FoundCause:
     """An effect that gains, with its parameters and its reduction of the RMS on held-out data [%].

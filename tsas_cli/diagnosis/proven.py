@@ -1,13 +1,13 @@
 """The effects of a search that prove to be causes: tested, dropped one by one, fitted again."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tsas_cli.diagnosis.constancy import absorbed_by, beside_tolerances, worst_split
-from tsas_cli.diagnosis.evidence import gain, gain_percent
+from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain, gain_percent
 from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.intervals import Tolerated, estimates_with_tolerances
@@ -17,6 +17,7 @@ from tsas_cli.diagnosis.proof import (
     FoundCause,
     failures,
     may_be_zero,
+    place,
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
@@ -103,6 +104,7 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     after = remainder(bench, final, judged.folds, at_residuals, tolerated)
     last = _LastFit(judged, found, held_out, at_residuals.signals, after.structure, tolerated)
     causes = tuple(_cause(last, name) for name in judged.rivals)
+    causes = tuple(_beside_another_law(cause, causes) for cause in causes)
     return Proven(search, judged, causes, stand_ins, tuple(found.estimates), held_out, after)
 
 
@@ -143,7 +145,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     if split is not None and last.structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
-    negligible = not again.convincing and zero
+    negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
     if within_tolerances(judged.trial(named), name, last.tolerated, reduction):
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
@@ -154,6 +156,20 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         convincing=again.convincing,
         negligible=negligible,
     )
+
+
+def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
+    """Return a cause, refused where one that gains more acts at its place by a law of its own.
+
+    What that law lacks, a curve of another kind or a wave, is no cause of its own.
+    """
+    for other in causes:
+        alike = place(other.effect) == place(cause.effect)
+        if other.law_differs and alike and other.gain_percent > cause.gain_percent:
+            title = BY_NAME[other.effect].title.lower()
+            said = f"acts where {title} does, whose law differs from the catalogue's"
+            return replace(cause, failed=(*cause.failed, said))
+    return cause
 
 
 def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION, beside
 from tsas_cli.diagnosis.faults.search import FoundFault
+from tsas_cli.diagnosis.hypotheses import Names
 from tsas_cli.diagnosis.search import LINEAR, Search
 
 AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the fault
@@ -15,19 +16,20 @@ AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the 
 
 def effects_as_good(search: Search, fault: FoundFault) -> Iterator[str]:
     """Yield the effects of the catalogue that explain as much as a fault, each fitted by itself."""
-    folds = search.folds
-    nominal = search.trial(frozenset())
-    tolerated = search.tolerated[nominal.on_mesh]
+    nominal, count = search.trial(frozenset()), search.folds.run.size
     squares = float(nominal.solution.residual @ nominal.solution.residual)
-    alike = fault.found[0].code == OWN_FRICTION
-    beyond = max(fault.rest - folds.run.size, 0.0)  # the noise: an effect may leave twice as much
+    beyond = max(fault.rest - count, 0.0)  # the noise: an effect may leave twice as much
     least = LINEAR * fault.share * fault.excess / squares
     for screened in search.screen(frozenset()):
         if screened.part < least:
             return
-        trial = search.trial(frozenset({screened.effect.name}))
-        if (
-            beside(trial, tolerated, folds.run, alike=alike).squares
-            < fault.rest + beyond + AS_GOOD * folds.run.size
-        ):
-            yield screened.effect.name
+        name = screened.effect.name
+        if left_by(search, frozenset({name}), fault) < fault.rest + beyond + AS_GOOD * count:
+            yield name
+
+
+def left_by(search: Search, names: Names, fault: FoundFault) -> float:
+    """Return the squares that a set of effects leaves, beside what the fault was sought beside."""
+    tolerated = search.tolerated[search.trial(frozenset()).on_mesh]
+    alike = fault.found[0].code == OWN_FRICTION
+    return beside(search.trial(names), tolerated, search.folds.run, alike=alike).squares
