@@ -37,6 +37,9 @@ class Run:
     def spread(self, name, chosen):
         return chosen
 
+    def channel_of_each(self):
+        return ["f_in_N"] * ROWS
+
 
 @pytest.fixture(scope="module")
 def fitted():
@@ -96,6 +99,7 @@ def test_errors_are_those_of_each_run_predicted_by_the_others(fitted):
         rate, offset = without(runs, k)
         errors.append(run.data - curve(rate, offset, k))
     found = refitted(bench, trial, folds)
+    assert found.normalised["f_in_N"] == pytest.approx(found.rmse["f_in_N"] / NOISE)
     assert found.rmse["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
     last = found.squares[-4:].sum() * NOISE**2
     assert last == pytest.approx(float(errors[3] @ errors[3]), rel=1e-2)

@@ -72,7 +72,9 @@ def test_gains_are_those_of_the_squares(made):
     search = made({names(): 4.0, names(A): 1.0})
     found = search.gain(names(), names(A))
     assert found.part == pytest.approx(0.75)
-    assert found.test_statistic == pytest.approx(np.sqrt(BLOCKS))
+    assert found.test_statistic == pytest.approx(
+        np.sqrt(1.5 * BLOCKS * (BLOCKS + 1) / (2 * BLOCKS + 1))
+    )
     assert search.gain(names(A), names()).part == pytest.approx(-3.0)
 
 
