@@ -57,3 +57,24 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
     found = p.proven_effects(Search(frozenset(names), dict.fromkeys(names, ())), NO_PROGRESS)
     assert [cause.effect for cause in found.causes] == ["preload_loss"]
     assert [cause.effect for cause in found.stand_ins] == stand_ins
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "law", "refused"),
+    [
+        ("load_spring_nonlinearity", "load_ripple", "over the tension", True),
+        ("load_spring_nonlinearity", "load_ripple", "", False),
+        ("load_spring_nonlinearity", "drive_ripple", "over the tension", False),
+        ("force_sensor_curvature", "force_sensor_tilt", "over the tension", True),
+        ("force_sensor_curvature", "position_sensor_ripple", "over the tension", False),
+    ],
+)
+def test_what_a_law_of_one_place_lacks_is_no_second_cause(first, second, law, refused):
+    """Of two at one place the one that gains less is refused, where the other's law differs."""
+    more = FoundCause(first, (), (), 60.0, (50.0, 70.0), law_differs=law)
+    less = FoundCause(second, (), (), 40.0, (30.0, 50.0), law_differs=law)
+    both = more, less
+    assert p._beside_another_law(more, both) == more
+    failed = p._beside_another_law(less, both).failed
+    assert bool(failed) == refused
+    assert not failed or "nonlinear load spring" in failed[0] or "curved scale" in failed[0]
