@@ -156,6 +156,8 @@ def test_a_wave_whose_period_is_longer_than_the_strokes_is_refused(effect):
 def test_a_split_is_said_with_its_values():
     over = Split("drive_friction.friction_N", "direction", CLEAR, (("pulling", 0.8), ("x", 2.1)))
     assert split_in_words(over) == "over the direction: friction_N 0.8 (pulling) and 2.1 (x) N"
+    near = replace(over, values=(("pulling", 0.99612), ("x", 0.99648)))
+    assert "0.9961 (pulling) and 0.9965 (x)" in split_in_words(near)
     runs = Split("force_sensor_gain.f_out_gain", "run", CLEAR, (("run a", 1.0), ("run b", 1.04)))
     assert split_in_words(runs) == "from run to run: f_out_gain 1 (run a) and 1.04 (run b)"
 

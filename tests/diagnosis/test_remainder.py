@@ -154,7 +154,8 @@ def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not
         ({"slow": {"f_in_N": SlowPart(1.4, 1.0)}}, None),  # slow noise
         ({"explained": {"f_out_N": 0.06}}, None),
         ({"late": ("x_out_mm",)}, None),
-        ({"oscillates": "time_s"}, None),
+        ({"depends_on": ("x_in_mm",)}, None),
+        ({"slow": {"f_in_N": SlowPart(3.0, 0.1)}}, None),  # a burst, a catch
     ],
 )
 def test_a_channel_wanders_where_nothing_follows_a_signal(changed, wanders):

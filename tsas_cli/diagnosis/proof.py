@@ -169,7 +169,10 @@ def split_in_words(split: Split) -> str:
     parts = split.values
     if len(parts) > MOST_PARTS:
         parts = tuple(end(parts, key=lambda pair: pair[1]) for end in (min, max))
-    values = " and ".join(f"{value:.3g} ({part})" for part, value in parts)
+    told = {value for _, value in parts}
+    enough = (n for n in (3, 4, 5) if len({f"{v:.{n}g}" for v in told}) == len(told))
+    digits = next(enough, 6)
+    values = " and ".join(f"{value:.{digits}g} ({part})" for part, value in parts)
     unit = _unit(QUANTITIES[split.parameter].unit)
     over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
     return f"{over}: {split.parameter.partition('.')[2]} {values} {unit}".rstrip()

@@ -71,6 +71,7 @@ def reason_of(
             f"{name} from {number_text(law.before.rmse[name])} to "
             f"{number_text(law.after.rmse[name])} {BY_COLUMN[name].unit}"
             for name in law.after.rmse
+            if law.after.rmse[name] < law.before.rmse[name]
         ]
         sentences.append(
             "A law of unnamed origin describes it: with it the RMS on held-out data falls in "

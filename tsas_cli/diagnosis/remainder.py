@@ -37,6 +37,7 @@ UPPER_QUARTILE = 0.67449  # of the normal distribution, in standard deviations
 BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run with brief errors
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
+JERK_S = 0.2  # memory of an error up to which it is no drift
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
 
 
@@ -85,12 +86,16 @@ class Remainder:
 
     @property
     def wanders(self) -> str | None:
-        """The channel with a slow error that is too large for noise, and that follows no signal."""
+        """The channel with a slow error that is too large for noise, and that follows no signal.
+
+        What lasts as briefly as a jerk, a catch or a burst is no drift.
+        """
         follows = any(part > STRUCTURE for part in self.explained.values())
-        if self.oscillates or self.late or follows or not self.slow:
+        if self.depends_on or self.late or follows or not self.slow:
             return None
         name = max(self.slow, key=lambda n: self.slow[n].ratio)
-        return name if self.slow[name].ratio ** 2 > MOST_SLOW else None
+        slow = self.slow[name]
+        return name if slow.ratio**2 > MOST_SLOW and slow.time_s > JERK_S else None
 
 
 def remainder(

@@ -31,7 +31,7 @@ ALIKE = 1.0  # of chi-square, within which two factors explain the same
 NEAR_UNIT = 0.12  # of the logarithm of a factor
 IMITATED = frozenset({"sheath_compression", "free_tendon", "drive_compliance",
                       "position_sensor_gain", "force_sensor_gain"})  # fmt: skip
-SHEET = "a wrong tendon_modulus_GPa or tendon_diameter_mm"
+SHEET = "a wrong tendon_modulus_GPa, tendon_diameter_mm or sheath_length_mm"
 CAUSES = {
     PRELOAD: "check preload_N of the manifest, and zero and gain of the force sensors",
     LOAD: "check load_stiffness_N_per_mm, and unit and gain of f_out and x_out",

@@ -72,10 +72,12 @@ def _more(amount: float) -> str:
 
 def _offset(c: Candidate) -> str:
     (name,) = c.channels
-    return (
+    said = (
         f"{name} reads {abs(c.amount):.2g} {BY_NAME[name].unit} {_more(c.amount)} than the other "
         "runs and channels fit"
     )
+    slips = name.startswith("x_") and c.first_s is not None
+    return f"{said}, as of an encoder or a clamp that slips," if slips else said
 
 
 def _gain(c: Candidate) -> str:
@@ -129,7 +131,10 @@ def _step(c: Candidate) -> str:
     (name,) = c.channels
     unit = BY_NAME[name].unit
     steps = [f"{abs(d):.2g} {unit} {_more(d)} since about {t:.3g} s" for t, d in c.steps]
-    return f"{name} reads {listed(steps)}, as of an encoder that misses counts or slips"
+    return (
+        f"{name} reads {listed(steps)}, as of an encoder that misses counts or slips, or a tendon "
+        "that slips in its clamp"
+    )
 
 
 def _saturates(c: Candidate) -> str:
