@@ -240,7 +240,7 @@ def off_bounds(
     than what else is wrong begins with a hill.
     """
     best, least = None, float(solution.residual @ solution.residual)
-    for j in np.flatnonzero(solution.at_bound):
+    for j in np.flatnonzero(solution.at_bound).tolist():
         quantity = QUANTITIES[unknowns[j].name]
         neutral = quantity.scaled(quantity.default)
         if "." not in quantity.name or quantity.shape or solution.values[j] != neutral:
