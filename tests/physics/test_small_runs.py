@@ -80,6 +80,9 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     still = [friction_by_hand(0.0, place, 0.0, 0.0) for place in x]
     np.testing.assert_allclose(slowly.course[:4].T, still)
     assert slowly.course[STEP].tolist() == [math.inf] * 4
+    two = ends_of(VARYING, DriveInput(x[:2], time_s=TIME_S[:2], session_s=30.0))
+    expected = [friction_by_hand(t, place, 2.0, 30.0) for t, place in ((0.0, 0.0), (0.1, 0.2))]
+    np.testing.assert_allclose(two.course[:4].T, expected)
     alone = ends_of(VARYING, DriveInput(x[:1], time_s=TIME_S[:1]))
     assert alone.course[STEP].tolist() == [math.inf]
 
@@ -227,6 +230,25 @@ def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, nodes):
     assert answer.f_in_N[0] == pytest.approx(wanted, abs=1e-6)
     assert answer.frames.samples.tolist() == [1]
     assert answer.frames.tension_N[0, 0] == pytest.approx(answer.f_in_N[1])
+
+
+@pytest.mark.parametrize("how", [{"kind": "force"}, {"dynamics": "static"}])
+def test_a_drive_by_force_and_the_static_model_have_no_history_to_choose(how):
+    values, dynamics = np.array([28.0, 29.0]), how.pop("dynamics", "slip")
+    plain, asked = (
+        simulate(RIG, DriveInput(values, start_f_in_N=start, **how), dynamics)
+        for start in (None, 40.0)
+    )
+    np.testing.assert_array_equal(asked.x_out_mm, plain.x_out_mm)
+    np.testing.assert_array_equal(asked.f_in_N, plain.f_in_N)
+
+
+def test_the_dynamic_chain_settles_to_its_tolerance_if_none_is_asked():
+    drive = DriveInput(3.0 + np.array([0.0, 0.02, 0.05]), time_s=np.array([0.0, 0.1, 0.2]))
+    usual, loose = (simulate(RIG, drive, "lugre", nodes=2, **how) for how in ({}, {"tolerance": 1e-4}))
+    assert usual.phase.max() < 2
+    np.testing.assert_allclose(usual.f_in_N, loose.f_in_N, atol=0.05)
+    assert usual.f_in_N[-1] > 25.5
 
 
 def test_what_is_forgotten_of_a_drive_by_force(monkeypatch):

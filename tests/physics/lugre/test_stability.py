@@ -13,6 +13,7 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS
 from tsas_cli.physics.lugre.stability import Sliding, growth_rate, stability
 from tsas_cli.physics.response import simulate
+from tsas_cli.physics.rig import with_values
 
 AS_PRINTED = TABLE_1._replace(bristles=Bristles(damping_N_s_per_mm=50 * 0.31622))
 WRAP = math.pi / 8.0
@@ -93,3 +94,23 @@ def test_without_friction_nothing_is_judged_and_the_chain_answers(smooth):
     drive = DriveInput(x, time_s=TIME_S[:200])
     slip, lugre = (simulate(rig, drive, dynamics) for dynamics in ("slip", "lugre"))
     assert lugre.f_in_N == pytest.approx(slip.f_in_N, rel=0.02)
+
+
+FALLING = TABLE_1._replace(
+    effects=Effects(stribeck_friction=StribeckFriction(0.3, 5.0)),
+    bristles=Bristles(tendon_damping_N_s_per_mm=0.0),
+)
+
+
+@pytest.mark.parametrize(
+    ("mass_kg", "kL", "alike"), [(1e-7, 400.0, 400.0), (1e6, 1.579, 1e9)], ids=["none", "any"]
+)
+def test_a_load_of_no_mass_is_its_spring_and_one_of_any_mass_a_wall(mass_kg, kL, alike):
+    """A spring and the last segment in a row, or that segment alone."""
+    heavy = with_values(
+        FALLING._replace(load_stiffness_N_per_mm=kL), {"load_inertia.mass_kg": mass_kg}
+    )
+    without = FALLING._replace(load_stiffness_N_per_mm=alike)
+    growth = growth_rate(heavy, contraction(3.0))
+    assert growth == pytest.approx(growth_rate(without, contraction(3.0)), rel=1e-3)
+    assert growth > 5e3
