@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, wrap_of
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING, course_of, slip_chain, wrap_of
 from tsas_cli.physics.ends import losses_over
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -80,3 +80,23 @@ def test_a_force_that_no_place_gives_is_told_as_missed():
     path, _, missed = inverse_chain(wanted, friction, STEP_S, rig, 10)
     assert missed == 3
     assert (path[-3:] == path[-4]).all()
+
+
+@pytest.mark.parametrize("less_N", [1e-4, 1e-2, 1.0])
+def test_a_dead_band_is_crossed_from_a_step_however_small(less_N):
+    """Full slip turns round: from 60 N pulled to less let go of, both of the closed form."""
+    rig, wanted = OTHER, np.array([17.0, 30.0, 60.0, 60.0 - less_N, 20.0, 20.0 + less_N])
+    path, tension = path_to(wanted, rig, n=3)
+    assert path[2] > path[3] > path[4]
+    assert path[4] < path[5]
+    factors = np.exp(wrap_of(rig) * np.array([1.0, 1.0, -1.0]))
+    np.testing.assert_allclose(tension[[1, 2, 4]], wanted[[1, 2, 4]] * factors)
+    assert tension[5] > tension[4]
+
+
+@pytest.mark.parametrize("kL", [0.01, 4e3])
+def test_loads_as_soft_and_as_stiff_as_any_are_brought_to_their_force(kL):
+    rig = GROUP_A._replace(load_stiffness_N_per_mm=kL)
+    wanted = np.array([25.0, 40.0, 80.0, 39.0, 30.0])
+    course = course_of(path_to(wanted, rig, n=3)[0], rig)
+    np.testing.assert_allclose(slip_chain(course, rig, LOADED_BY_SPRING, 3)[3], wanted, atol=2e-7)
