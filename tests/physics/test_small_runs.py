@@ -251,16 +251,6 @@ def test_a_drive_by_force_and_the_static_model_have_no_history_to_choose(kind, d
     np.testing.assert_array_equal(asked.x_out_mm, plain.x_out_mm)
 
 
-def test_the_dynamic_chain_settles_to_its_tolerance_if_none_is_asked():
-    drive = DriveInput(3.0 + np.array([0.0, 0.02, 0.05]), time_s=np.array([0.0, 0.1, 0.2]))
-    usual, loose = (
-        simulate(RIG, drive, "lugre", nodes=2, **how) for how in ({}, {"tolerance": 1e-4})
-    )
-    assert usual.phase.max() < 2
-    np.testing.assert_allclose(usual.f_in_N, loose.f_in_N, atol=0.05)
-    assert usual.f_in_N[-1] > 25.5
-
-
 def test_what_is_forgotten_of_a_drive_by_force(monkeypatch):
     """Let go of, and pulled until it slips as a whole: e^2a times the tension at first."""
     monkeypatch.setattr(response, "NODES", 3)

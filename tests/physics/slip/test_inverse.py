@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, LOADED_BY_SPRING, course_of, slip_chain, wrap_of
+from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.ends import losses_over
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -92,11 +92,3 @@ def test_a_dead_band_is_crossed_from_a_step_however_small(less_N):
     factors = np.exp(wrap_of(rig) * np.array([1.0, 1.0, -1.0]))
     np.testing.assert_allclose(tension[[1, 2, 4]], wanted[[1, 2, 4]] * factors)
     assert tension[5] > tension[4]
-
-
-@pytest.mark.parametrize("kL", [0.01, 4e3])
-def test_loads_as_soft_and_as_stiff_as_any_are_brought_to_their_force(kL):
-    rig = GROUP_A._replace(load_stiffness_N_per_mm=kL)
-    wanted = np.array([25.0, 40.0, 80.0, 39.0, 30.0])
-    course = course_of(path_to(wanted, rig, n=3)[0], rig)
-    np.testing.assert_allclose(slip_chain(course, rig, LOADED_BY_SPRING, 3)[3], wanted, atol=2e-7)

@@ -16,6 +16,7 @@ from tsas_cli.physics.slip.ends import drive_tangent, load_tangent, update_ends
 from tsas_cli.physics.slip.nodes import (
     accept,
     breakaway,
+    capstan_ratio,
     extrapolate,
     is_linear,
     set_friction,
@@ -125,6 +126,20 @@ def test_a_spring_without_pull_is_where_its_force_is_zero():
     bent = straight._replace(stiffness_N_per_mm=30.0, nonlinearity=LoadSpringNonlinearity(0.1, 0.2))
     x = unloaded_position(0.0, 10.0, bent)
     assert 30.0 * x * (1.0 + 0.1 * x + 0.2 * x * x) == pytest.approx(-10.0, abs=1e-9)
+
+
+def test_friction_is_that_of_the_size_of_both_tensions_together(chain):
+    """Where they push as a whole, the node passes on more where it goes towards the drive."""
+    set_friction(chain, NOW, laws())
+    for tensions, sign in (
+        ((3.0, -2.0), 1),
+        ((2.0, -3.0), -1),
+        ((-2.0, 3.0), 1),
+        ((-0.2, 0.1), -1),
+    ):
+        chain[rows.TENSION + 1 :][:2] = tensions
+        found = [capstan_ratio(way, 2, chain) for way in (1.0, -1.0)]
+        assert found == pytest.approx([math.exp(-0.2 * sign), math.exp(0.15 * sign)])
 
 
 def test_a_step_of_straight_laws_is_known_as_such():
