@@ -47,7 +47,7 @@ EFFECTS = {
     "presliding": {"presliding.length_mm": 0.02},
     "presliding and tension": {
         "presliding.length_mm": 0.05,
-        "load_dependent_friction.exponent": 0.2,
+        "load_dependent_friction.exponent": 1.0,
     },
     "a bent spring": {
         "load_spring_nonlinearity.quadratic_per_mm": 0.3,
