@@ -38,7 +38,7 @@ from tsas_cli.physics.rig import with_values
 
 EVERYTHING = {
     "load_dependent_friction.exponent": 0.3,
-    "stribeck_friction.excess": 0.4,
+    "stribeck_friction.excess": 1.0,
     "stribeck_friction.velocity_mm_per_s": 2.0,
     "viscous_friction.coefficient_N_s_per_mm": 0.05,
     "presliding.length_mm": 0.01,
@@ -49,7 +49,7 @@ EVERYTHING = {
     "load_inertia.mass_kg": 0.3,
     "drive_friction.friction_N": 1.5,
     "proximal_spring.stiffness_N_per_mm": 3.0,
-    "uneven_friction.slope": 0.6,
+    "uneven_friction.slope": 1.0,
     "drive_inertia.mass_kg": 0.4,
     "drive_damping.coefficient_N_s_per_mm": 0.7,
     "load_damping.coefficient_N_s_per_mm": 0.8,
@@ -128,8 +128,8 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
         mean = 0.5 * (T_now[i - 1] + T_now[i])
         pulled = bent[i] + GH * v[i] >= 0.0
         limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 25.0) ** 0.3
-        limit *= 1.0 + 0.4 * math.exp(-((v[i] / 2.0) ** 2))
-        limit *= 1.0 + 0.6 * ((i - 0.5) / N - 0.5)
+        limit *= 1.0 + math.exp(-((v[i] / 2.0) ** 2))
+        limit *= 1.0 + (i - 0.5) / N - 0.5
         f, z = bristle_by_hand(bent[i], v[i], limit, law.lump.bristle)
         inertia = 0.0025e-6 * LIVELY.sheath_length_mm / N * slowed[i] / GH
         left[i] = T_now[i - 1] - T_now[i] - f - inertia

@@ -35,7 +35,7 @@ MASS_TAKES_UP_S = 0.01  # documented in `slip.ends`
 FRICTION_LAGS_S = 0.01  # documented in `slip.nodes`
 ROUNDING = 1e-6  # [N, mm]
 FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
-FALLING = {"stribeck_friction.excess": 0.5, "stribeck_friction.velocity_mm_per_s": 4.0}
+FALLING = {"stribeck_friction.excess": 1.0, "stribeck_friction.velocity_mm_per_s": 4.0}
 EFFECTS = {
     "friction alone": {},
     "free tendon": FREE,
@@ -57,7 +57,7 @@ EFFECTS = {
         "load_friction.after_sensor_N": 3.0,
         "load_friction.before_sensor_N": 1.5,
     },
-    "friction rises along the sheath": {"uneven_friction.slope": 1.5},
+    "friction rises along the sheath": {"uneven_friction.slope": 1.0},
     "friction falls along the sheath and with tension": {
         "uneven_friction.slope": -1.2,
         "load_dependent_friction.exponent": -0.25,
