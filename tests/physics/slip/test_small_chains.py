@@ -35,7 +35,7 @@ MASS_TAKES_UP_S = 0.01  # documented in `slip.ends`
 FRICTION_LAGS_S = 0.01  # documented in `slip.nodes`
 ROUNDING = 1e-6  # [N, mm]
 FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
-FALLING = {"stribeck_friction.excess": 1.0, "stribeck_friction.velocity_mm_per_s": 4.0}
+FALLING = {"stribeck_friction.excess": 0.5, "stribeck_friction.velocity_mm_per_s": 4.0}
 EFFECTS = {
     "friction alone": {},
     "free tendon": FREE,
