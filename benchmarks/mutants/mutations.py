@@ -17,7 +17,9 @@ COMPARED = (
     *("Eq_NotEq", "NotEq_Eq", "Is_IsNot", "IsNot_Is"),
 )
 # What a person might have written by mistake. Left out is what dies of a TypeError whatever the
-# tests are (shifts of floats, a number for a type), and decorators (not compiled is the same law).
+# tests are (shifts of floats, a number for a type), decorators (not compiled is the same law), and
+# arguments that only guard or speed up: those of `dataclass`, and `GUARDS`.
+GUARDS = ("strict", "hermitian")
 OPERATORS = (
     *(f"core/ReplaceBinaryOperator_{name}" for name in BINARY + MASKS),
     *(f"core/ReplaceComparisonOperator_{name}" for name in COMPARED),
@@ -74,10 +76,11 @@ class Mutant:
 
 @cache
 def mutants(root: Path, path: str) -> tuple[Mutant, ...]:
-    """Return every mutant of a file, none of them in an annotation."""
+    """Return every mutant of a file, none of them in an annotation or a guard."""
     text = (root / path).read_text()
     nodes = list(ast_nodes(get_ast(text)))
-    annotated, calculated, lines = annotations(text), operations(text), statements(text)
+    left_out = annotations(text) + guards(text)
+    calculated, lines = operations(text), statements(text)
     found = []
     for name in OPERATORS:
         operator = cosmic_ray.plugins.get_operator(name)()
@@ -85,7 +88,7 @@ def mutants(root: Path, path: str) -> tuple[Mutant, ...]:
         found += [
             Mutant(path, name, occurrence, start[0], lines.get(start[0], (start[0],)))
             for occurrence, start in enumerate(places)
-            if not _within(start, annotated)
+            if not _within(start, left_out)
             and ("BinaryOperator" not in name or _within(start, calculated))
         ]
     return tuple(found)
@@ -122,7 +125,19 @@ def annotations(text: str) -> list[tuple[Place, Place]]:
     nodes = list(ast.walk(ast.parse(text)))
     notes = [n.annotation for n in nodes if isinstance(n, ast.AnnAssign | ast.arg) and n.annotation]
     notes += [n.returns for n in nodes if isinstance(n, ast.FunctionDef) and n.returns]
-    return [((n.lineno, n.col_offset), (n.end_lineno or 0, n.end_col_offset or 0)) for n in notes]
+    return _extents(notes)
+
+
+def guards(text: str) -> list[tuple[Place, Place]]:
+    """Return from where to where arguments stand that only guard or speed up."""
+    calls = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
+    made = [ast.unparse(call.func) == "dataclass" for call in calls]
+    keywords = [(k, whole) for call, whole in zip(calls, made, strict=True) for k in call.keywords]
+    return _extents([k.value for k, whole in keywords if whole or k.arg in GUARDS])
+
+
+def _extents(nodes: list[ast.expr]) -> list[tuple[Place, Place]]:
+    return [((n.lineno, n.col_offset), (n.end_lineno or 0, n.end_col_offset or 0)) for n in nodes]
 
 
 def sample(root: Path, paths: list[str], size: int, seed: int) -> list[Mutant]:

@@ -21,6 +21,11 @@ def f(x: int | None, *, low: float = 1.0) -> float | None:
     ):
         return low + 2.0
     return None
+
+
+@dataclass(frozen=True)
+class A:
+    pairs = zip("ab", "cd", strict=True)
 """
 
 
@@ -30,12 +35,13 @@ def made(tmp_path):
     return tmp_path
 
 
-def test_a_mutant_is_one_change_and_none_is_in_an_annotation(made):
+def test_a_mutant_is_one_change_and_none_is_in_an_annotation_or_a_guard(made):
     found = mutants(made, "made.py")
     texts = {mutant.source(made) for mutant in found}
     assert len(texts) == len(found)
     for mutant in found:
         assert "x: int | None, *, low: float =" in mutant.source(made)
+        assert mutant.source(made).endswith(SOURCE.rpartition("None")[2])
         before, after = mutant.change(made)
         assert before != after
         assert SOURCE.replace(before, after, 1) == mutant.source(made)

@@ -12,7 +12,8 @@ def test_mass_and_critical_damping_of_the_bristles():
     assert tendon_mass(Bristles(), 800.0) == pytest.approx(2e-6)
     told = Bristles(damping_N_s_per_mm=3.0)
     assert bristle_damping(told, 800.0, 10.0, 0.01) == 3.0
-    k = 1.0 / (1.0 / 5000.0 + 0.01 / 10.0)
-    for limit_N, stiffness in ((10.0, k), (0.0, 5000.0)):  # of a straight sheath there is none
+    k, small = (1.0 / (1.0 / 5000.0 + 0.01 / limit_N) for limit_N in (10.0, 0.5))
+    straight = 5000.0  # of a straight sheath there is no limit
+    for limit_N, stiffness in ((10.0, k), (0.5, small), (0.0, straight)):
         critical = 2.0 * math.sqrt(stiffness * 2e-6)
         assert bristle_damping(Bristles(), 800.0, limit_N, 0.01) == pytest.approx(critical)

@@ -24,6 +24,7 @@ from tsas_cli.physics.course import (
 from tsas_cli.physics.ends import (
     DriveInput,
     ends_of,
+    force_of_motion,
     last_direction,
     losses_at,
 )
@@ -80,6 +81,9 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     still = [friction_by_hand(0.0, place, 0.0, 0.0) for place in x]
     np.testing.assert_allclose(slowly.course[:4].T, still)
     assert slowly.course[STEP].tolist() == [math.inf] * 4
+    two = ends_of(VARYING, DriveInput(x[:2], time_s=TIME_S[:2], session_s=30.0))
+    expected = [friction_by_hand(t, place, 2.0, 30.0) for t, place in ((0.0, 0.0), (0.1, 0.2))]
+    np.testing.assert_allclose(two.course[:4].T, expected)
     alone = ends_of(VARYING, DriveInput(x[:1], time_s=TIME_S[:1]))
     assert alone.course[STEP].tolist() == [math.inf]
 
@@ -115,15 +119,28 @@ def test_what_is_given_at_the_ends_is_free_of_the_sensors_errors():
 
 def test_the_drives_end_goes_through_the_play_from_where_it_was():
     loose = with_values(GROUP_A, {"backlash.play_mm": 0.4})
-    drive = DriveInput(np.array([1.0, 1.5, 1.5, 1.2, 0.9]))
-    assert ends_of(loose, drive).drive.tolist() == pytest.approx([1.0, 1.3, 1.3, 1.3, 1.1])
+    drive = DriveInput(np.array([1.0, 1.5, 1.5, 1.2, 0.8]))
+    assert ends_of(loose, drive).drive.tolist() == pytest.approx([1.0, 1.3, 1.3, 1.3, 1.0])
     again = ends_of(loose, drive, (1.1, -1.0, 0.5))
-    assert again.drive.tolist() == pytest.approx([1.1, 1.3, 1.3, 1.3, 1.1])
+    assert again.drive.tolist() == pytest.approx([1.1, 1.3, 1.3, 1.3, 1.0])
     assert again.course[DIRECTION].tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
-    assert again.course[TRAVEL].tolist() == pytest.approx([0.5, 0.2, 0.2, 0.2, 0.2])
+    assert again.course[TRAVEL].tolist() == pytest.approx([0.5, 0.2, 0.2, 0.2, 0.3])
     wave = {"drive_ripple.sine_mm": 0.1, "drive_ripple.cosine_mm": 0.2, "drive_ripple.period_mm": 4}
     uneven = ends_of(with_values(GROUP_A, wave), DriveInput(np.array([1.0, 2.0])))
     assert uneven.drive.tolist() == pytest.approx([1.0 + 0.1 - 0.2, 2.0 - 0.4])
+
+
+@pytest.mark.parametrize(("damping", "mass_kg"), [(0.0, 1.0), (1.0, 0.0), (0.3, 2.0)])
+def test_the_sensor_at_the_drive_feels_what_moves_the_tendons_end(damping, mass_kg):
+    """c v + m a, and no acceleration where no time is known."""
+    names = ("drive_damping.coefficient_N_s_per_mm", "drive_inertia.mass_kg")
+    rig = with_values(GROUP_A, dict(zip(names, (damping, mass_kg), strict=True)))
+    x, speed = TIME_S**2, 6.0 + 100.0 * TIME_S
+    felt = force_of_motion(speed, TIME_S, rig.effects)
+    np.testing.assert_allclose(felt, damping * speed + 1e-3 * mass_kg * 100.0)
+    np.testing.assert_allclose(force_of_motion(speed, None, rig.effects), damping * speed)
+    felt = force_of_motion(np.gradient(x, TIME_S), TIME_S, rig.effects)
+    np.testing.assert_allclose(ends_of(rig, DriveInput(x, time_s=TIME_S)).course[-1], felt)
 
 
 def test_the_direction_is_that_of_the_last_motion():
@@ -227,6 +244,13 @@ def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, nodes):
     assert answer.f_in_N[0] == pytest.approx(wanted, abs=1e-6)
     assert answer.frames.samples.tolist() == [1]
     assert answer.frames.tension_N[0, 0] == pytest.approx(answer.f_in_N[1])
+
+
+@pytest.mark.parametrize(("kind", "dynamics"), [("force", "slip"), ("displacement", "static")])
+def test_a_drive_by_force_and_the_static_model_have_no_history_to_choose(kind, dynamics):
+    drives = (DriveInput(np.array([28.0, 29.0]), kind, start_f_in_N=f) for f in (None, 40.0))
+    plain, asked = (simulate(RIG, drive, dynamics) for drive in drives)
+    np.testing.assert_array_equal(asked.x_out_mm, plain.x_out_mm)
 
 
 def test_what_is_forgotten_of_a_drive_by_force(monkeypatch):

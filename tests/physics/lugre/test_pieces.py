@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.lugre.lumps import GH, LAST, STEP, cleared, nodes, run, segments
+from tests.physics.lugre.lumps import GH, LAST, STEP, N, cleared, nodes, run, segments
 from tests.physics.references import (
     DRIVEN_BY_FORCE,
     GROUP_A,
@@ -17,6 +17,7 @@ from tests.physics.references import (
 )
 from tsas_cli.physics.boundary import FORCE, share_before_sensor
 from tsas_cli.physics.course import DRIVE, LOAD
+from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre import state as rows
 from tsas_cli.physics.lugre.balance import balance, set_limits
 from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, phase_of
@@ -34,7 +35,16 @@ from tsas_cli.physics.lugre.ends import (
     secant_stiffness,
     write_samples,
 )
-from tsas_cli.physics.lugre.slack import shortening, unloaded_load
+from tsas_cli.physics.lugre.frames import write_slack_frames
+from tsas_cli.physics.lugre.input import next_reversal
+from tsas_cli.physics.lugre.slack import (
+    end_of_slack,
+    is_slack,
+    shortening,
+    slack_state,
+    unloaded_load,
+    write_slack,
+)
 from tsas_cli.physics.lugre.start import rest_at
 from tsas_cli.physics.lugre.state import Given, Step
 from tsas_cli.physics.lugre.step import bdf2, newton, step_error
@@ -113,6 +123,23 @@ def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
     else:
         step = STEP._replace(frame=NONE, lost_N=math.inf)
     assert newton(s, step, at(law, boundary), 1e-6) == (0, False)
+
+
+def test_an_end_whose_place_is_given_goes_there_and_the_guess_is_that_it_does():
+    """So that the guess of a step has no error at the ends; all is relative to the drive."""
+    s, law = lumps(GROUP_A, speeds=(0.3, 0.1, 0.3, -0.2, 0.7))
+    s[rows.POSITION_HISTORY + LAST], step = 0.5, STEP._replace(frame=Given(4.0, 1.5))
+    assert newton(s, step, at(law, LOADED_BY_DISPLACEMENT), math.inf) == (0, True)
+    expected = pytest.approx([0.0, 0.1, 0.3, -0.2, (STEP.load.value - 4.0 - 0.5) / GH])
+    assert nodes(s, rows.RATE).tolist() == nodes(s, rows.RATE_PREDICTED).tolist() == expected
+
+
+def test_turns_stops_and_starts_of_what_is_given_end_a_step():
+    times, law = np.arange(8.0), cleared(GROUP_A)[1]
+    small = 0.1 * np.array([0.0, 1.0, 2.0, 2.0, 2.0, 3.0, 2.0, 1.0])
+    course = course_of(small, GROUP_A, load=0.1 * np.abs(times - 1.0), time_s=times)
+    assert [next_reversal(course, k, law) for k in range(7)] == [2, 2, 4, 4, 5, 7, 7]
+    assert next_reversal(course, 0, at(law, LOADED_BY_FORCE)) == 1
 
 
 def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
@@ -216,6 +243,26 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
     assert bent[[0, LAST]] == pytest.approx(left[[0, LAST]] / law.end_bristle.stiffness)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_is_left_at_rest_bends_bristles_up_to_their_limit_and_the_loads_element(sign):
+    """Travel is the share of a limit of 3 N; the element yields at 2 N, the guide has the rest."""
+    values = {"presliding.length_mm": 0.05, "load_friction.after_sensor_N": 3.0}
+    s, law = lumps(with_values(GROUP_A, values | {"load_hysteresis.force_N": 2.0}))
+    left = sign * np.array([1.5, 6.0, -6.0])
+    start = np.zeros((2, 5))
+    start[1, :4] = 30.0 - np.append(0.0, np.cumsum(left))
+    for boundary, element in ((LOADED_BY_SPRING, sign * 2.0), (LOADED_BY_FORCE, 0.0)):
+        s[rows.LOAD_STATE] = s[rows.LOAD_STATE + 1] = 7.0
+        given = Given(start[1, 3] - sign * 2.5, 0.0)
+        step = Step(1e-13, NONE, given, NONE, 0.1, 0.1, F0 - given.value)
+        rest_at(s, start, step, at(law, boundary))
+        limits = 0.05 * (start[1, 1:4] + start[1, :3])
+        bent = left / law.lump.bristle.stiffness + 0.05 * np.clip(left / limits, -1.0, 1.0)
+        bent = [*bent, (sign * 2.5 - element) / law.end_bristle.stiffness]
+        np.testing.assert_allclose(nodes(s, rows.DEFLECTION)[1:], bent, rtol=1e-6)
+        assert s[rows.LOAD_STATE :][:2].tolist() == pytest.approx([element, 0.0])
+
+
 @pytest.mark.parametrize(
     ("leans", "phase"),
     [((1, 1, 1), 1), ((-1, -1, -1), -1), ((1, 1, 0), 0), ((0, -1, -1), 0), ((1, -1, 1), 0)],
@@ -248,6 +295,56 @@ def test_a_tendon_hangs_where_nothing_pulls_and_the_drive_is_too_near():
     assert not slack(-1e-6, boundary=LOADED_BY_FORCE)
 
 
+STRAIGHT = -F0 / KL - F0 * GROUP_A.sheath_length_mm / GROUP_A.tendon_stiffness_N
+
+
+def written(course, law):
+    """Return the columns and the phase of four samples, the inner two of a slack tendon."""
+    columns, phase = np.full((4, 4), -1.0), np.zeros(4, dtype=np.int8)
+    write_slack(columns, phase, Samples(1, 3), cleared(GROUP_A)[0], course, law)
+    assert np.all(columns[:, [0, 3]] == -1.0)
+    assert phase.tolist() == [0, SLACK, SLACK, 0]
+    return columns[:, 1:3].tolist()
+
+
+def test_a_slack_tendon_is_taken_up_where_the_drive_is_back_where_it_hangs_straight():
+    """Between the samples, where the curve through them has the place; the load rests till then."""
+    (s, law), times = lumps(GROUP_A), np.arange(4.0)
+    course = course_of(STRAIGHT + times - 2.75, GROUP_A, time_s=times)
+    for k, t in ((0, 0.2), (2, 2.5)):
+        assert end_of_slack(s, course, k, t, law) == (2, pytest.approx(2.75, abs=1e-9))
+    never = course_of([STRAIGHT - 1.0] * 4, GROUP_A, time_s=times)
+    assert end_of_slack(s, never, 0, 0.2, law) == (3, 3.0)
+    moved, rest = course[DRIVE, 1:3].tolist(), pytest.approx([-F0 / KL] * 2)
+    assert written(course, law) == [moved, rest, [0.0, 0.0], [0.0, 0.0]]
+    taut = slack_state(s, -3.0, law)
+    np.testing.assert_allclose(np.diff(taut[0]), F0 / segments(s, rows.STIFFNESS))
+    assert (taut[0, LAST], taut[1].any()) == (-3.0, False)
+
+
+def test_a_drive_without_pull_lets_the_tendon_hang_and_goes_where_it_is_straight():
+    s, law = lumps(GROUP_A)
+    pull = course_of([3.0, 0.0, -2.0, 2.0], GROUP_A, time_s=np.arange(4.0))
+    by_force, there = at(law, DRIVEN_BY_FORCE), at(law, LOADED_BY_DISPLACEMENT)
+    slack = [is_slack(s, pull, min(k, 2), float(k), by_force) for k in range(4)]
+    assert slack == [False, True, True, False]
+    rest, straight = (pytest.approx([x, x]) for x in (-F0 / KL, STRAIGHT))
+    assert written(pull, by_force) == [straight, rest, [0.0, -2.0], [0.0, 0.0]]
+    for off, hangs in ((-1e-6, True), (1e-6, False)):
+        near = 6.0 + STRAIGHT + F0 / KL + off  # half way from 5 to 7 mm
+        course = course_of([near, near], GROUP_A, load=[5.0, 7.0], time_s=[0.0, 1.0])
+        assert is_slack(s, course, 0, 0.5, there) == hangs
+
+
+def test_along_a_slack_tendon_there_is_no_tension_and_nothing_slips():
+    frames = empty_frames(np.array([1, 4, 5]), N)
+    frames.tension_N[:], frames.slip[:], frames.front[:] = 7.0, 1, 7.0
+    assert [write_slack_frames(frames, 1, last) for last in (3, 4)] == [1, 2]
+    assert (frames.tension_N[:, 0].tolist(), frames.front.tolist()) == ([7.0, 0.0, 7.0],) * 2
+    assert frames.slip.tolist() == [[1] * N, [SLACK] * N, [1] * N]
+    assert write_slack_frames(frames, 2, 9) == 3
+
+
 REST = [[0.0], [0.0], [F0], [F0]]
 
 
@@ -264,6 +361,12 @@ def test_a_tendon_that_nothing_moves_asks_nothing_of_newtons_method():
     assert np.all(lengths > 0.0)
     assert np.all(lengths[1:] < 2.0 * lengths[:-1] * (1.0 + 1e-9))
     assert progress.step_ends_s[-1] == 0.3
+
+
+def test_a_run_of_two_samples_goes_on_to_the_second():
+    for steps in (OWN_STEPS, np.array([0.1])):
+        output, progress = run([0.0, 0.02], [3.0, 3.2], steps=steps, tolerance=1e-2)
+        assert (output.phase.max() < SLACK, output.x_in[1], progress.reached_s) == (True, 0.02, 3.2)
 
 
 def test_steps_that_are_given_end_there_and_at_turns():

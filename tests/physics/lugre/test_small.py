@@ -38,7 +38,7 @@ from tsas_cli.physics.rig import with_values
 
 EVERYTHING = {
     "load_dependent_friction.exponent": 0.3,
-    "stribeck_friction.excess": 0.4,
+    "stribeck_friction.excess": 1.0,
     "stribeck_friction.velocity_mm_per_s": 2.0,
     "viscous_friction.coefficient_N_s_per_mm": 0.05,
     "presliding.length_mm": 0.01,
@@ -49,6 +49,16 @@ EVERYTHING = {
     "load_inertia.mass_kg": 0.3,
     "drive_friction.friction_N": 1.5,
     "proximal_spring.stiffness_N_per_mm": 3.0,
+    "uneven_friction.slope": 1.0,
+    "drive_inertia.mass_kg": 0.4,
+    "drive_damping.coefficient_N_s_per_mm": 0.7,
+    "load_damping.coefficient_N_s_per_mm": 0.8,
+    "load_hysteresis.force_N": 2.0,
+    "load_hysteresis.travel_mm": 0.5,
+    "load_relaxation.share": 0.5,
+    "load_relaxation.time_s": 0.01,
+    "load_ripple.sine_mm": 0.1,
+    "load_ripple.period_mm": 4.0,
 }
 LIVELY = with_values(GROUP_A, EVERYTHING)
 BOUNDARIES = [LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT, DRIVEN_BY_FORCE]
@@ -66,6 +76,7 @@ def lively():
     ):
         nodes(s, row)[:] = size * rng.standard_normal(N + 2)
     nodes(s, rows.TENSION_HISTORY)[:] = 25.0 + 3.0 * rng.standard_normal(N + 2)
+    nodes(s, rows.LOAD_STATE_HISTORY)[:2] = 1.2, -0.3
     nodes(s, rows.TENSION_SLOPE)[:] = nodes(s, rows.STIFFNESS) * GH + nodes(s, rows.DAMPING)
     return s, law
 
@@ -117,7 +128,8 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
         mean = 0.5 * (T_now[i - 1] + T_now[i])
         pulled = bent[i] + GH * v[i] >= 0.0
         limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 25.0) ** 0.3
-        limit *= 1.0 + 0.4 * math.exp(-((v[i] / 2.0) ** 2))
+        limit *= 1.0 + math.exp(-((v[i] / 2.0) ** 2))
+        limit *= 1.0 + (i - 0.5) / N - 0.5
         f, z = bristle_by_hand(bent[i], v[i], limit, law.lump.bristle)
         inertia = 0.0025e-6 * LIVELY.sheath_length_mm / N * slowed[i] / GH
         left[i] = T_now[i - 1] - T_now[i] - f - inertia
@@ -125,7 +137,8 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
         assert s[rows.DEFLECTION_NEW + i] == pytest.approx(z, rel=1e-7)
     if boundary is DRIVEN_BY_FORCE:
         rubs, _ = bristle_by_hand(bent[0], w[0], 1.5, law.end_bristle)
-        left[0] = 30.0 - T_now[0] - 3.0 * x[0] - rubs
+        slower = w[0] - s[rows.SPEED_HISTORY]  # at a drive by force no frame moves
+        left[0] = 30.0 - T_now[0] - 3.0 * x[0] - rubs - 0.7 * w[0] - 0.4e-3 * slower / GH
     else:
         left[0] = -w[0]
     if boundary is LOADED_BY_FORCE:  # the guide's part behind the sensor is not in what it reads
@@ -134,7 +147,12 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
     else:
         rubs, _ = bristle_by_hand(bent[LAST], v[LAST], 3.0, law.end_bristle)
         pull = 25.0 - 1.2 + 1.579 * x[LAST] * (1.0 + 0.1 * x[LAST] + 0.02 * x[LAST] ** 2)
+        pull += 1.579 * 0.1 * math.sin(0.5 * math.pi * x[LAST]) + 0.8 * v[LAST]
+        stretch = (-0.3 + GH * v[LAST]) / (1.0 + GH / 0.01)  # of the spring that relaxes
+        element = min(max(1.2 + 4.0 * GH * v[LAST], -2.0), 2.0)
+        pull += element + 0.5 * 1.579 * stretch
         left[LAST] = T_now[N] - pull - rubs - 0.3e-3 * slowed[LAST] / GH
+        assert s[rows.LOAD_STATE_NEW :][:2].tolist() == pytest.approx([element, stretch])
     np.testing.assert_allclose(nodes(s, rows.RESIDUAL), left, rtol=1e-6, atol=1e-9)
     assert total == pytest.approx(np.abs(left).sum(), rel=1e-6)
 
@@ -218,6 +236,19 @@ def test_the_error_of_a_step_is_that_of_a_cubic(times):
     assert step_error(s, law, formula) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.parametrize(("before_s", "speed"), [(math.inf, 0.0), (0.2, -3.0)])
+def test_the_first_step_is_guessed_at_rest_and_the_second_one_straight_on(before_s, speed):
+    """Each lump by its own speed; what has been before is not known."""
+    (s, law), scale = cleared(GROUP_A), np.arange(1.0, N + 3.0)
+    formula = bdf2(0.3, before_s, math.inf)
+    nodes(s, rows.POSITION)[:], nodes(s, rows.POSITION_1)[:] = scale, scale * 1.6
+    nodes(s, rows.POSITION_2)[:] = 99.0
+    predict(s, law, formula)
+    np.testing.assert_allclose(nodes(s, rows.RATE), speed * scale, atol=1e-12)
+    there = nodes(s, rows.POSITION_HISTORY) + formula.gh * nodes(s, rows.RATE)
+    np.testing.assert_allclose(there, scale * (1.0 + 0.3 * speed))
+
+
 def test_what_is_kept_moves_one_step_back(lively):
     s, law = lively
     moves = {
@@ -287,6 +318,18 @@ def test_what_leaves_the_cubic_within_a_step_is_seen(bumped, seen):
 
 def test_an_input_of_one_sample_stands_still():
     assert slope_at(course_of([3.0], GROUP_A), DRIVE, 0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("drive", "slopes"),  # Fritsch and Butland's means within, a parabola's at the ends
+    [
+        *(((0, 2, 3), (2.5, 4 / 3, 0.5)), ((0, 1, 5), (0, 1.6, 5.5)), ((0, 1, 1), (1.5, 0, 0))),
+        *(((0, 1, -9), (3, 0, -15.5)), ((0, 0, 1), (0, 0, 1.5)), ((0, -1, -5), (0, -1.6, -5.5))),
+    ],
+)
+def test_the_curve_through_samples_keeps_their_shape(drive, slopes):
+    course = course_of(drive, GROUP_A, time_s=[0.0, 1.0, 2.0])
+    assert [slope_at(course, DRIVE, k) for k in range(3)] == pytest.approx(slopes)
 
 
 def test_samples_before_and_after_a_time():

@@ -13,6 +13,7 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS
 from tsas_cli.physics.lugre.stability import Sliding, growth_rate, stability
 from tsas_cli.physics.response import simulate
+from tsas_cli.physics.rig import with_values
 
 AS_PRINTED = TABLE_1._replace(bristles=Bristles(damping_N_s_per_mm=50 * 0.31622))
 WRAP = math.pi / 8.0
@@ -93,3 +94,29 @@ def test_without_friction_nothing_is_judged_and_the_chain_answers(smooth):
     drive = DriveInput(x, time_s=TIME_S[:200])
     slip, lugre = (simulate(rig, drive, dynamics) for dynamics in ("slip", "lugre"))
     assert lugre.f_in_N == pytest.approx(slip.f_in_N, rel=0.02)
+
+
+FALLING = with_values(
+    TABLE_1._replace(bristles=Bristles(tendon_damping_N_s_per_mm=0.0)),
+    {"stribeck_friction.excess": 0.3, "stribeck_friction.velocity_mm_per_s": 5.0},
+)
+BAND = Sliding(30.0, 170.0, 3.0, whole=False)
+
+
+@pytest.mark.parametrize(
+    ("mass_kg", "kL", "alike", "moment"),
+    [
+        *((1e-7, 400.0, 400.0, contraction(3.0)), (1e6, 1.579, 1e9, contraction(3.0))),
+        *((0.0, 400.0, 1.579, BAND), (2.0, 1.579, 1.579, BAND)),
+    ],
+    ids=["no mass", "any mass", "band on a spring", "band on a mass"],
+)
+def test_a_load_is_its_spring_or_a_wall_by_its_mass_and_none_in_a_dead_band(
+    mass_kg, kL, alike, moment
+):
+    """Beyond the lumps that slide it is held by those that stick."""
+    bent = {"load_spring_nonlinearity.quadratic_per_mm": 0.2}  # which is straight at rest
+    heavy = with_values(FALLING, bent | {"load_inertia.mass_kg": mass_kg})
+    growth = growth_rate(heavy._replace(load_stiffness_N_per_mm=kL), moment)
+    without = growth_rate(FALLING._replace(load_stiffness_N_per_mm=alike), moment)
+    assert growth == pytest.approx(without, rel=1e-3)

@@ -80,3 +80,13 @@ def test_a_force_that_no_place_gives_is_told_as_missed():
     path, _, missed = inverse_chain(wanted, friction, STEP_S, rig, 10)
     assert missed == 3
     assert (path[-3:] == path[-4]).all()
+
+
+@pytest.mark.parametrize("less_N", [1e-4, 1e-2, 1.0])
+def test_a_dead_band_is_crossed_from_a_step_however_small(less_N):
+    """Full slip turns round: from 60 N pulled to less let go of, both of the closed form."""
+    rig, wanted = OTHER, np.array([17.0, 30.0, 60.0, 60.0 - less_N, 20.0, 20.0 + less_N])
+    path, tension = path_to(wanted, rig, n=3)
+    assert path[2] > path[3] > path[4] < path[5]
+    factors = np.exp(wrap_of(rig) * np.array([1.0, 1.0, -1.0]))
+    np.testing.assert_allclose(tension[[1, 2, 4]], wanted[[1, 2, 4]] * factors)

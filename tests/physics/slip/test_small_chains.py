@@ -32,8 +32,10 @@ SPRINGY = GROUP_A._replace(
 )
 UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 1.47, 1.1, 0.5, -0.1, -0.7, -0.6])
 MASS_TAKES_UP_S = 0.01  # documented in `slip.ends`
+FRICTION_LAGS_S = 0.01  # documented in `slip.nodes`
 ROUNDING = 1e-6  # [N, mm]
 FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
+FALLING = {"stribeck_friction.excess": 0.5, "stribeck_friction.velocity_mm_per_s": 4.0}
 EFFECTS = {
     "friction alone": {},
     "free tendon": FREE,
@@ -45,7 +47,7 @@ EFFECTS = {
     "presliding": {"presliding.length_mm": 0.02},
     "presliding and tension": {
         "presliding.length_mm": 0.05,
-        "load_dependent_friction.exponent": 0.2,
+        "load_dependent_friction.exponent": 1.0,
     },
     "a bent spring": {
         "load_spring_nonlinearity.quadratic_per_mm": 0.3,
@@ -55,12 +57,14 @@ EFFECTS = {
         "load_friction.after_sensor_N": 3.0,
         "load_friction.before_sensor_N": 1.5,
     },
-    "friction rises along the sheath": {"uneven_friction.slope": 1.5},
+    "friction rises along the sheath": {"uneven_friction.slope": 1.0},
     "friction falls along the sheath and with tension": {
         "uneven_friction.slope": -1.2,
         "load_dependent_friction.exponent": -0.25,
     },
     "uneven presliding": {"presliding.length_mm": 0.02, "uneven_friction.slope": 1.2},
+    "friction falls with speed": FALLING,
+    "presliding falls with speed": FALLING | {"presliding.length_mm": 0.02},
     "a damper": {"load_damping.coefficient_N_s_per_mm": 0.4},
     "a load that yields": {"load_hysteresis.force_N": 4.0, "load_hysteresis.travel_mm": 0.3},
     "a load that relaxes": {"load_relaxation.share": 0.5, "load_relaxation.time_s": 0.1},
@@ -115,7 +119,7 @@ class Nodes:
     """What a node passes on, by its way since the sample before."""
 
     def __init__(self, rig):
-        self.rig, self.share = rig, np.zeros(N + 1)
+        self.rig, self.share, self.speed = rig, np.zeros(N + 1), np.zeros(N + 1)
 
     def hold(self, i, way, before, behind, now):
         pulled, released, viscous_N, _ = now.losses
@@ -123,6 +127,11 @@ class Nodes:
         exponent = self.rig.effects.load_dependent_friction.exponent
         factor = (abs(mean) / self.rig.preload_N) ** exponent
         factor *= 1.0 + self.rig.effects.uneven_friction.slope * ((i - 0.5) / N - 0.5)
+        excess, falls_mm_s = self.rig.effects.stribeck_friction
+        factor *= 1.0 + excess * math.exp(-((self.speed[i] / falls_mm_s) ** 2))
+        if now.step_s < math.inf:  # friction of the next step
+            taken = -math.expm1(-now.step_s / FRICTION_LAGS_S)
+            self.speed[i] += taken * (abs(way) / now.step_s - self.speed[i])
         loss, sign = 0.5 * viscous_N / N, math.copysign(1.0, mean)
         length = self.rig.effects.presliding.length_mm
         if length > 0.0:

@@ -20,7 +20,7 @@ from tests.physics.slip.test_small_chains import SPRINGY
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.mesh import segment_compliances
-from tsas_cli.physics.phases import UNCONVERGED
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
 from tsas_cli.physics.slip.chain import ChainEnds, between, go_slack, initial_state, rest_after
@@ -37,6 +37,7 @@ AT_ENDS = {
     "load_friction.before_sensor_N": 1.5,
     "load_friction.after_sensor_N": 3.0,
 }
+PAIR = with_values(GROUP_A, {"antagonist.preload_N": 18.0})
 
 
 def row(chain, at):
@@ -75,6 +76,19 @@ def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
     chain = chain_at_rest(GROUP_A, 3)
     row(chain, rows.SLIP)[:] = 5.0, *slips, 7.0
     assert phase_of(chain, slip_laws(GROUP_A, 3, LOADED_BY_SPRING)) == phase
+
+
+def test_the_phase_of_a_pair_is_that_of_both_unless_one_is_slack():
+    chain = chain_at_rest(PAIR, 3)
+    for first, second, slack, phase in (
+        *(((1, 1, 1), (1, 1, 1), (0, 0), 1), ((-1, -1, -1), (-1, -1, -1), (0, 0), -1)),
+        *(((1, 1, 1), (1, 0, 1), (0, 0), 0), ((1, 1, 1), (1, 1, 0), (0, 0), 0)),
+        *(((1, 1, 1), (0, 1, 1), (0, 1), 1), ((1, 1, 1), (0, 1, 1), (0, 0), 0)),
+        *(((1, 1, 1), (1, 1, 1), (1, 0), SLACK), ((0, 0, 0), (0, 0, 0), (0, 0), 0)),
+    ):
+        row(chain, rows.SLIP)[1:4], row(chain, rows.SECOND + rows.SLIP)[1:4] = first, second
+        chain[rows.FIRST_IS_SLACK], chain[rows.SECOND + rows.IS_SLACK] = slack
+        assert phase_of(chain, slip_laws(PAIR, 3, LOADED_BY_SPRING)) == phase
 
 
 def test_what_a_sensor_at_the_load_feels():

@@ -243,7 +243,7 @@ def slip_after_backwards(i: int, loss: float, chain: Floats) -> float:
     """
     slid = abs(chain[at.POSITION + i] - chain[at.POSITION_BEFORE + i])
     force = slid * (1.0 / chain[at.COMPLIANCE + i - 1] + 1.0 / chain[at.COMPLIANCE + i])
-    limits = 1.0 / capstan_ratio(-1.0, i, chain) - capstan_ratio(1.0, i, chain)
+    limits = 1.0 / capstan_ratio(1.0, i, chain) - 1.0 / capstan_ratio(-1.0, i, chain)
     return -chain[at.SLIP + i] if force > abs(limits * chain[at.TENSION + i]) + 2.0 * loss else 0.0
 
 
