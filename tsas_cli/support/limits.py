@@ -38,6 +38,7 @@ SEEDS = 10_000  # of noise, in one call
 ITEMS = 1_000_000  # variables, cells, blocks of one file
 # Largest plausible magnitudes of the canonical columns by unit; beyond are sentinels and mix-ups.
 LARGEST = {"mm": 1e6, "N": 1e9, "rpm": 1e9, "rad": 1e9, "°C": 1e6}
+SMALLEST = 1e-30  # of what a channel reaches, in any unit: far below what rounding leaves of zero
 SHORTEST_STEP_S, LONGEST_STEP_S = 1e-10, 1e9  # from a sample to the next
 _DOTTED = re.compile(
     r"""(?<![\w"'.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % DEPTH  # noqa: UP031
