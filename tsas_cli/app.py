@@ -27,6 +27,7 @@ from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import NO_MEMORY, InputError, printable
+from tsas_cli.support.limits import loadable
 from tsas_cli.support.stopping import EXIT_CODE
 
 # What to do at an error of the system, by its number.
@@ -61,6 +62,8 @@ def _options(
     ),
 ) -> None:
     del version
+    if "--help" not in sys.argv:
+        loadable()
 
 
 # Panels of `tsas --help`, in this order; `tsas_studies` adds its commands to that of the studies.
@@ -112,6 +115,8 @@ def run() -> None:
             raise
         if _was_stopped(error):
             sys.exit(EXIT_CODE)
+        if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # of Path.resolve
+            error = OSError(errno.ELOOP, str(error))
         if isinstance(error, OSError) and error.errno in REFUSALS:
             code = _refused(error)
         else:

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -81,6 +82,15 @@ def test_a_file_that_the_list_no_longer_names_is_told(file):
     assert ("missing", f"result/model/{file}") in {
         (one.state, one.file) for one in tsas.verify("result").wrong
     } or file == "simulation.json"
+
+
+def test_series_behind_a_circle_of_links_are_told():
+    folder = Path("result/model")
+    shutil.rmtree(folder / "runs")
+    (folder / "runs").symlink_to("runs")
+    tsas.report(["dataset", folder], out="page.html")
+    assert "model/runs/a.parquet" in Path("page.html").read_text(encoding="utf-8")
+    assert [one.state for one in tsas.verify(folder).wrong] == ["missing"]
 
 
 def test_the_files_of_every_stage_are_known():

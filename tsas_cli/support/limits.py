@@ -191,7 +191,18 @@ def _encodable(name: str) -> bool:
 
 
 def loadable() -> None:
-    """Refuse a limit of memory under which libraries abort, or never end, while they are loaded."""
+    """Refuse what libraries cannot be loaded in, or no path be found in.
+
+    Under a low limit of memory they abort, or never end.
+    """
+    try:
+        os.getcwd()  # noqa: PTH109 # without a Path
+    except OSError as error:
+        raise InputError(
+            f"the current folder cannot be found ({error.strerror})",
+            expected="one that exists",
+            remedy="change to another folder",
+        ) from error
     most = _most_addresses()
     if most < LOADING:
         raise InputError(
