@@ -121,6 +121,28 @@ def test_a_wrong_input_is_one_line_and_exit_code_2(failing):
     assert (code, said) == (2, "tsas: a\\x1b[31m: no\\nsuch run\n")
 
 
+@pytest.mark.parametrize("call", [["effects"], ["init", "rig"], ["doctor"]])
+def test_a_current_folder_that_is_gone_is_one_line(tsas, tmp_path, call):
+    def leave():
+        (tmp_path / "gone").mkdir()
+        os.chdir(tmp_path / "gone")
+        (tmp_path / "gone").rmdir()
+
+    said = tsas(*call, preexec_fn=leave)
+    assert (said.returncode, said.stdout) == (2, "")
+    assert said.stderr.startswith("tsas: the current folder cannot be found (No such file or dir")
+    assert said.stderr.endswith("change to another folder\n")
+    assert tsas(call[0], "--help", preexec_fn=leave).returncode == 0
+
+
+@pytest.mark.parametrize("call", ["simulate DATASET --out loop/x", "init loop"])
+def test_a_link_to_itself_is_one_line(refused, dataset, tmp_path, monkeypatch, call):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "loop").symlink_to("loop")
+    said = refused(*call.replace("DATASET", str(dataset)).split())
+    assert said.endswith("a link leads back to itself: remove it\n")
+
+
 def test_a_defect_is_one_line_and_exit_code_1(failing):
     code, said = failing(ZeroDivisionError("two\nlines"))
     assert code == 1

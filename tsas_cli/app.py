@@ -26,7 +26,8 @@ from tsas_cli.commands.setup import doctor, init
 from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
 from tsas_cli.support import __version__
-from tsas_cli.support.errors import InputError, printable
+from tsas_cli.support.errors import NO_MEMORY, InputError, printable
+from tsas_cli.support.limits import loadable
 from tsas_cli.support.stopping import EXIT_CODE
 
 # What to do at an error of the system, by its number.
@@ -61,6 +62,8 @@ def _options(
     ),
 ) -> None:
     del version
+    if "--help" not in sys.argv:
+        loadable()
 
 
 # Panels of `tsas --help`, in this order; `tsas_studies` adds its commands to that of the studies.
@@ -106,13 +109,14 @@ def run() -> None:
         _discard_output()
         code = 0
     except MemoryError:
-        remedy = "use a larger machine, fewer runs at a time (--runs), or shorter recordings"
-        code = _stop(f"this needs more memory than is free; {remedy}", 2)
+        code = _stop(NO_MEMORY, 2)
     except Exception as error:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise
         if _was_stopped(error):
             sys.exit(EXIT_CODE)
+        if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # of Path.resolve
+            error = OSError(errno.ELOOP, str(error))
         if isinstance(error, OSError) and error.errno in REFUSALS:
             code = _refused(error)
         else:

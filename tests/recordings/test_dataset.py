@@ -79,6 +79,17 @@ def test_integers_beyond_the_exact_floats_are_accepted(dataset, columns):
     assert only(dataset).time_s[-1] == pytest.approx(nanoseconds[-1])
 
 
+@pytest.mark.parametrize("strict", [True, False])
+@pytest.mark.parametrize("factor", [1e-150, 5e-324])
+def test_a_channel_whose_squares_vanish_is_refused(dataset, columns, factor, strict):
+    rewrite(dataset, pa.table(columns | {"f_in_N": columns["f_in_N"] * factor}))
+    with pytest.raises(InputError, match=r"f_in_N never exceeds .* N; expected zero, or a magn"):
+        read_recording(dataset, read_dataset(dataset).runs[0], strict=strict)
+    for force in (columns["f_in_N"] * 0.0, np.where(np.arange(500) < 9, 5e-324, 1.0)):
+        rewrite(dataset, pa.table(columns | {"f_in_N": force}))
+        assert only(dataset).columns["f_in_N"].max() in (0.0, 1.0)
+
+
 def test_a_dataset_made_by_pandas_alone_works(tmp_path, columns):
     frame = pd.DataFrame(columns).assign(f_out_N=lambda t: t.f_in_N.where(t.index != 3))
     frame.to_parquet(tmp_path / "first run.parquet")

@@ -119,3 +119,17 @@ def test_the_checksum_is_the_standard_one(tmp_path):
     assert sha256_of(tmp_path / "abc") == (
         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
     )
+
+
+@pytest.mark.parametrize("umask", [0o022, 0o077, 0o027])
+def test_an_output_and_what_is_in_it_have_the_mode_that_the_umask_leaves(tmp_path, umask):
+    before = os.umask(umask)
+    try:
+        with folder_of(tmp_path / "out") as folder:
+            (folder / "result").write_text("new")
+        with file_of(tmp_path / "page.html") as file:
+            file.write_text("new")
+    finally:
+        os.umask(before)
+    modes = {name: (tmp_path / name).stat().st_mode & 0o777 for name in ("out", "page.html")}
+    assert modes == {"out": 0o777 & ~umask, "page.html": 0o666 & ~umask}

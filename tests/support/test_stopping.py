@@ -50,6 +50,26 @@ except KeyboardInterrupt:
     assert ended(tmp_path, program) == 130
 
 
+def test_a_stop_in_a_destructor_is_a_stop(tmp_path):
+    """As in those of numba, which take a lock while it compiles."""
+    program = """
+import signal, sys, time
+from tsas_cli.support.stopping import EXIT_CODE, stopped_once
+
+class Compiled:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+stopped_once()
+try:
+    Compiled()
+    time.sleep(5.0)
+except KeyboardInterrupt:
+    sys.exit(EXIT_CODE)
+"""
+    assert ended(tmp_path, program) == 130
+
+
 @pytest.mark.parametrize("code", [0, 130])
 @pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_second_stop_while_the_program_ends_changes_no_exit_code(tmp_path, code, number):

@@ -68,6 +68,21 @@ def test_a_file_that_may_not_grow_is_one_line(dataset, tsas, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["dataset"]
 
 
+@pytest.mark.parametrize("megabytes", [300, 700, 850])
+def test_a_limit_of_memory_below_what_the_libraries_take_is_one_line(
+    dataset, tsas, tmp_path, megabytes
+):
+    """Libraries abort there, or never end: OpenBLAS asks for its buffers for ever."""
+
+    def limited():
+        resource.setrlimit(resource.RLIMIT_AS, (megabytes * 10**6, megabytes * 10**6))
+
+    out = tmp_path / "out"
+    done = tsas("simulate", dataset, "--out", out, preexec_fn=limited, timeout=60)
+    assert is_one_line(done, f"{megabytes} MB of memory; expected at least 1.2 GB")
+    assert not out.exists()
+
+
 @ROOT_ONLY
 def test_a_read_only_file_system_is_one_line(dataset, tsas, mounted):
     place = mounted("size=4m")

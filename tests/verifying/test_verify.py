@@ -129,13 +129,14 @@ def test_a_moved_project_fits_as_before(chain, tmp_path):
     assert tsas.verify("elsewhere/result").wrong == []
 
 
-def test_folders_of_earlier_versions_are_told_not_to_say():
+def test_folders_without_their_lists_are_told():
     for sums in Path().rglob(SUMS):
         sums.unlink()
     found = {one.file: one for one in tsas.verify("result/model").files}
     for name in ("simulation.json", "model.toml", "runs/a.parquet"):
         one = found[f"result/model/{name}"]
         assert (one.state, one.why) == ("cannot tell", "no checksum of it is recorded")
+    assert found[f"result/model/{SUMS}"].state == "missing"
     assert found["dataset/runs/a.parquet"].state == "fits"
 
 

@@ -16,6 +16,7 @@ from duckdb import DuckDBPyConnection
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import RigSheet, Run, parse, read_manifest
+from tsas_cli.recordings.storage import is_inside
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
@@ -165,7 +166,7 @@ def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> E
 
 def _refusal(folder: Path, path: Path) -> str | None:
     """Return the reason not to read a run's file; None if it may be read or does not exist."""
-    if not path.resolve().is_relative_to(folder.resolve()):
+    if not is_inside(path, folder):
         return "a link leads out of the dataset's folder"
     if path.exists() and not path.is_file():
         return "is no regular file"  # reading a pipe would block

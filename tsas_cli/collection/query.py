@@ -163,6 +163,8 @@ def run_query(
         shown = ordered if limit is None else ordered.limit(limit)
         rows = shown.project(picked).fetchall()
         ((fit,),), ((every,),) = (r.aggregate("count(*)").fetchall() for r in (fitting, runs))
+    except duckdb.OutOfMemoryException as error:
+        raise MemoryError from error
     except duckdb.Error as error:
         raise _query_error(query, translated, error, runs.columns) from error
     folders = tuple(dict.fromkeys(str(row[-1]) for row in rows))

@@ -57,6 +57,8 @@ def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Record
         raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
     if strict:
         _check_values(columns, path)
+    else:
+        _check_sizes(columns, path)
     return Recording(run, columns)
 
 
@@ -218,6 +220,20 @@ def _check_values(columns: dict[str, Floats], path: Location) -> None:
         check_time(columns[TIME], path)
     for name, values in columns.items():
         check_magnitude(name, values, path)
+    _check_sizes(columns, path)
+
+
+def _check_sizes(columns: dict[str, Floats], path: Location) -> None:
+    """Refuse a channel whose largest value is implausibly small: its squares would vanish."""
+    for name in columns.keys() & BY_NAME.keys() - {TIME}:
+        size = np.abs(columns[name]).max(initial=0.0, where=np.isfinite(columns[name]))
+        if 0.0 < size < limits.SMALLEST:
+            raise InputError(
+                f"{name} never exceeds {size:.3g} {BY_NAME[name].unit}",
+                where=path,
+                expected=f"zero, or a magnitude of at least {limits.SMALLEST:g}",
+                remedy="check the unit or the factor, and ingest again",
+            )
 
 
 def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:

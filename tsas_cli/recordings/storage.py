@@ -197,8 +197,13 @@ def check_inside(path: Location, folder: Location) -> None:
     """Refuse a file that a link places outside its dataset's folder; an address has no links."""
     if isinstance(path, Address) or isinstance(folder, Address):
         return
-    if not path.resolve().is_relative_to(folder.resolve()):
+    if not is_inside(path, folder):
         raise InputError("a link leads out of the dataset's folder", where=path)
+
+
+def is_inside(path: Path, folder: Path) -> bool:
+    """Return whether no link leads from a path out of its folder; a circle leads nowhere."""
+    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
 
 
 def recorded_location(home: Path, text: str) -> Location:

@@ -19,6 +19,7 @@ from tsas_cli.recordings.parquet_files import (
 )
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
+from tsas_cli.recordings.storage import is_inside
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
@@ -117,7 +118,7 @@ def result_file(folder: Path, run: str) -> Path:
         check_run_name(run)
     except ValueError as error:
         raise InputError(f"run id {run[:80]!r} {error}", where=folder) from error
-    if not path.resolve().is_relative_to(folder.resolve()):
+    if not is_inside(path, folder):
         raise InputError("a link leads out of its folder", where=path)
     return path
 

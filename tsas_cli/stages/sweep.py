@@ -20,7 +20,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.stages.given import Named, at_least, file_of
 from tsas_cli.stages.read import read
-from tsas_cli.support.errors import InputError
+from tsas_cli.support.errors import NO_MEMORY, InputError
 from tsas_cli.support.files import Raw, new_folder, read_json, sha256_of, write_json, write_sums
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.support.temporaries import remove
@@ -121,6 +121,8 @@ def work(task: Raw) -> TaskOutcome:
         outcome = _done(task)
     except InputError as error:
         outcome = failure(_as_named(error.line(), task), defect=False)
+    except MemoryError:
+        outcome = failure(NO_MEMORY, defect=False)
     except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
         outcome = failure(f"a defect of tsas itself: {type(error).__name__}: {error}")
     return outcome | {

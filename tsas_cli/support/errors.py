@@ -3,6 +3,11 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+NO_MEMORY = (
+    "this needs more memory than is free; "
+    "use a larger machine, fewer runs at a time (--runs), or shorter recordings"
+)
+
 
 class InputError(Exception):
     """An invalid call or invalid input: one line with fault, location, expectation and remedy.

@@ -121,11 +121,10 @@ def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -
             refuse()
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
-            temporary.mkdir(0o700) if folder else temporary.touch(0o600)
+            temporary.mkdir() if folder else temporary.touch()
         with _written(path, only=_NO_ROOM), _named(temporary, path):
             yield temporary
         with _written(path):
-            temporary.chmod(0o755 if folder else 0o644)
             refuse()  # another process may have written it meanwhile
             (place_folder if folder else place_file)(temporary, path, replace=force)
 

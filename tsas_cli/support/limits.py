@@ -4,6 +4,7 @@ Formats that are read in parts (text tables, Parquet) have no limit of rows; tho
 whole are limited by the free memory. No file may expand to more than a recording can hold.
 """
 
+import math
 import os
 import re
 import stat
@@ -31,11 +32,13 @@ FOOTER = 16 * MIB  # bytes of a Parquet file's footer
 EXPANSION = 500  # times the size of a compressed file; zeros reach 1032, constant channels 24
 PARQUET_EXPANSION = 5_000  # likewise; an even clock and constant channels reach 1700
 HARMLESS = 256 * MIB  # to which any file may expand
+LOADING = 1_200_000_000  # bytes of addresses that the libraries take
 COPIES = 3  # in memory of a file that is loaded whole
 SEEDS = 10_000  # of noise, in one call
 ITEMS = 1_000_000  # variables, cells, blocks of one file
 # Largest plausible magnitudes of the canonical columns by unit; beyond are sentinels and mix-ups.
 LARGEST = {"mm": 1e6, "N": 1e9, "rpm": 1e9, "rad": 1e9, "°C": 1e6}
+SMALLEST = 1e-30  # of what a channel reaches, in any unit: far below what rounding leaves of zero
 SHORTEST_STEP_S, LONGEST_STEP_S = 1e-10, 1e9  # from a sample to the next
 _DOTTED = re.compile(
     r"""(?<![\w"'.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % DEPTH  # noqa: UP031
@@ -187,6 +190,28 @@ def _encodable(name: str) -> bool:
     return True
 
 
+def loadable() -> None:
+    """Refuse what libraries cannot be loaded in, or no path be found in.
+
+    Under a low limit of memory they abort, or never end.
+    """
+    try:
+        os.getcwd()  # noqa: PTH109 # without a Path
+    except OSError as error:
+        raise InputError(
+            f"the current folder cannot be found ({error.strerror})",
+            expected="one that exists",
+            remedy="change to another folder",
+        ) from error
+    most = _most_addresses()
+    if most < LOADING:
+        raise InputError(
+            f"this process may take {size(int(most))} of memory",
+            expected=f"at least {size(LOADING)}, which the libraries take",
+            remedy="raise the limit (`ulimit -v`)",
+        )
+
+
 def fits(path: object, bytes_: int) -> None:
     """Refuse a file that is loaded whole and exceeds the memory."""
     free = available()
@@ -217,13 +242,19 @@ def available() -> int:
     import psutil
 
     free = [psutil.virtual_memory().available, *_of_container()]
-    if sys.platform != "win32":
-        import resource
-
-        most, _ = resource.getrlimit(resource.RLIMIT_AS)
-        used = psutil.Process().memory_info().vms
-        free += [] if most == resource.RLIM_INFINITY else [most - used]
+    if (most := _most_addresses()) < math.inf:
+        free.append(int(most) - psutil.Process().memory_info().vms)
     return int(max(0, min(free)))
+
+
+def _most_addresses() -> float:
+    """Return the limit of this process's addresses [bytes], infinite without one."""
+    if sys.platform == "win32":
+        return math.inf
+    import resource
+
+    most, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return math.inf if most == resource.RLIM_INFINITY else float(most)
 
 
 def _of_container() -> Iterator[int]:

@@ -3,6 +3,7 @@
 import atexit
 import math
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -13,6 +14,7 @@ NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that close
 SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
 EXIT_CODE = 130  # of a command that was stopped, as typer has it
 CLEANUP_S = 3.0  # in which further signals are ignored
+AGAIN_S = 0.01  # after which a stop that a destructor has swallowed is raised again
 
 
 class Stopped(BaseException):
@@ -46,10 +48,28 @@ def stopped_once() -> None:
     end the process by themselves: they are ignored.
     """
     atexit.register(_ignore)
+    sys.unraisablehook = _raise_again
     _handle(Interrupted)
 
 
+def _raise_again(lost: "sys.UnraisableHookArgs") -> None:
+    """Raise a stop again, shortly after, that was raised in a destructor, which ends there."""
+    if not issubclass(lost.exc_type, (Interrupted, Stopped)):
+        sys.__unraisablehook__(lost)
+        return
+
+    def stop(
+        number: int, frame: FrameType | None, kind: type[BaseException] = lost.exc_type
+    ) -> None:
+        del number, frame
+        raise kind
+
+    signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+
+
 def _ignore() -> None:
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
@@ -80,7 +100,7 @@ def _handle(kind: type[BaseException]) -> dict[signal.Signals, Any]:
     """Raise `kind` at signals from now on; return the handlers of before.
 
     Further signals within `CLEANUP_S` do not disturb the clean-up. A library may swallow the
-    exception, for example in a destructor: a later signal raises it again.
+    exception: a later signal raises it again.
     """
     _Received.last_s = -math.inf
 

@@ -18,6 +18,7 @@ from tsas_cli.recordings.storage import Location, is_address, location_text, pat
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
 from tsas_cli.support.replacing import SUMS
+from tsas_cli.verifying.outputs import outputs_of
 
 _TYPE = "<!DOCTYPE html>\n"
 _HEAD = "<!-- a page of tsas, which ends with its own checksum -->\n"
@@ -182,17 +183,23 @@ def with_seal(text: str, files: Iterable[tuple[Location, str]], page: Path) -> s
 
 
 def change_notes(given: Iterable[object]) -> list[str]:
-    """Return a sentence for each folder, of what is given, that was changed since it was written.
+    """Return a sentence for each folder, of what is given, that is not as its stage has written it.
 
-    Of a file in such a folder, that file counts alone; what is no path, or has no checksums beside
-    it, tells nothing.
+    Of a file in such a folder, that file counts alone; what is no path, or no stage has written,
+    tells nothing.
     """
     paths = dict.fromkeys(path for path in given if isinstance(path, Path))
-    return [
+    changed = [
         f"Changed since it was written: {', '.join(found)}. What is shown of it is not what the "
         "stage found; `tsas verify` says more."
         for path in paths
         if (found := list(_changed(path)))
+    ]
+    return changed + [
+        f"Without a checksum: {lacking}. What is shown of it may not be what the stage found; "
+        "`tsas verify` says more."
+        for path in paths
+        if (lacking := _unlisted(path))
     ]
 
 
@@ -206,6 +213,22 @@ def _changed(path: Path) -> Iterator[str]:
     for claim in claims:
         if path in (folder, folder / claim.file) and not _fits(folder / claim.file, claim.sha256):
             yield f"{folder.name}/{claim.file}"
+
+
+def _unlisted(path: Path) -> str:
+    """Say which files of a stage's folder its list lacks; nothing where the list is broken."""
+    folder = path if path.is_dir() else path.parent
+    files = {name for json in folder.glob("*.json") for name in outputs_of(json)}
+    sums = folder / SUMS
+    if not sums.is_file():
+        lost = files if path == folder else files & {path.name}
+        return f"{folder.name}/{SUMS} is missing" if lost else ""
+    try:
+        listed = {claim.file for claim in claims_of(sums)}
+    except InputError:
+        return ""
+    lost = (files if path == folder else {path.name}) - listed
+    return f"{folder.name}/{SUMS} does not list {', '.join(sorted(lost))}" if lost else ""
 
 
 def _fits(path: Path, sha256: str) -> bool:

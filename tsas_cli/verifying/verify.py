@@ -2,7 +2,7 @@
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -14,6 +14,7 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
 from tsas_cli.support.replacing import SUMS
 from tsas_cli.verifying.claims import Claim, claims_of
+from tsas_cli.verifying.outputs import outputs_of
 
 _State = Literal["fits", "changed", "missing", "cannot tell"]
 _OURS = {".json", ".toml", ".html"}
@@ -81,6 +82,7 @@ def verify_all(
     # Claims with a location come first: other claims may refer to the files found there.
     ordered = sorted(claims, key=lambda claim: claim.path is None)
     found += [_judged(claim, walk) for claim in ordered]
+    found += list(_unlisted(walk, claims, {one.file for one in found if one.state != "fits"}))
     if not found and start.is_file():
         raise InputError(
             "it records no checksum",
@@ -155,6 +157,26 @@ def _in_raw(claim: Claim, walk: _Walk) -> Path | None:
             if same and _sum(path, walk) == claim.sha256:
                 return path
     return None
+
+
+def _unlisted(walk: _Walk, claims: Iterable[Claim], told: set[str]) -> Iterator[Verified]:
+    """Yield the files that a stage's JSON names and that its folder's list lacks, or the list."""
+    listed = {one.by.parent.resolve() / one.file for one in claims if one.by.name == SUMS}
+    for path in sorted(walk.seen):
+        lost = [path.parent / name for name in outputs_of(path)]
+        lost = [file for file in lost if file not in listed]
+        sums = path.parent / SUMS
+        if _shown(sums) in told:  # it is damaged
+            continue
+        if lost and not sums.is_file():
+            told.add(_shown(sums))
+            yield Verified(_shown(sums), "missing", _shown(path), "does not exist")
+        for file in lost:
+            if not file.is_file():
+                yield Verified(_shown(file), "missing", _shown(path), "does not exist")
+            elif sums.is_file():
+                why = f"{SUMS} does not list it"
+                yield Verified(_shown(file), "changed", _shown(path), why)
 
 
 def _unclaimed(walk: _Walk, reported: set[str]) -> Iterator[Verified]:
