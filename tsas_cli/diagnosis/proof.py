@@ -169,9 +169,8 @@ def split_in_words(split: Split) -> str:
     parts = split.values
     if len(parts) > MOST_PARTS:
         parts = tuple(end(parts, key=lambda pair: pair[1]) for end in (min, max))
-    told = {value for _, value in parts}
-    enough = (n for n in (3, 4, 5) if len({f"{v:.{n}g}" for v in told}) == len(told))
-    digits = next(enough, 6)
+    shown = [{f"{value:.{n}g}" for _, value in parts} for n in range(3, 7)]
+    digits = 3 + next((k for k, texts in enumerate(shown) if len(texts) == len(parts)), 3)
     values = " and ".join(f"{value:.{digits}g} ({part})" for part, value in parts)
     unit = _unit(QUANTITIES[split.parameter].unit)
     over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
