@@ -2,6 +2,7 @@
 
 import gc
 import weakref
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -188,3 +189,12 @@ def test_means_of_neighbours_keep_a_variance_of_one():
 def test_raw_errors_are_measured_less_simulated():
     made = errors_with({"f_in_N": np.array([2, 5])})
     assert made.raw(None)["f_in_N"].tolist() == [1.0, 22.0]
+
+
+def test_errors_over_the_noise_are_those_where_the_noise_rules():
+    """At a steep reversal the error of the drive is most of the standard deviation."""
+    errors = errors_with({"f_in_N": np.arange(4)})
+    errors.run.noise = {"f_in_N": 0.1}
+    steep = replace(errors, weights={"f_in_N": np.array([0.1, 0.19, 0.21, 0.9])})
+    raw, chosen = np.array([1.0, 2.0, 3.0, 4.0]), np.array([False, True, True, True])
+    assert steep.over_noise("f_in_N", raw, chosen) == pytest.approx([20.0])

@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
-from tsas_cli.diagnosis.faults.rivals import effects_as_good, left_by
+from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
 from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of, wandering
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
@@ -133,7 +133,7 @@ def diagnose_runs(
         by_fault = _of_a_fault(fault, base)
         named = frozenset(cause.effect for cause in found.causes)
         of_other_laws = all(cause.law_differs for cause in found.causes)
-        if named and of_other_laws and left_by(search, named, fault) > fault.rest:
+        if named and of_other_laws and not leaves_noise(search, named, fault):
             return by_fault
         if not found.causes:
             found = replace(found, fault=by_fault.fault, reason=f"{found.reason} {by_fault.reason}")

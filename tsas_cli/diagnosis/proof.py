@@ -82,7 +82,7 @@ def failures(
 
     `refitted_gain` is its reduction of the squares on held-out data by new fits, `without` and
     `with_it` are the errors there. A channel becomes worse where both its RMS and that of its
-    normalised residual rise: the first alone may rise where a reversal is steep.
+    error over the noise rise: the first alone may rise where a reversal is steep.
     `tolerance_N` is by how much a force sensor of a
     sound rig may be wrong, `stroke_mm` the longest way of the drive, infinite where it is not
     known, and `zero` whether the effect `may_be_zero`.

@@ -22,9 +22,9 @@ from tsas_cli.support.arrays import Floats, Mask
 class HeldOutFit:
     """Errors of one hypothesis on held-out data.
 
-    `rmse` is the RMS of each channel, in its unit, `normalised` that of its weighted residuals,
-    `by_run` the RMS of each run's number and channel; `squares` the sum of squares of the weighted
-    residuals in each block, shape (blocks,).
+    `rmse` is the RMS of each channel, in its unit, `normalised` that over its noise where the noise
+    rules, not a steep reversal, `by_run` the RMS of each run's number and channel; `squares` the
+    sum of squares of the weighted residuals in each block, shape (blocks,).
     """
 
     rmse: dict[str, float]
@@ -42,6 +42,7 @@ def refitted(
     """
     runs = bench.errors_for(trial)
     raw: dict[tuple[int, str], list[Floats]] = {}
+    over_noise: dict[str, list[Floats]] = {}
     weighted = np.empty(folds.fold.size)
     starts = np.concatenate(([0], np.cumsum(trial.sizes)))
     for fold in range(int(folds.fold.max()) + 1):
@@ -58,14 +59,15 @@ def refitted(
             here = weighted[starts[k] : starts[k + 1]]
             here[held_out[k]] = run.residuals(rig)[held_out[k]]
             for name, errors in run.raw(rig).items():
-                raw.setdefault((k, name), []).append(errors[run.spread(name, held_out[k])])
+                there = run.spread(name, held_out[k])
+                raw.setdefault((k, name), []).append(errors[there])
+                over_noise.setdefault(name, []).append(run.over_noise(name, errors, there))
     by_run = {key: rms_of(parts) for key, parts in raw.items()}
     rmse = {
         name: rms_of([part for (_, n), parts in raw.items() if n == name for part in parts])
         for name in sorted({name for _, name in raw})
     }
-    channel = np.array([name for run in runs for name in run.channel_of_each()])
-    normalised = {name: rms_of([weighted[channel == name]]) for name in rmse}
+    normalised = {name: rms_of(parts) for name, parts in over_noise.items()}
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
     return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run)
 
@@ -87,8 +89,9 @@ def _with_own_friction(
 
 
 def rms_of(parts: Sequence[Floats]) -> float:
-    """Return the RMS of all parts together."""
-    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+    """Return the RMS of all parts together, zero of nothing."""
+    every = np.concatenate(parts)
+    return float(np.sqrt(np.mean(every**2))) if every.size else 0.0
 
 
 def refitted_values(bench: Bench, trial: HypothesisFit, folds: Folds, fold: int) -> Floats:

@@ -30,6 +30,8 @@ from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
+LEAST_NOISE = 1e-9  # of a channel, in its unit
+STEEP = 2.0  # times a channel's noise: a standard deviation that is that of the driven ends
 REVERSAL_SD = 3.0  # error of the position of a reversal, in standard deviations
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the correlation length of a cleaned drive's error
 
@@ -109,9 +111,14 @@ class RunErrors:
         none = np.zeros(self.run.time_s.size)
         return _means({n: self._weighted(n, changes.get(n, none)) for n in self.samples})
 
-    def channel_of_each(self) -> list[str]:
-        """Return the channel of each residual of the run."""
-        return [name for name, at in self.samples.items() for _ in mean_edges(at.size)]
+    def over_noise(self, name: str, errors: Floats, chosen: Mask) -> Floats:
+        """Return the chosen of a channel's errors over its noise, where that rules.
+
+        Where a reversal is steep the noise of the driven ends does.
+        """
+        noise = max(self.run.noise[name], LEAST_NOISE)
+        calm = self.weights[name][self.samples[name]] < STEEP * noise
+        return np.asarray(errors[chosen & calm] / noise)
 
     def spread(self, name: str, chosen: Mask) -> Mask:
         """Return which samples of a channel belong to the chosen residuals of the run."""
@@ -186,7 +193,8 @@ def _weighted(
         predict = predictor(simulation)
     plain = predict(rig)
     square = {
-        name: np.full(run.time_s.size, max(noise, 1e-9) ** 2) for name, noise in run.noise.items()
+        name: np.full(run.time_s.size, max(noise, LEAST_NOISE) ** 2)
+        for name, noise in run.noise.items()
     }
     change: dict[str, Floats] = {}
     drive_last = sorted(run.conditioned, key=lambda c: c == run.drive_column)

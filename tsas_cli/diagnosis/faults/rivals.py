@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION, beside
 from tsas_cli.diagnosis.faults.search import FoundFault
 from tsas_cli.diagnosis.hypotheses import Names
-from tsas_cli.diagnosis.search import LINEAR, Search
+from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, LINEAR, Search
 
 AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the fault
 
@@ -24,11 +24,17 @@ def effects_as_good(search: Search, fault: FoundFault) -> Iterator[str]:
         if screened.part < least:
             return
         name = screened.effect.name
-        if left_by(search, frozenset({name}), fault) < fault.rest + beyond + AS_GOOD * count:
+        if _left_by(search, frozenset({name}), fault) < fault.rest + beyond + AS_GOOD * count:
             yield name
 
 
-def left_by(search: Search, names: Names, fault: FoundFault) -> float:
+def leaves_noise(search: Search, names: Names, fault: FoundFault) -> bool:
+    """Return whether a set of effects leaves no more than a complete model may."""
+    most = (1.0 + EXCESS_OF_COMPLETE_MODEL) * search.folds.run.size
+    return _left_by(search, names, fault) < most
+
+
+def _left_by(search: Search, names: Names, fault: FoundFault) -> float:
     """Return the squares that a set of effects leaves, beside what the fault was sought beside."""
     tolerated = search.tolerated[search.trial(frozenset()).on_mesh]
     alike = fault.found[0].code == OWN_FRICTION
