@@ -81,7 +81,13 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     loadable()
-    return getattr(import_module(_ELSEWHERE.get(name, f"tsas_cli.stages.{name}")), name)
+    module = import_module(_ELSEWHERE.get(name, f"tsas_cli.stages.{name}"))
+    found = getattr(module, name)
+    if not isinstance(found, type) and not hasattr(found, "__wrapped__"):
+        from tsas_cli.stages.given import checked
+
+        setattr(module, name, found := checked(found))  # where pickle looks for it
+    return found
 
 
 def __dir__() -> list[str]:
