@@ -9,7 +9,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.support import __version__ as __version__
-from tsas_cli.support.limits import loadable
 
 if TYPE_CHECKING:
     from tsas_cli.stages.calibrate import calibrate
@@ -80,6 +79,8 @@ def __getattr__(name: str) -> Any:
     """Load what is asked for; what it needs loads with it, and nothing else."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from tsas_cli.support.limits import loadable
+
     loadable()
     module = import_module(_ELSEWHERE.get(name, f"tsas_cli.stages.{name}"))
     found = getattr(module, name)
