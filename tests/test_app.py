@@ -135,6 +135,13 @@ def test_a_current_folder_that_is_gone_is_one_line(tsas, tmp_path, call):
     assert tsas(call[0], "--help", preexec_fn=leave).returncode == 0
 
 
+def test_python_without_docstrings_is_one_line(tsas):
+    said = tsas("explain", "free_tendon", env=os.environ | {"PYTHONOPTIMIZE": "2"})
+    assert (said.returncode, said.stdout) == (2, "")
+    assert said.stderr.startswith("tsas: Python runs without docstrings")
+    assert said.stderr.endswith("unset PYTHONOPTIMIZE\n")
+
+
 @pytest.mark.parametrize("call", ["simulate DATASET --out loop/x", "init loop"])
 def test_a_link_to_itself_is_one_line(refused, dataset, tmp_path, monkeypatch, call):
     monkeypatch.chdir(tmp_path)

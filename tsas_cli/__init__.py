@@ -9,7 +9,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.support import __version__ as __version__
-from tsas_cli.support.limits import loadable
 
 if TYPE_CHECKING:
     from tsas_cli.stages.calibrate import calibrate
@@ -80,8 +79,16 @@ def __getattr__(name: str) -> Any:
     """Load what is asked for; what it needs loads with it, and nothing else."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from tsas_cli.support.limits import loadable
+
     loadable()
-    return getattr(import_module(_ELSEWHERE.get(name, f"tsas_cli.stages.{name}")), name)
+    module = import_module(_ELSEWHERE.get(name, f"tsas_cli.stages.{name}"))
+    found = getattr(module, name)
+    if not isinstance(found, type) and not hasattr(found, "__wrapped__"):
+        from tsas_cli.stages.given import checked
+
+        setattr(module, name, found := checked(found))  # where pickle looks for it
+    return found
 
 
 def __dir__() -> list[str]:

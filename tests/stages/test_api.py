@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -238,7 +239,7 @@ def test_files_become_a_dataset(tmp_path):
         (lambda folder: tsas.read(5), "5 is of type int; expected str or Path"),
         (lambda folder: tsas.read(folder)[0], "there is no run 0; known are"),
         (lambda folder: tsas.check(folder, runs=[]), "no run is chosen"),
-        (lambda folder: tsas.simulate(folder, model={}), "is of type dict; expected Path or Model"),
+        (lambda folder: tsas.simulate(folder, model={}), "is of type dict; expected Model or str"),
         (lambda folder: tsas.runs("", folders=[]), "no folder or file is named"),
         (lambda folder: tsas.runs(5), "5 is of type int; expected str"),
         (lambda folder: tsas.runs("", folder, columns=5), "5 is of type int; expected str"),
@@ -250,11 +251,13 @@ def test_files_become_a_dataset(tmp_path):
         (lambda folder: tsas.identify_harmonic_drive(folder, speed=5), "speed is 5"),
         (lambda folder: tsas.track(seeds=[1]), "is of type list; expected int"),
         (lambda folder: tsas.track(first_seed=b"x"), "is of type bytes; expected int"),
-        (lambda folder: tsas.compare("a", "b", out=5), "5 is of type int; expected Path"),
+        (
+            lambda folder: tsas.compare("a", "b", out=5),
+            "out: 5 is of type int; expected str",
+        ),
         (lambda folder: tsas.guess([]), "no folder or file is named"),
         (lambda folder: tsas.report([], out="x.html"), "no folder or file is named"),
-        (lambda folder: tsas.plan([]), "no folder or file is named"),
-        (lambda folder: tsas.plan([folder, folder]), "2 places are named; expected one dataset"),
+        (lambda folder: tsas.plan([folder, folder]), "is of type list; expected Dataset or str"),
         (lambda folder: tsas.track(controllers=5), "5 is of type int; expected str"),
         (lambda folder: tsas.plan(3), "3 is of type int"),
         (lambda folder: tsas.verify(3), "3 is of type int"),
@@ -262,7 +265,7 @@ def test_files_become_a_dataset(tmp_path):
         (lambda folder: tsas.simulate(folder, nodes="x"), "'x' is of type str; expected int"),
         (lambda folder: tsas.simulate(folder, nodes=50.0), "50.0 is of type float; expected int"),
         (lambda folder: tsas.predict(5, folder), "5 is of type int; expected str or Path"),
-        (lambda folder: tsas.compare("a", None), "None is of type NoneType; expected str or Path"),
+        (lambda folder: tsas.compare("a", None), "b: None is of type NoneType; expected Model"),
         (lambda folder: tsas.runs("", folder, limit=True), "True is of type bool; expected int"),
         (lambda folder: tsas.read(300 * "a"), "no file can have this name"),
         (lambda folder: tsas.check(folder, out="a\0b"), "no file can have this name"),
@@ -270,11 +273,28 @@ def test_files_become_a_dataset(tmp_path):
         (lambda folder: tsas.upload(300 * "a", "s3://b/c"), "no file can have this name"),
         (lambda folder: tsas.upload("a\0b", "s3://b/c"), "no file can have this name"),
         (lambda folder: tsas.calibrate(folder, dynamics=np.zeros(2)), "expected slip or lugre"),
+        (lambda folder: tsas.simulate(folder, fit_own=np.zeros(2)), "fit_own: .* expected bool"),
+        (lambda folder: tsas.report(folder, out="x", pdf=np.zeros(2)), "pdf: .* expected bool"),
+        (lambda folder: tsas.explain(np.zeros(2)), "name: .* is of type ndarray; expected str"),
+        (lambda folder: tsas.check(folder, runs=np.array(3)), "is of type ndarray; expected str"),
+        (lambda folder: tsas.runs("", np.array(3)), "is of type ndarray; expected str or Path"),
+        (lambda folder: tsas.export(None, to="json", out="x"), "model: None is of type NoneType"),
+        (lambda folder: tsas.sweep({}, out="x", cluster=folder), "cluster: .* expected str"),
+        (lambda folder: tsas.read("\ud800"), "no file can have this name"),
+        (lambda folder: tsas.verify(folder, step=None), "step: None .* expected Steps"),
+        (lambda folder: tsas.simulate(folder, each=1), "each: 1 is of type int; expected Callab"),
     ],
 )
 def test_a_wrong_call_is_an_input_error(folder, wrong, says):
     with pytest.raises(tsas.InputError, match=says):
         wrong(folder)
+
+
+def test_what_is_checked_keeps_its_name_and_can_be_sent_to_another_process():
+    for name in tsas.__all__:
+        thing = getattr(tsas, name)
+        assert pickle.loads(pickle.dumps(thing)) is thing is getattr(tsas, name)  # noqa: S301
+        assert thing.__name__ == name
 
 
 def test_two_models_in_memory_are_compared(folder):

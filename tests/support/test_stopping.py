@@ -3,6 +3,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
@@ -67,6 +68,26 @@ try:
 except KeyboardInterrupt:
     sys.exit(EXIT_CODE)
 """
+    assert ended(tmp_path, program) == 130
+
+
+def test_a_stop_while_a_compiled_library_is_loaded_comes_after_it(tmp_path):
+    """What it imports in turn, here `copy`, is called from its own code, which may abort."""
+    if not hasattr(import_module("_elementtree"), "__file__"):
+        pytest.skip("this Python holds it itself")
+    program = """
+import signal, sys, time
+from tsas_cli.support.stopping import EXIT_CODE, stopped_once
+stopped_once()
+sys.modules.pop("copy", None)
+try:
+    import _elementtree
+    time.sleep(5.0)
+except KeyboardInterrupt:
+    sys.exit(EXIT_CODE if sys.modules["copy"].done and "_elementtree" in sys.modules else 1)
+"""
+    copy = "import signal; deepcopy = done = None; signal.raise_signal(signal.SIGINT); done = True"
+    (tmp_path / "copy.py").write_text(copy)
     assert ended(tmp_path, program) == 130
 
 

@@ -2,15 +2,20 @@
 
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
+from inspect import signature
 from pathlib import Path
-from types import NoneType
-from typing import Any, TypeVar
+from types import NoneType, UnionType
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+
+import numpy as np
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
 from tsas_cli.support.errors import InputError, nearest
 
+LONGEST = 200  # characters of a value in a message
 NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS and Windows allow less
 Named = str | Path
 Thing = TypeVar("Thing")
@@ -97,28 +102,64 @@ def several_of(given: Any, least: int = 1) -> list[Any]:
     """Return what is one thing or several as a list; fewer than `least` is an InputError."""
     if isinstance(given, str | Path) or not isinstance(given, Iterable):
         return [given]
-    several = list(given)
+    try:
+        several = list(given)
+    except TypeError:  # an array of no dimension
+        return [given]
     if len(several) < least:
         raise InputError("no folder or file is named", expected="one or several")
     return several
 
 
-def of_kind(kinds: tuple[type, ...], given: Any) -> Any:
-    """Return what is of one of these kinds; another one is an InputError."""
+def of_kind(kinds: tuple[type, ...], given: Any, name: str = "") -> Any:
+    """Return what is of one of these kinds; another one is an InputError, with its name."""
     if isinstance(given, kinds) and (bool in kinds or not isinstance(given, bool)):
         return given
-    names = [kind.__name__ for kind in kinds if kind is not NoneType]
-    raise InputError(f"{given!r} is of type {type(given).__name__}", expected=" or ".join(names))
+    names = dict.fromkeys(kind.__name__ for kind in kinds if kind is not NoneType)
+    what = f"{repr(given)[:LONGEST]} is of type {type(given).__name__}"
+    raise InputError(what, where=name, expected=" or ".join(names))
+
+
+def checked(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that refuses an argument of another kind than it is annotated with.
+
+    Numbers, and what can be of a kind with parts, the function checks itself.
+    """
+    kinds = {name: _kinds(hint) for name, hint in get_type_hints(function).items()}
+    named = signature(function)
+
+    @wraps(function)
+    def call(*args: Any, **keywords: Any) -> Any:
+        for name, given in named.bind(*args, **keywords).arguments.items():
+            if kinds.get(name):
+                of_kind(kinds[name], given, name)
+        return function(*args, **keywords)
+
+    return call
+
+
+def _kinds(hint: Any) -> tuple[type, ...]:
+    """Return the classes of an annotation, none where there are others or numbers among them."""
+    if get_origin(hint) is Callable:
+        return (Callable,)
+    kinds = get_args(hint) if isinstance(hint, UnionType) else (hint,)
+    if not all(isinstance(kind, type) and kind not in {int, float, Any} for kind in kinds):
+        return ()
+    return (bool, int, np.bool_) if kinds == (bool,) else kinds
 
 
 def _nameable(given: Thing) -> Thing:
     """Return what is no path, or a path that a file can have; another one is an InputError."""
     if isinstance(given, Path):
-        long = any(len(os.fsencode(part)) > NAME_BYTES for part in given.parts)
-        if long or len(os.fsencode(given)) > PATH_BYTES or "\0" in str(given):
+        try:
+            long = any(len(os.fsencode(part)) > NAME_BYTES for part in given.parts)
+            invalid = long or len(os.fsencode(given)) > PATH_BYTES or "\0" in str(given)
+        except UnicodeEncodeError:
+            invalid = True
+        if invalid:
             raise InputError(
                 "no file can have this name",
                 where=f"{str(given)[:60]}…",
-                expected=f"at most {NAME_BYTES} bytes in a name, none of them zero",
+                expected=f"text of at most {NAME_BYTES} bytes in a name, none of them zero",
             )
     return given

@@ -14,8 +14,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, path_of, places_of
-from tsas_cli.support.errors import InputError
+from tsas_cli.stages.given import Named, path_of, place_of
 from tsas_cli.support.files import folder_if, sha256_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -85,12 +84,7 @@ def plan(
         not set.
     """
     if not isinstance(runs, Dataset):
-        places = places_of(runs)
-        if len(places) > 1:
-            raise InputError(
-                f"{len(places)} places are named", expected="one dataset, or one rig file"
-            )
-        place = places[0]
+        place = place_of(runs)
         runs = place if isinstance(place, Path) and not place.is_dir() else read_dataset(place)
     path = path_of(out)
     read = runs.folder if isinstance(runs, Dataset) else runs

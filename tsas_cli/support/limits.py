@@ -203,6 +203,12 @@ def loadable() -> None:
             expected="one that exists",
             remedy="change to another folder",
         ) from error
+    if __doc__ is None:
+        raise InputError(
+            "Python runs without docstrings, which hold the texts of the effects",
+            expected="no `-OO`, and no PYTHONOPTIMIZE of 2",
+            remedy="unset PYTHONOPTIMIZE",
+        )
     most = _most_addresses()
     if most < LOADING:
         raise InputError(

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 from typing import Any
 
@@ -14,7 +15,11 @@ NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that close
 SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
 EXIT_CODE = 130  # of a command that was stopped, as typer has it
 CLEANUP_S = 3.0  # in which further signals are ignored
-AGAIN_S = 0.01  # after which a stop that a destructor has swallowed is raised again
+AGAIN_S = 0.01  # after which a stop is raised that could not be, or was swallowed
+_LOADING = {
+    method.__code__
+    for method in (ExtensionFileLoader.create_module, ExtensionFileLoader.exec_module)
+}
 
 
 class Stopped(BaseException):
@@ -54,18 +59,25 @@ def stopped_once() -> None:
 
 def _raise_again(lost: "sys.UnraisableHookArgs") -> None:
     """Raise a stop again, shortly after, that was raised in a destructor, which ends there."""
-    if not issubclass(lost.exc_type, (Interrupted, Stopped)):
+    if issubclass(lost.exc_type, (Interrupted, Stopped)):
+        _raise_later(lost.exc_type)
+    else:
         sys.__unraisablehook__(lost)
-        return
 
-    def stop(
-        number: int, frame: FrameType | None, kind: type[BaseException] = lost.exc_type
-    ) -> None:
-        del number, frame
-        raise kind
 
-    signal.signal(signal.SIGALRM, stop)
+def _raise_later(kind: type[BaseException]) -> None:
+    signal.signal(signal.SIGALRM, lambda _, frame: _raise(kind, frame))
     signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+
+
+def _raise(kind: type[BaseException], frame: FrameType | None) -> None:
+    """Raise a stop, or later while a compiled library is loaded: it may swallow it, or abort."""
+    while frame is not None:
+        if frame.f_code in _LOADING:
+            _raise_later(kind)
+            return
+        frame = frame.f_back
+    raise kind
 
 
 def _ignore() -> None:
@@ -105,11 +117,11 @@ def _handle(kind: type[BaseException]) -> dict[signal.Signals, Any]:
     _Received.last_s = -math.inf
 
     def stop(number: int, frame: FrameType | None) -> None:
-        del number, frame
+        del number
         now_s = time.monotonic()
         if now_s - _Received.last_s > CLEANUP_S:
             _Received.last_s = now_s
-            raise kind
+            _raise(kind, frame)
 
     handled = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
     return {number: signal.signal(number, stop) for number in handled}
