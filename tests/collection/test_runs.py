@@ -9,7 +9,7 @@ import tsas_cli as tsas
 from tests.collection.collected import ROWS, RATE_Hz, write
 from tests.counted import Counted
 from tests.reporting.made_folders import make_diagnosis
-from tsas_cli.collection import COLUMNS
+from tsas_cli.collection import COLUMNS, query
 from tsas_cli.collection.entries import entry_of
 from tsas_cli.collection.query import connected
 from tsas_cli.support.errors import InputError
@@ -275,3 +275,12 @@ def test_a_folder_without_datasets_has_no_runs(tmp_path):
     result = tsas.runs(folders=tmp_path / "empty")
     assert result.summary["runs"] == []
     assert result.tables()[0][0] == "0 of 0 runs"
+
+
+def test_a_query_without_an_end_is_ended(monkeypatch):
+    monkeypatch.setattr(query, "LONGEST_S", 0.3)
+    counted = (
+        "with recursive t(i) as (select 1 union all select i + 1 from t) select count(*) from t"
+    )
+    with pytest.raises(InputError, match="the query takes longer than 0.3 s"):
+        tsas.runs(f"({counted}) > 0")

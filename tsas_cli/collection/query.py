@@ -8,9 +8,10 @@ import json
 import os
 import re
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tsas_cli.collection.index import Index
 from tsas_cli.support.errors import InputError, nearest, printable
@@ -18,6 +19,9 @@ from tsas_cli.support.errors import InputError, nearest, printable
 if TYPE_CHECKING:
     from duckdb import DuckDBPyConnection
 
+Result = TypeVar("Result")
+
+LONGEST_S = 30.0  # of a query; one over 100,000 runs takes less than a second
 
 # Strings, quoted names and comments are not translated.
 QUOTED = r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|--[^\n]*|/\*.*?\*/"
@@ -142,7 +146,8 @@ def run_query(
 
     A minus before a name in `sort` reverses its order; missing values come last.
 
-    InputError: the query is no condition on these columns, or a column does not exist.
+    InputError: the query is no condition on these columns, a column does not exist, or it takes
+    too long.
     """
     import duckdb
 
@@ -157,18 +162,39 @@ def run_query(
     picked = ", ".join(f'"{name}"' for name in (*chosen, "folder"))
     names = runs.project("unnest(channels) AS name").distinct().order("name")
     translated = to_sql(query, lambda: [str(name) for (name,) in names.fetchall()])
-    try:
+
+    def found() -> tuple[list[tuple[Any, ...]], int, int]:
         fitting = runs.filter(translated.sql) if query.strip() else runs
         ordered = fitting.order(order)
         shown = ordered if limit is None else ordered.limit(limit)
         rows = shown.project(picked).fetchall()
         ((fit,),), ((every,),) = (r.aggregate("count(*)").fetchall() for r in (fitting, runs))
+        return rows, fit, every
+
+    try:
+        rows, fit, every = _not_too_long(connection, found)
     except duckdb.OutOfMemoryException as error:
         raise MemoryError from error
     except duckdb.Error as error:
         raise _query_error(query, translated, error, runs.columns) from error
     folders = tuple(dict.fromkeys(str(row[-1]) for row in rows))
     return QueryResult(chosen, [row[:-1] for row in rows], folders, fit, every, problems)
+
+
+def _not_too_long(connection: "DuckDBPyConnection", work: Callable[[], Result]) -> Result:
+    """Return what work on a connection gives; on a thread, since DuckDB hears no signal."""
+    with ThreadPoolExecutor(1) as pool:
+        future = pool.submit(work)
+        try:
+            return future.result(LONGEST_S)
+        except TimeoutError as error:
+            raise InputError(
+                f"the query takes longer than {LONGEST_S:g} s",
+                expected="a condition on the columns of one run",
+            ) from error
+        finally:
+            while wait([future], 0.1).not_done:
+                connection.interrupt()
 
 
 def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
