@@ -282,5 +282,5 @@ def test_a_query_without_an_end_is_ended(monkeypatch):
     counted = (
         "with recursive t(i) as (select 1 union all select i + 1 from t) select count(*) from t"
     )
-    with pytest.raises(InputError, match="the query takes longer than 0.3 s"):
+    with pytest.raises(InputError, match=r"the query takes longer than 0\.3 s"):
         tsas.runs(f"({counted}) > 0")
