@@ -135,6 +135,11 @@ def test_a_current_folder_that_is_gone_is_one_line(tsas, tmp_path, call):
     assert tsas(call[0], "--help", preexec_fn=leave).returncode == 0
 
 
+def test_no_width_of_the_terminal_is_no_narrow_one(tsas):
+    said = tsas("check", "--help", env=os.environ | {"COLUMNS": "0"})
+    assert "Usage: tsas check [OPTIONS] {DATASET}" in said.stdout
+
+
 def test_python_without_docstrings_is_one_line(tsas):
     said = tsas("explain", "free_tendon", env=os.environ | {"PYTHONOPTIMIZE": "2"})
     assert (said.returncode, said.stdout) == (2, "")

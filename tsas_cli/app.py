@@ -26,7 +26,7 @@ from tsas_cli.commands.setup import doctor, init
 from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
 from tsas_cli.support import __version__
-from tsas_cli.support.errors import NO_MEMORY, InputError, printable
+from tsas_cli.support.errors import NO_MEMORY, InputError, printable, shortened
 from tsas_cli.support.limits import loadable
 from tsas_cli.support.stopping import EXIT_CODE
 
@@ -94,6 +94,8 @@ def run() -> None:
     """Run the command line; an error becomes one line on stderr and an exit code."""
     # For many small matrices, threads inside each product cost three times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if os.environ.get("COLUMNS") == "0":  # no width, as `shutil.get_terminal_size` has it
+        del os.environ["COLUMNS"]
     _open_closed_streams()
     _use_utf_8()
     try:
@@ -175,7 +177,7 @@ def _invalid_call(error: TyperException) -> str:
     message = error.format_message().rstrip(".")
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "tsas"
-    return printable(f"{message}; see `{command} --help`") if message else ""
+    return printable(f"{shortened(message)}; see `{command} --help`") if message else ""
 
 
 def _stop(line: str, code: int) -> int:

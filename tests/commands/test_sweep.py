@@ -28,7 +28,8 @@ def test_a_stage_is_called_for_every_dataset_and_failure_is_told(strict, done, r
     (rigs / "b/runs/a.parquet").write_bytes(b"no Parquet")
     out = tmp_path / "out"
     first = strict("sweep", "check", rigs / "*", "--out", out, "--workers", 1)
-    assert (first.returncode, first.stderr) == (2, "")
+    said = f"tsas: {out}: 1 task failed, as sweep.json says; repeat the call to run them again\n"
+    assert (first.returncode, first.stderr) == (2, said)
     lines = [line.split() for line in first.stdout.splitlines()]
     assert lines[0] == ["check:", "2", "of", "3", "tasks", "done", "→", f"{out}/sweep.parquet"]
     assert ["warnings", "2", "1", "1", "1"] in lines

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
-from tsas_cli.diagnosis.law import describe
+from tsas_cli.diagnosis.law import _worse, describe
 from tsas_cli.diagnosis.law_words import records_of
+from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.remainder import LATE, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
@@ -50,7 +51,8 @@ def bench_for(folder, sensors):
 def described(folder, sensors):
     """Return the law that describes the runs."""
     bench = bench_for(folder, sensors)
-    return describe(bench, bench.fit(), bench_folds(bench))
+    nominal = dict.fromkeys(bench.channels, 0.0)
+    return describe(bench, bench.fit(), bench_folds(bench), nominal)
 
 
 def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
@@ -94,3 +96,14 @@ def test_a_load_cell_that_feels_the_other_a_little_explains_what_lags_at_reversa
     assert mean_delay(bench, fitted) < -LATE
     assert abs(mean_delay(bench, rigs)) < 0.1 * LATE
     assert remainder(bench, trial, folds, signals_at_residuals(bench, trial), tolerated).late == ()
+
+
+@pytest.mark.parametrize(("after", "nominal", "worse"), [(1.05, 1.0, True), (1.05, 2.0, False)])
+def test_a_law_may_take_back_a_small_part_of_what_the_causes_have_gained(after, nominal, worse):
+    """3 % of the error of the nominal model, which the named effects have brought to 1."""
+    errors = [
+        HeldOutFit({"f_in_N": 1.0}, {}, np.zeros(0), {(0, "f_in_N"): rms, (1, "f_in_N"): 0.5})
+        for rms in (1.0, after)
+    ]
+    assert _worse(*errors, {"f_in_N": nominal}) == worse
+    assert not _worse(errors[1], errors[0], {"f_in_N": 1.0})

@@ -11,7 +11,7 @@ import tsas_cli as tsas
 from tests.storage.conftest import KEY, SECRET, forget, free_port
 from tests.storage.wire import HOST
 from tsas_cli.recordings import storage
-from tsas_cli.recordings.storage_failures import TIMEOUT
+from tsas_cli.recordings.storage_failures import TIMEOUT, storage_error
 from tsas_cli.support.errors import InputError
 
 
@@ -78,6 +78,14 @@ def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):
 )
 def test_addresses_that_are_none(address, line):
     assert line_of(address).startswith(line)
+
+
+def test_what_a_library_says_in_two_lines_is_said_and_no_third():
+    """As botocore refuses a name of a bucket."""
+    said = ValueError(f'Parameter validation failed:\nInvalid bucket name "a b"\n{SECRET}')
+    line = storage_error("s3://a b/x", said).line()
+    assert 'failed: Invalid bucket name "a b"); check the address, and repeat the call' in line
+    assert SECRET not in line
 
 
 def test_a_package_that_is_not_installed(monkeypatch):

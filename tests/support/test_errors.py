@@ -15,6 +15,11 @@ def test_a_name_from_a_file_cannot_break_the_line_or_steer_the_terminal():
     assert line == "a\\x1b[2Jb\\u202e.parquet\\x9b: bad\\nname"
 
 
+def test_a_value_without_end_is_cut_and_the_place_is_whole():
+    line = InputError(f"there is no run {3000 * 'b'}; as said", where=3000 * "a").line()
+    assert line == f"{3000 * 'a'}: there is no run {200 * 'b'}… as said"
+
+
 def test_printable_keeps_what_a_person_writes():
     assert printable("Prüfstand 3, 5 °C, μ = 0.1\\x") == "Prüfstand 3, 5 °C, μ = 0.1\\x"
 

@@ -131,5 +131,9 @@ def _stored(table: "pa.Table", file: Path) -> str | None:
         with own_file(_checksum_file(file)) as path:
             path.write_text(digest, encoding="utf-8")
     except (InputError, OSError) as error:
-        return f"the index is rebuilt at every call, since it cannot be stored: {error}"
+        what = error.what if isinstance(error, InputError) else error
+        return (
+            f"the index is rebuilt at every call, since {file} {what}; "
+            "set TSAS_CACHE_DIR to a folder that you may write to"
+        )
     return None

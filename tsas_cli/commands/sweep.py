@@ -1,5 +1,6 @@
 """`tsas sweep`: run a stage for many datasets or values, in processes or on a cluster."""
 
+import sys
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,7 +9,8 @@ import typer
 
 import tsas_cli as tsas
 from tsas_cli.commands.common import Json, OutFolder, Quiet, run
-from tsas_cli.support.errors import InputError
+from tsas_cli.support.errors import InputError, printable
+from tsas_cli.support.wording import count_of
 
 WRONG, DEFECT = 2, 1  # exit codes
 
@@ -59,6 +61,8 @@ def sweep(
         as_json=as_json,
     )
     if result.failed:
+        line = f"tsas: {out}: {count_of(len(result.failed), 'task')} failed, as sweep.json says"
+        print(printable(f"{line}; repeat the call to run them again"), file=sys.stderr)
         raise typer.Exit(DEFECT if result.defects else WRONG)
 
 

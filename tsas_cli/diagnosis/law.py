@@ -67,13 +67,18 @@ class Law:
 
 
 def describe(
-    bench: Bench, trial: HypothesisFit, folds: Folds, step: Steps = NO_PROGRESS
+    bench: Bench,
+    trial: HypothesisFit,
+    folds: Folds,
+    nominal: Mapping[str, float],
+    step: Steps = NO_PROGRESS,
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
 
     Laws are tried alone and together, since the nominal parameters trade with what a missing law
     leaves, until all channels are at the noise level. Of the sets that predict, the one that
-    reduces the squares most; one of fewer laws if that does as well.
+    reduces the squares most; one of fewer laws if that does as well. `nominal` is the RMS of each
+    channel on held-out data by the nominal model.
     """
     ranges = ranges_of([run.run for run in bench.closed])
     bench, start = in_channel_units(bench, trial, ranges), _without_slopes(trial)
@@ -98,7 +103,7 @@ def describe(
             continue
         after = refitted(bench, fitted, folds, scatter=scatter)
         reduction = gain(before.squares, after.squares)
-        if reduction.convincing and not _worse(before, after):
+        if reduction.convincing and not _worse(before, after, nominal):
             found.append((names, fitted, after, reduction.part))
             if all(after.rmse[n] < AT_NOISE * noise_floor(bench, n, 0.0) for n in after.rmse):
                 break
@@ -179,11 +184,14 @@ def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
     return replace(run, weights=weights, turns=turns)
 
 
-def _worse(before: HeldOutFit, after: HeldOutFit) -> bool:
-    """Return whether a channel of a held-out run is worse by more than a small part."""
+def _worse(before: HeldOutFit, after: HeldOutFit, nominal: Mapping[str, float]) -> bool:
+    """Return whether a channel of a held-out run is worse by more than a small part.
+
+    That is of its error, and of that of the nominal model: the rest of a cause is a small one.
+    """
     return any(
         after.by_run[key] > (1.0 + WORSE) * rms
-        and after.by_run[key] - rms > WORSE * before.rmse[key[1]]
+        and after.by_run[key] - rms > WORSE * max(before.rmse[key[1]], nominal[key[1]])
         for key, rms in before.by_run.items()
     )
 

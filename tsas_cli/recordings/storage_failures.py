@@ -9,6 +9,7 @@ from tsas_cli.support.plausible import Range
 
 TIMEOUT = "TSAS_STORAGE_TIMEOUT_S"  # of a request; one of many bytes has longer
 TIMEOUT_S, TIMEOUTS_S = 20.0, Range(0.1, 3600.0, "s")
+_REASON = 120  # characters of what a library says
 _BUSY = {errno.EBUSY, getattr(errno, "EREMOTEIO", errno.EIO)}  # 503 and 500, as s3fs has them
 _BUSY_CODES = {408, 429, *range(500, 505)}
 # By name, since the libraries are optional.
@@ -72,6 +73,11 @@ def storage_error(address: object, error: Exception) -> InputError:
             remedy="check the network, and the endpoint if one is set; repeat the call, "
             f"with a longer {TIMEOUT} (in seconds) if the storage is slow",
         )
-    reason = (str(error).splitlines() or [""])[0]
-    reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)
-    return InputError(f"the storage fails ({type(error).__name__}: {reason})", where=address)
+    said = str(error).splitlines() or [""]
+    reason = " ".join(said[: 2 if said[0].endswith(":") else 1])  # others may hold a key
+    reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)[:_REASON]
+    return InputError(
+        f"the storage fails ({type(error).__name__}: {reason})",
+        where=address,
+        remedy="check the address, and repeat the call",
+    )

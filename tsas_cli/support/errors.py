@@ -1,8 +1,10 @@
 """The error for an invalid call or invalid input."""
 
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+LONGEST_WORD = 200  # characters, in a message
 NO_MEMORY = (
     "this needs more memory than is free; "
     "use a larger machine, fewer runs at a time (--runs), or shorter recordings"
@@ -32,13 +34,23 @@ class InputError(Exception):
 
     def line(self) -> str:
         """Return the whole message on one line, with control characters escaped."""
-        head = f"{self.where}: {self.what}" if self.where else self.what
+        what = shortened(self.what)
+        head = f"{self.where}: {what}" if self.where else what
         parts = [head]
         if self.expected:
-            parts.append(f"expected {self.expected}")
+            parts.append(shortened(f"expected {self.expected}"))
         if self.remedy:
-            parts.append(self.remedy)
+            parts.append(shortened(self.remedy))
         return printable("; ".join(parts))
+
+
+def shortened(text: str) -> str:
+    """Return text whose words without end, which someone has given, are cut.
+
+    >>> shortened(f"there is no run {400 * 'b'}") == f"there is no run {LONGEST_WORD * 'b'}…"
+    True
+    """
+    return re.sub(rf"(\S{{{LONGEST_WORD}}})\S+", r"\1…", text)
 
 
 def printable(text: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.support.errors import InputError
@@ -48,7 +48,15 @@ class ValueRange(StrictTable):
         return [float(value) for value in space(self.first, self.last, self.steps)]
 
 
-Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | ValueRange
+def _form(value: object) -> str:
+    return "range" if isinstance(value, dict | ValueRange) else "list"
+
+
+Axis = Annotated[
+    Annotated[tuple[Any, ...], Field(min_length=1), Tag("list")]
+    | Annotated[ValueRange, Tag("range")],
+    Discriminator(_form),  # else an error is said of both forms
+]
 
 
 class SweepPlan(StrictTable):

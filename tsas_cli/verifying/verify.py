@@ -159,17 +159,17 @@ def _in_raw(claim: Claim, walk: _Walk) -> Path | None:
     return None
 
 
-def _unlisted(walk: _Walk, claims: Iterable[Claim], named: set[str]) -> Iterator[Verified]:
+def _unlisted(walk: _Walk, claims: Iterable[Claim], reported: set[str]) -> Iterator[Verified]:
     """Yield the files that a stage's JSON names and that its folder's list lacks, or the list."""
     listed = {one.by.parent.resolve() / one.file for one in claims if one.by.name == SUMS}
     for path in sorted(walk.seen):
         lost = [path.parent / name for name in outputs_of(path)]
         lost = [file for file in lost if file not in listed]
         sums = path.parent / SUMS
-        if _shown(sums) in named:  # it is damaged
+        if _shown(sums) in reported:  # it is damaged
             continue
         if lost and not sums.is_file():
-            named.add(_shown(sums))
+            reported.add(_shown(sums))
             yield Verified(_shown(sums), "missing", _shown(path), "does not exist")
         for file in lost:
             if not file.is_file():
