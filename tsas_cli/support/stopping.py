@@ -66,6 +66,8 @@ def _raise_again(lost: "sys.UnraisableHookArgs") -> None:
 
 
 def _raise_later(kind: type[BaseException]) -> None:
+    if sys.platform == "win32":  # without a timer that signals
+        raise kind
     signal.signal(signal.SIGALRM, lambda _, frame: _raise(kind, frame))
     signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
 
@@ -81,7 +83,8 @@ def _raise(kind: type[BaseException], frame: FrameType | None) -> None:
 
 
 def _ignore() -> None:
-    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    if sys.platform != "win32":
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
