@@ -187,7 +187,8 @@ def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
 def _worse(before: HeldOutFit, after: HeldOutFit, nominal: Mapping[str, float]) -> bool:
     """Return whether a channel of a held-out run is worse by more than a small part.
 
-    That is of its error, and of that of the nominal model: the rest of a cause is a small one.
+    Small beside its own error, and beside that of the nominal model: where named effects have taken
+    most of it away, a few per cent of the rest are no loss.
     """
     return any(
         after.by_run[key] > (1.0 + WORSE) * rms
