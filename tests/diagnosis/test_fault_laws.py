@@ -227,6 +227,18 @@ def test_the_ends_of_a_fault_are_found_between_the_parts():
     assert told({}) is None
 
 
+def test_steps_of_a_zero_are_told_one_by_one():
+    """Nothing, −1 since 2.1 s, −0.3 since 5.2 s, −1.3 since 9.3 s."""
+    reads = -1.0 * (T > 2.08) + 0.7 * (T > 5.18) - 1.0 * (T > 9.28)
+    best = told({(0, X): reads}).found[0]
+    assert (best.code, best.run, best.channels, best.edges) == ("run-step", 0, (X,), 3)
+    times, amounts = zip(*best.steps, strict=True)
+    assert times == pytest.approx((2.1, 5.2, 9.3), abs=0.06)
+    assert amounts == pytest.approx((-1.0, 0.7, -1.0), rel=0.1)
+    assert best.amount == pytest.approx(sum(amounts))
+    assert (best.first_s, best.last_s) == (times[0], None)
+
+
 def test_a_time_constant_is_found_between_those_that_are_tried():
     lost = {(k, F): passed(T, values_of(k, F), 3.2) - values_of(k, F) for k in (0, 1)}
     best = told(lost).found[0]
