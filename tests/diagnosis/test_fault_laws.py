@@ -6,21 +6,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.faults import rivals, shapes
 from tsas_cli.diagnosis.faults import search as s
+from tsas_cli.diagnosis.faults import shapes
 from tsas_cli.diagnosis.faults.candidates import Candidate, beside, candidates
-from tsas_cli.diagnosis.faults.hum import swings
-from tsas_cli.diagnosis.faults.shapes import ReadRun, passed, runs_at, shapes_of
-from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of
-from tsas_cli.diagnosis.signals import AtResiduals
+from tsas_cli.diagnosis.faults.shapes import passed, runs_at
+from tsas_cli.diagnosis.faults.words import record_of
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
-from tsas_cli.records.diagnosis import RecordingFault
 
+F, X, DRIVE = "f_out_N", "x_out_mm", "x_in_mm"
 N = 240
 T = 0.05 * np.arange(N)  # 24 parts of 0.5 s
-SD = {"f_out_N": 0.5, "x_out_mm": 0.1}
-BY_DRIVE = {"f_out_N": 3.0, "x_out_mm": 0.5}  # what each channel does by 1 mm of the drive
+SD = {F: 0.5, X: 0.1}
+BY_DRIVE = {F: 3.0, X: 0.5}  # what each channel does by 1 mm of the drive
 RUN = np.repeat((0, 1), 2 * N)
 RNG = np.random.default_rng(3)
 JACOBIAN = 100.0 * RNG.standard_normal((RUN.size, 4))
@@ -36,7 +34,7 @@ def motion(k, t=T):
 
 def values_of(k, name, t=T):
     x = motion(k, t)
-    return 50.0 + 3.0 * x + 0.4 * x**2 if name == "f_out_N" else 0.5 * x - 0.01 * x**3
+    return 50.0 + 3.0 * x + 0.4 * x**2 if name == F else 0.5 * x - 0.01 * x**3
 
 
 class Errors:
@@ -47,8 +45,7 @@ class Errors:
         self.samples = dict.fromkeys(SD, np.arange(N))
         reversals = np.array([0, 80, 160, N - 1])
         drive = SimpleNamespace(values=motion(k), noise=0.01, reversals=reversals)
-        columns = {"x_in_mm": drive}
-        self.run = SimpleNamespace(time_s=5.0 + T, drive_column="x_in_mm", conditioned=columns)
+        self.run = SimpleNamespace(time_s=5.0 + T, drive_column=DRIVE, conditioned={DRIVE: drive})
 
     def predict(self, rig):
         return {name: values_of(self.k, name) for name in SD} | {"f_in_N": motion(self.k)}
@@ -89,7 +86,7 @@ def read_wrongly(readings):
     none = np.zeros(N)
 
     def of(k, name):
-        moved = BY_DRIVE[name] * readings.get((k, "x_in_mm"), none)
+        moved = BY_DRIVE[name] * readings.get((k, DRIVE), none)
         return (moved - readings.get((k, name), none)) / SD[name]
 
     return np.concatenate([of(k, name) for k in (0, 1) for name in SD])
@@ -105,7 +102,7 @@ def paced(k, name, rate):
     return np.interp((1.0 + rate) * T, T, values_of(k, name)) - values_of(k, name)
 
 
-F, X = "f_out_N", "x_out_mm"
+MIDDLE = (T > 1.49) & (T < 4.49)
 LEVEL = float(np.quantile([values_of(0, F), values_of(1, F)], 0.4 + 0.58 * 9 / 15))
 PASSED = {(k, F): passed(T, values_of(k, F), 5.0) - values_of(k, F) for k in (0, 1)}
 HELD = {(k, F): -0.5 * np.maximum(values_of(k, F) - LEVEL, 0.0) for k in (0, 1)}
@@ -113,50 +110,42 @@ LAWS = {
     ("run-offset", 1, (F,), -2.0, 0, None, None): {(1, F): np.full(N, -2.0)},
     ("run-offset", 0, (X,), 0.3, 1, 3.5, None): {(0, X): 0.3 * (T > 3.49)},
     ("run-offset", 1, (X,), 0.3, 1, None, 2.5): {(1, X): 0.3 * (T < 2.49)},
-    ("run-gain", 1, (F,), 0.1, 2, 1.5, 4.5): {
-        (1, F): 0.1 * values_of(1, F) * ((T > 1.49) & (T < 4.49))
-    },
-    ("run-gain", 0, ("x_in_mm",), 0.05, 1, 6.0, None): {
-        (0, "x_in_mm"): 0.05 * motion(0) * (T > 5.99)
-    },
+    ("run-gain", 1, (F,), 0.1, 2, 1.5, 4.5): {(1, F): 0.1 * values_of(1, F) * MIDDLE},
+    ("run-gain", 0, (DRIVE,), 0.05, 1, 6.0, None): {(0, DRIVE): 0.05 * motion(0) * (T > 5.99)},
     ("run-delay", 0, (F,), 0.03): {(0, F): -0.03 * speed(0, F)},
     ("run-delay", 1, (F, X), -0.03): {(1, n): 0.03 * speed(1, n) for n in SD},
     ("channel_delay", None, (F,), 0.03): {(k, F): -0.03 * speed(k, F) for k in (0, 1)},
-    ("clock", 0, (X,), 4e-4): {(0, X): 4e-4 * T * speed(0, X)},
+    ("clock", 0, (X,), 4e-4): {(0, X): 4e-4 * T * np.gradient(values_of(0, X), T)},
     ("clock", 1, (X,), 0.004): {(1, X): paced(1, X, 0.004)},
     ("clock", None, (F, X), -0.005): {(k, n): paced(k, n, -0.005) for k in (0, 1) for n in SD},
     ("ac-coupled", None, (F,), 5.0): PASSED,
     ("saturates", None, (F,), LEVEL): HELD,
     ("hum", None, (F,), 1.5): {(k, F): np.sin(2.0 * np.pi * 1.5 * T + k) for k in (0, 1)},
 }
+ROUGH = {"hum": 0.1, "run-delay": 2e-3, "channel_delay": 2e-3}  # by a slope, or a frequency
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_fault_explains_all_that_it_does_and_its_amount_is_told(law):
     trial = trial_of(read_wrongly(LAWS[law]) + JACOBIAN[:, 0])
     left = beside(trial, TOLERATED, RUN)
-    best, *others = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)[0]
     assert (best.code, best.run, best.channels) == law[:3]
     assert best.amount == pytest.approx(law[3], rel=0.02)
     edges, first_s, last_s = law[4:] or (0, None, None)
     assert best.edges == edges
     assert (best.first_s, best.last_s) == pytest.approx((first_s, last_s))
-    assert best.reduction == pytest.approx(left.squares, rel=0.1 if best.code == "hum" else 2e-3)
-    reductions = [best.reduction, *(c.reduction for c in others)]
-    assert reductions == sorted(reductions, reverse=True)
+    assert best.reduction == pytest.approx(left.squares, rel=ROUGH.get(best.code, 1e-6))
 
 
 def test_a_length_of_one_run_is_its_stiffness():
-    """Stiffer by a tenth than the model: the model yields too much there."""
-    trial = trial_of(-0.1 * JACOBIAN[:, 1] * (RUN == 1))  # or softer in the other one
+    """Stiffer by a tenth than the model, that yields too much there; or softer in the other one."""
+    trial = trial_of(-0.1 * JACOBIAN[:, 1] * (RUN == 1))
     left = beside(trial, TOLERATED, RUN)
     best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)[0]
     assert (best.code, best.channels) == ("run-length", ())
     assert best.amount == pytest.approx(0.1 if best.run else -0.1)
     assert best.reduction == pytest.approx(left.squares)
-    held = replace(trial, solution=replace(trial.solution, at_bound=np.array([0, 1, 0, 0]) > 0))
-    codes = {c.code for c in candidates(BENCH, held, runs_at(BENCH, held), left, RUN)}
-    assert "run-length" not in codes
 
 
 @pytest.mark.parametrize("alike", [False, True])
@@ -178,31 +167,22 @@ def test_what_is_left_is_beside_the_free_parameters_and_the_tolerances(alike):
     assert left.squares == pytest.approx(float(least(A) @ least(A)))
     column = RNG.standard_normal(RUN.size)
     further = least(np.column_stack((A, np.append(column, np.zeros(m)))))
-    without = left.without(column)
-    np.testing.assert_allclose(without.residual, further, atol=1e-9)
-    assert without.squares == pytest.approx(float(further @ further))
-    np.testing.assert_allclose(without.project(column[:, None]), 0.0, atol=1e-9)
+    np.testing.assert_allclose(left.without(column).residual, further, atol=1e-9)
+    np.testing.assert_allclose(left.without(column).project(column[:, None]), 0.0, atol=1e-9)
 
 
 def test_what_an_amplifier_passes_of_a_step_fades_away():
-    """y = e^(−t/τ); of a later sum of steps, each by its own time."""
-    np.testing.assert_allclose(passed(T, np.ones(N), 2.0), np.exp(-T / 2.0))
+    """By e^(−t/τ), each by its own time."""
     steps = 1.0 + 3.0 * (T > 3.99)
     expected = np.exp(-T / 2.0) + 3.0 * np.exp(-(T - 4.0) / 2.0) * (T > 3.99)
     np.testing.assert_allclose(passed(T, steps, 2.0), expected)
 
 
-def test_a_drive_that_reads_nothing_more_changes_nothing():
-    read = ReadRun(ERRORS[1], None, ERRORS[1].predict(None))
-    assert not read.changed("x_in_mm", np.zeros(N)).any()
-    assert shapes_of(read).starts_s == pytest.approx(0.5 * np.arange(24))
-
-
-def search_of(residual):
+def search_of(residual, run=RUN):
     return SimpleNamespace(
         bench=BENCH,
         trial=lambda names: trial_of(residual),
-        folds=SimpleNamespace(run=RUN),
+        folds=SimpleNamespace(run=run),
         tolerated={False: TOLERATED},
     )
 
@@ -218,12 +198,10 @@ def test_the_ends_of_a_fault_are_found_between_the_parts():
     assert (best.code, best.run, best.channels, best.edges) == ("run-offset", 1, (X,), 2)
     assert (best.first_s, best.last_s) == pytest.approx((3.65, 7.15), abs=0.06)
     assert best.amount == pytest.approx(0.8, rel=0.05)
-    assert found.share == pytest.approx(1.0, abs=0.05)
     excess = float(read_wrongly({(1, X): reads}) @ read_wrongly({(1, X): reads}))
     assert found.excess == pytest.approx(excess, rel=0.1)
     assert found.rest == pytest.approx(RUN.size, rel=0.1)
-    accepted = told({(1, X): reads}, "run-offset")
-    assert accepted is None or accepted.found[0].code != "run-offset"
+    assert told({(1, X): reads}, "run-offset") is None
     assert told({}) is None
 
 
@@ -235,8 +213,7 @@ def test_steps_of_a_zero_are_told_one_by_one():
     times, amounts = zip(*best.steps, strict=True)
     assert times == pytest.approx((2.1, 5.2, 9.3), abs=0.06)
     assert amounts == pytest.approx((-1.0, 0.7, -1.0), rel=0.1)
-    assert best.amount == pytest.approx(sum(amounts))
-    assert (best.first_s, best.last_s) == (times[0], None)
+    assert (best.amount, best.first_s) == pytest.approx((sum(amounts), times[0]))
 
 
 def test_a_time_constant_is_found_between_those_that_are_tried():
@@ -249,8 +226,7 @@ def test_a_time_constant_is_found_between_those_that_are_tried():
 @pytest.mark.parametrize(("friction", "found"), [(0.055, False), (0.065, True), (-0.065, True)])
 def test_a_friction_of_a_runs_own_is_beyond_three_deviations(friction, found):
     """One is a fiftieth; of two runs, each differs by half of it from their mean."""
-    residual = -friction * JACOBIAN[:, 0] * np.where(RUN == 1, 1.0, 0.0)
-    search = search_of(residual + NOISE)
+    search = search_of(NOISE - friction * JACOBIAN[:, 0] * RUN)
     result = s.fault_of_recording(search, ())
     assert (result is not None) == found
     if found:
@@ -260,15 +236,14 @@ def test_a_friction_of_a_runs_own_is_beyond_three_deviations(friction, found):
     assert s.fault_of_recording(search, ("run-friction",)) is None
 
 
-def judged(monkeypatch, found, *, squares=200.0, frictions=()):
+def judged(monkeypatch, found, *, squares=200.0):
     """Return what is said of faults with given reductions, of 100 residuals."""
-    search = search_of(np.zeros(RUN.size))
-    search.folds.run = np.zeros(100, int)
+    search = search_of(np.zeros(RUN.size), np.zeros(100, int))
     monkeypatch.setattr(s, "beside", lambda *_: SimpleNamespace(squares=squares))
     monkeypatch.setattr(s, "runs_at", lambda *_: [None])
     monkeypatch.setattr(s, "candidates", lambda *_: found)
     monkeypatch.setattr(s, "_closer", lambda found, *_: found)
-    monkeypatch.setattr(s, "of_frictions", lambda *_: iter(frictions))
+    monkeypatch.setattr(s, "of_frictions", lambda *_: iter(()))
     return s.fault_of_recording(search, ())
 
 
@@ -294,21 +269,7 @@ def test_a_fault_convinces_by_its_share_of_what_is_beyond_the_noise(
     assert judged(monkeypatch, late, squares=squares) is None
 
 
-def test_a_friction_counts_beside_its_own_squares(monkeypatch):
-    """The fault is said that leaves less: 200 − 90 or 300 − 185; 140 or less."""
-    own = (fault(185.0, 0, "run-friction", ()), 300.0)
-    assert judged(monkeypatch, [fault(90.0)], frictions=[own]).found[0].code == "hum"
-    own = (fault(195.0, 0, "run-friction", ()), 300.0)
-    assert judged(monkeypatch, [fault(90.0)], frictions=[own]).found[0].code == "run-friction"
-
-
-@pytest.mark.parametrize(("second", "simple"), [(96.9, False), (97.1, True)])
-def test_a_fault_with_fewer_ends_is_said_where_it_is_as_good(second, simple):
-    found = [fault(100.0, 0, edges=2), fault(99.0, 1, edges=2), fault(second, 2, edges=1)]
-    assert s.simplest(found).run == (2 if simple else 0)
-
-
-def test_rivals_are_as_good_elsewhere_with_no_more_ends(monkeypatch):
+def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(monkeypatch):
     def runs(*found):
         return [c.run for c in judged(monkeypatch, list(found)).found]
 
@@ -318,104 +279,30 @@ def test_rivals_are_as_good_elsewhere_with_no_more_ends(monkeypatch):
     assert runs(best, fault(99.0, 0, "clock"), fault(98.0, 1), fault(97.0, 1, "clock")) == [0, 1]
     assert runs(best, fault(96.0, 1, edges=2), fault(95.0, 2, edges=1)) == [0, 2]
     assert runs(best, fault(99.0, 1, "channel_delay"), fault(98.0, 2)) == [0, 2]
+    two = fault(100.0, 0, edges=2), fault(99.0, 1, edges=2)
+    assert runs(*two, fault(96.9, 2)) == [0, 1, 2]
+    assert runs(*two, fault(97.1, 2)) == [2]  # with fewer ends as good
 
 
 @pytest.mark.parametrize(
-    ("rest", "leaves", "named"),
+    ("code", "channels", "amount", "between", "said"),
     [
-        (150.0, 209.0, True),  # twice the 50 beyond the noise, and a tenth of the noise
-        (150.0, 211.0, False),
-        (80.0, 89.0, True),
-        (80.0, 91.0, False),
+        ("run-offset", (F,), -1.0, (), "f_out_N reads 1 N less than the other runs and channels"),
+        ("run-offset", (F,), 0.2, (3, None), "N more than the other runs and channels fit since"),
+        ("run-offset", (X,), 0.2, (None, 4), "channels fit until about 4 s"),
+        ("run-offset", (X,), 0.2, (3, 4), "a clamp that slips, from about 3 to 4 s"),
+        ("run-gain", (F,), 0.03, (), "f_out_N reads 3 % more than in the other runs"),
+        ("run-delay", (F, X), -0.02, (), "f_out_N and x_out_mm come 20 ms earlier than the other"),
+        ("run-delay", (X,), 0.02, (), "x_out_mm comes 20 ms later than the other channels"),
+        ("clock", (X,), -0.003, (), "the clock of x_out_mm runs 0.3 % faster than that of the"),
+        ("run-length", (), np.log(1.25), (), "its tendon is 1.25 times as stiff as in the other"),
+        ("run-length", (), np.log(1.25), (), "sheath_length_mm were 0.8 times what the manifest"),
+        ("run-friction", (), np.log(0.5), (), "its friction is 0.5 times that of the other runs"),
     ],
 )
-def test_an_effect_is_as_good_as_a_fault_where_it_leaves_as_little(
-    rest, leaves, named, monkeypatch
-):
-    monkeypatch.setattr(rivals, "left_by", lambda search, names, fault: leaves)
-    nominal = SimpleNamespace(solution=SimpleNamespace(residual=np.full(100, 2.0)))
-
-    def screened(part, name):
-        return SimpleNamespace(part=part, effect=SimpleNamespace(name=name))
-
-    # It has 0.8 of an excess of 300 to explain, of 400 squares in all.
-    least = rivals.LINEAR * 0.8 * 300.0 / 400.0
-    order = [screened(1.01 * least, "a"), screened(0.99 * least, "b"), screened(1.0, "c")]
-    search = SimpleNamespace(
-        trial=lambda names: nominal,
-        folds=SimpleNamespace(run=np.zeros(100, int)),
-        screen=lambda names: order,
-    )
-    found = s.FoundFault((fault(1.0),), 0.8, 300.0, rest)
-    assert list(rivals.effects_as_good(search, found)) == (["a"] if named else [])
-
-
-@pytest.mark.parametrize("code", ["run-friction", "hum"])
-def test_an_effect_is_weighed_beside_what_the_fault_was(code):
-    """A friction of a run's own has no tolerance beside it."""
-    search = search_of(NOISE - 0.1 * JACOBIAN[:, 0] * RUN)
-    found = s.FoundFault((fault(1.0, code=code),), 1.0, 1.0, 1.0)
-    expected = beside(search.trial(()), TOLERATED, RUN, alike=code == "run-friction")
-    assert rivals.left_by(search, frozenset(), found) == pytest.approx(expected.squares)
-
-
-def test_a_swing_is_sought_above_the_motion_in_each_run():
-    """Both runs make a cycle and a half in 12 s: below 0.31 Hz it may be the motion's own."""
-    at = np.concatenate((T, T, T, T))
-    swing = np.sin(2.0 * np.pi * 2.0 * at + RUN) + 5.0 * np.sin(2.0 * np.pi * 0.125 * at)
-    channel = np.tile(np.repeat((0, 1), N), 2)
-    signals = AtResiduals({"time_s": at}, channel)
-    found = {n: (f, c) for n, f, c in swings(BENCH, None, signals, swing * (channel == 1), RUN)}
-    frequency, columns = found[X]
-    assert frequency == pytest.approx(2.0, abs=0.02)
-    turn = 2.0 * np.pi * frequency * T
-    expected = np.zeros((RUN.size, 4))
-    for k, start in ((0, N), (1, 3 * N)):
-        expected[start : start + N, 2 * k : 2 * k + 2] = np.column_stack(
-            (np.sin(turn), np.cos(turn))
-        )
-    np.testing.assert_allclose(columns, expected, atol=1e-9)
-
-
-AS_FITS = "than the other runs and channels fit"
-
-
-@pytest.mark.parametrize(
-    ("code", "channels", "amount", "first_s", "last_s", "said"),
-    [
-        ("run-offset", (F,), -1.0, 3.0, None, f"{F} reads 1 N less {AS_FITS} since about 3 s"),
-        ("run-offset", (X,), 0.2, None, 4.0, f"{X} reads 0.2 mm more {AS_FITS} until about 4 s"),
-        ("run-offset", (X,), 0.2, 3.0, 4.0, "a clamp that slips, from about 3 to 4 s"),
-        ("run-gain", (F,), 0.03, None, None, f"{F} reads 3 % more than in the other runs"),
-        ("run-delay", (F, X), -0.02, None, None, f"{F} and {X} come 20 ms earlier than the"),
-        ("run-delay", (X,), 0.02, None, None, f"{X} comes 20 ms later than the other channels"),
-        ("clock", (X,), -0.003, None, None, f"the clock of {X} runs 0.3 % faster than that of"),
-        ("clock", (X,), 0.003, None, None, f"the clock of {X} runs 0.3 % slower than that of"),
-        ("run-length", (), np.log(1.25), None, None, "is 1.25 times as stiff as in the other"),
-        ("run-length", (), np.log(1.25), None, None, "sheath_length_mm were 0.8 times what"),
-        ("run-friction", (), np.log(0.5), None, None, "its friction is 0.5 times that of the"),
-    ],
-)
-def test_a_fault_is_said_with_its_size_its_sign_and_its_time(
-    code, channels, amount, first_s, last_s, said
-):
-    found = Candidate(code, 1, channels, amount, 9.0, 1, first_s, last_s)
-    record = record_of([found], ["a", "b"])
+def test_a_fault_is_said_with_its_size_its_sign_and_its_time(code, channels, amount, between, said):
+    found = Candidate(code, 1, channels, amount, 9.0, 1, *between)
+    record, of_all = (record_of([c], ["a", "b"]) for c in (found, replace(found, run=None)))
     assert said in record.sentence
-    assert record.sentence.startswith("run b: ")
+    assert record.sentence == f"run b: {of_all.sentence}"
     assert (record.run, record.column) == ("b", channels[0] if channels else None)
-    several = record_of([found, replace(found, run=None), found], ["a", "b"])
-    of_all = record.sentence.removeprefix("run b: ")
-    assert several.sentence == f"{record.sentence}; as likely: {of_all}; {record.sentence}"
-    assert several.first_s == first_s
-
-
-@pytest.mark.parametrize(("share", "said"), [(0.724, "72 %"), (1.3, "100 %")])
-def test_a_verdict_has_the_share_and_what_to_do(share, said):
-    """No run can be left out where the fault is in all of them."""
-    of_run = reason_of_fault(RecordingFault(code="clock", run="a", sentence="s"), share)
-    of_all = reason_of_fault(RecordingFault(code="clock", sentence="s"), share)
-    assert f"explains {said} of" in of_run
-    assert of_run != of_all
-    assert "leave the run out" in of_run
-    assert "leave the run out" not in of_all
