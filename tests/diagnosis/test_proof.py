@@ -51,7 +51,7 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
 def test_an_interval_that_is_cut_at_the_neutral_value_holds_it():
     cut = estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)
     assert may_be_zero("drive_friction", (cut,))
-    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)
+    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 9.0)
     assert not may_be_zero("drive_friction", (clear,))
 
 
