@@ -52,13 +52,13 @@ def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
 
 @pytest.mark.parametrize(
     ("log_EA", "ratio", "stated"),
-    [(-0.2, 0.2, (0.0, 1.2 * math.exp(0.2) - 1.0)), (0.2, 0.1, (0.2, 0.1))],
+    [(-0.2, 0.2, (0.1, 1.2 * math.exp(0.3) - 1.0)), (0.3, 0.1, (0.3, 0.1))],
 )
 def test_a_sheath_is_stated_for_the_tendon_of_the_data_sheet(log_EA, ratio, stated):
     """(1 + ratio)/EA is what the recordings determine; a ratio is not negative."""
     names = ("free_tendon.distal_length_mm", intervals.TENDON, intervals.SHEATH)
     sheath = QUANTITIES[intervals.SHEATH]
-    unknowns = [Unknown(name, None, 0.0, -0.3, 0.3, 1.0) for name in names]
+    unknowns = [Unknown(name, None, 0.0, -0.3, 0.5, 1.0) for name in names]
     values = np.array([2.0, log_EA, sheath.scaled(ratio)])
     found = intervals._at_data_sheet(values, SimpleNamespace(unknowns=unknowns))
     assert (found[1], sheath.unscaled(found[2])) == pytest.approx(stated)

@@ -51,7 +51,7 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
 def test_an_interval_that_is_cut_at_the_neutral_value_holds_it():
     cut = estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)
     assert may_be_zero("drive_friction", (cut,))
-    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)
+    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 9.0)
     assert not may_be_zero("drive_friction", (clear,))
 
 
@@ -160,6 +160,9 @@ def test_a_split_is_said_with_its_values():
     assert "0.9961 (pulling) and 0.9965 (x)" in split_in_words(near)
     runs = Split("force_sensor_gain.f_out_gain", "run", CLEAR, (("run a", 1.0), ("run b", 1.04)))
     assert split_in_words(runs) == "from run to run: f_out_gain 1 (run a) and 1.04 (run b)"
+    five = tuple(zip("abcde", (3.0, 1.0, 2.0, 5.0, 4.0), strict=True))
+    assert split_in_words(replace(runs, values=five)).endswith("f_out_gain 1 (b) and 5 (d)")
+    assert split_in_words(replace(runs, values=five[:4])).count(" and ") == 3
 
 
 def test_only_an_effect_with_a_size_may_be_zero():

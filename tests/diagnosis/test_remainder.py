@@ -78,7 +78,7 @@ def test_noise_depends_on_nothing():
     assert found.depends_on == ()
     assert found.explained == {"f_in_N": 0.0, "f_out_N": 0.0}
     assert found.mean_square == pytest.approx(1.0, rel=0.1)
-    assert found.slow == {}
+    assert (found.slow, found.structure) == ({}, 0.0)
     assert found.complete
 
 

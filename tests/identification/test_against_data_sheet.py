@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
@@ -72,14 +73,64 @@ def test_a_common_factor_of_both_forces_is_told_with_its_interval(factor, unit):
 
 
 @pytest.mark.parametrize("width", [1e-3, 0.1])
-def test_the_interval_of_a_factor_is_of_the_data_sheet_and_the_fit(width):
+@pytest.mark.parametrize("off", [0.9, 1.0, 1.1])
+def test_the_interval_of_a_factor_is_of_the_data_sheet_and_the_fit(width, off):
     """A data sheet is off by 10, 5 and 10 %; the fit's errors add in squares, by their weights."""
-    (said,) = contradictions(sheet(), forces(0.5, width=width))
+    (said,) = contradictions(sheet(), forces(0.5, width=width, preload_N=0.5 * off))
     sd_of_fit = math.log((1.0 + width) / (1.0 - width)) / (2.0 * 1.96)
-    sd = sum(1.0 / (stated**2 + sd_of_fit**2) for stated in (0.1, 0.05, 0.1)) ** -0.5
-    low, high = (float(end) for end in said.split("[")[1].split("]")[0].split(", "))
-    ends = 0.5 * math.exp(-1.96 * sd), 0.5 * math.exp(1.96 * sd)
-    assert (low, high) == pytest.approx(ends, rel=2e-3)
+    weights = [1.0 / (stated**2 + sd_of_fit**2) for stated in (0.1, 0.05, 0.1)]
+    factor = math.exp(np.average(np.log((0.5 * off, 0.5, 0.5)), weights=weights))
+    side = math.exp(1.96 * sum(weights) ** -0.5)
+    expected = factor, factor / side, factor * side
+    found = said.split(" of ")[2].split("] ")[0].replace(" [", ", ").split(", ")
+    assert [float(text) for text in found] == pytest.approx(expected, rel=2e-3)
+
+
+def contradicted(logs, width=1e-9, **changed):
+    """Return what is said of values that are off by given logarithms."""
+    factors = {name: math.exp(log) for name, log in logs.items()}
+    return contradictions(sheet(**changed), fitted(width=width, **factors))
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize(
+    ("preload", "load", "tendon", "common"),
+    [
+        # Weights of 100, 400, 100: a mean beyond three standard errors, 600^(−1/2) each.
+        (0.121, 0.121, 0.121, False),
+        (0.124, 0.124, 0.124, True),
+        # χ² of two degrees of freedom, δ² 100 · 500 / 600, up to 5.99; of one, δ² 80, to 3.84.
+        (0.4 + 0.266, 0.4, 0.4, True),
+        (0.4 + 0.270, 0.4, 0.4, False),
+        (None, 0.4, 0.4 + 0.218, True),
+        (None, 0.4, 0.4 + 0.221, False),
+    ],
+)
+def test_a_factor_is_common_where_it_is_sure_and_values_agree(preload, load, tendon, common, sign):
+    logs = {"load_stiffness_N_per_mm": sign * load, "tendon_stiffness_N": sign * tendon}
+    logs["preload_N"] = sign * (preload or 0.0)
+    said = contradicted(logs, preload_N=None if preload is None else 25.0)
+    assert any("common factor of f_in and f_out of" in each for each in said) == common
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize(
+    ("name", "least", "width", "check"),
+    [
+        ("preload_N", 0.7, 0.05, "preload_N of the manifest, and zero and gain of the force"),
+        ("load_stiffness_N_per_mm", 0.85, 1e-3, "load_stiffness_N_per_mm, and unit and gain of"),
+        ("friction_coefficient", 0.5, 0.05, "friction_coefficient, total_bend_rad, and the gain"),
+        ("tendon_stiffness_N", 0.85, 0.05, ""),
+    ],
+)
+def test_a_value_contradicts_beyond_what_is_tolerated_and_the_fits_own_error(
+    name, least, width, check, sign
+):
+    edge = -math.log(least) + 0.5 * math.log((1.0 + width) / (1.0 - width))
+    assert contradicted({name: 0.99 * sign * edge}, width) == []
+    (said,) = contradicted({name: 1.01 * sign * edge}, width)
+    assert f"is {math.exp(1.01 * sign * edge):.3g} times that of the data sheet:" in said
+    assert f"check {check}" in said or not check
 
 
 @pytest.mark.parametrize("factor", [0.5, 1 / 25.4])
@@ -141,19 +192,6 @@ def test_a_tendon_at_the_bound_of_its_data_sheet_is_told():
     (said,) = contradictions(sheet(), Model(tuple(at_bound)), ["position_sensor_gain"])
     assert "is 1.18 times that of the data sheet, the bound of what is plausible" in said
     assert said.endswith("Either would be a rival of position_sensor_gain.")
-
-
-@pytest.mark.parametrize(
-    ("factors", "check"),
-    [
-        ({"load_stiffness_N_per_mm": 0.5}, "check load_stiffness_N_per_mm, and unit and gain"),
-        ({"preload_N": 2.0}, "check preload_N of the manifest, and zero and gain"),
-        ({"friction_coefficient": 0.4}, "check friction_coefficient, total_bend_rad, and the gain"),
-    ],
-)
-def test_each_contradiction_says_what_to_check(factors, check):
-    (said,) = contradictions(sheet(), fitted(**factors))
-    assert check in said
 
 
 def test_a_calibration_tells_the_factor():

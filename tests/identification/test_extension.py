@@ -113,7 +113,7 @@ def asked(monkeypatch):
     def solve(unknowns, runs, residuals, *, tolerance, known, values_only):
         values = np.array([3.0, 4.0, 2.0, 5.0][: len(unknowns)])
         found = [residuals(k, values) for k in range(runs)]
-        asked.update(found=found, known=known)
+        asked.update(found=found, known=known, tolerance=tolerance)
         left = np.zeros(sum(f.size for f in found))
         return Solution(values, np.zeros(values.size, bool), left, None, True, "", 1)
 
@@ -143,9 +143,10 @@ def test_an_effect_is_freed_beside_the_base_from_where_its_fit_ended(asked, benc
 def test_near_a_trial_it_begins_there_with_its_slopes(asked, bench):
     J = np.arange(9.0).reshape(3, 3)
     sought = [zero_of(0), zero_of(1), unknown_of(PROXIMAL)]
-    near = trial_of(sought, [7.0, 8.0, 9.0], np.zeros(3), J=J)
+    near = trial_of(sought, [7.0, 8.0, 9.0], np.full(3, 2.0), J=J)
     made = bench()
     trial = made.fit(["free_tendon"], near=near)
+    assert asked["tolerance"] == pytest.approx(4.0 * e.TOLERANCE)  # by the mean square
     assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
     np.testing.assert_array_equal(asked["known"], np.column_stack((J, np.full(3, np.nan))))
     told = made.fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)

@@ -111,12 +111,11 @@ def blocks(runs, per_run, samples):
     return [np.repeat(np.arange(per_run), samples) for _ in range(runs)]
 
 
-def mean_of(residual, runs, per_run=4, samples=5, *, by_run=False, run=None):
+def mean_of(residual, runs, per_run=4, samples=5, *, run=None, **how):
     """Return stderr and t of a mean that all samples share."""
     J = np.ones((residual.size, 1))
-    found = with_errors(
-        [unknown(run=run)], solution(J, residual), blocks(runs, per_run, samples), by_run=by_run
-    )
+    counted = blocks(runs, per_run, samples)
+    found = with_errors([unknown(run=run)], solution(J, residual), counted, **how)
     return found.stderr[0], found.t[0]
 
 
@@ -130,22 +129,23 @@ def test_the_error_of_a_mean_is_that_of_its_blocks(runs):
 
 
 @pytest.mark.parametrize(("runs", "size", "by_run", "wider"), [
-    (3, 3.0, False, True),  # the model is wrong: only runs are independent
-    (2, 3.0, False, False),  # two of them cannot stand for that
-    (3, 1.2, False, False),  # mean square of 1.44: no reason to think so
+    (3, 3.0, None, True),  # the model is wrong: only runs are independent
+    (2, 3.0, None, False),  # two of them cannot stand for that
+    (3, 1.2, None, False),  # mean square of 1.44: no reason to think so
     (3, 1.2, True, True),  # asked for
 ])  # fmt: skip
 def test_where_the_model_is_wrong_runs_are_the_evidence(runs, size, by_run, wider):
     of_run = np.linspace(-1.0, 1.0, runs)
     of_run *= size / np.sqrt(np.mean(of_run**2))
     residual = np.repeat(of_run, 20)
-    stderr, t = mean_of(residual, runs, by_run=by_run)
+    how = {} if by_run is None else {"by_run": by_run}
+    stderr, t = mean_of(residual, runs, **how)
     by_block = np.std(np.repeat(of_run, 4), ddof=1) / math.sqrt(4 * runs)
     alone = np.std(of_run, ddof=1) / math.sqrt(runs)
     assert stderr == pytest.approx(alone if wider else by_block, rel=1e-6)
     if wider:
         assert t > 4.3  # Student's of no more than two degrees of freedom
-        own, _ = mean_of(residual, runs, by_run=by_run, run=0)
+        own, _ = mean_of(residual, runs, run=0, **how)
         assert own == pytest.approx(by_block, rel=1e-6)
 
 

@@ -195,3 +195,18 @@ def test_what_was_laid_between_samples_is_nothing_recorded():
     np.testing.assert_array_equal(found[kept], values[kept])
     white = np.random.default_rng(2).random(60)
     np.testing.assert_array_equal(p._recorded(white), white)
+
+
+@pytest.mark.parametrize(("other", "drives"), [(0.19, True), (0.21, False)])
+def test_a_motor_drives_where_its_angle_explains_all_but_a_fifth(other, drives):
+    """x_in = 0.2 times the angle, and a wave of its own of so much of its standard deviation."""
+    turn = 2.0 * np.pi * np.arange(400) / 200.0
+    angle, own = 5.0 + 30.0 * np.sin(turn), 6.0 * other / math.sqrt(1.0 - other**2)
+    time_s, x_in = turn.copy(), SimpleNamespace(values=6.0 * np.sin(turn) + own * np.cos(turn))
+    found = p._motor(time_s, angle, x_in)
+    assert (found is not None) == drives
+    if drives:
+        np.testing.assert_allclose(found, 0.2 * angle, atol=0.01)
+    unknown = np.where(np.arange(400) == 7, NAN, angle)
+    for none in ((None, x_in), (angle, None), (unknown, x_in), (np.ones(400), x_in)):
+        assert p._motor(time_s, *none) is None

@@ -1,13 +1,14 @@
 """The scatter between strokes of the same motion is that which was made."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.identification.recorded import ran
 from tsas_cli.identification.fitted_to import fitted_to
-from tsas_cli.identification.repeatability import repeatability
+from tsas_cli.identification.repeatability import StrokeAtTravel, repeatability
 from tsas_cli.recordings.manifest import RigSheet
 
 RATE_HZ, NOISE_N, NOISE_MM = 193, 0.1, 0.005  # samples that fall between those of other strokes
@@ -60,6 +61,15 @@ def test_x_out_repeats_where_strokes_begin_and_end_a_little_apart():
 )
 def test_where_no_motion_repeats_nothing_is_claimed(amplitudes):
     assert found(run(amplitudes)) == [None]
+
+
+@pytest.mark.parametrize("changed", [("start_mm", 0.2), ("end_mm", 0.2), ("duration_s", 0.2)])
+def test_a_stroke_repeats_another_within_a_fiftieth_of_its_way_and_a_tenth_of_its_time(changed):
+    one, (name, room) = StrokeAtTravel(5.0, -5.0, 2.0, {}), changed
+    for sign in (-1.0, 1.0):
+        for share in (0.99, 1.01):
+            other = replace(one, **{name: getattr(one, name) + sign * share * room})
+            assert other.repeats(one) == (share < 1.0)
 
 
 def test_runs_of_the_same_conditions_repeat_each_other():

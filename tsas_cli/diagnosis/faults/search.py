@@ -150,7 +150,7 @@ def _of_part(c: Candidate, read: ReadRun, run: Indices) -> Floats:
 
 def _of_steps(zero: Candidate, read: ReadRun, left: Beside, run: Indices) -> Iterator[Candidate]:
     """Yield several steps of the zero of one channel in one run, one after the other."""
-    squares, excess = left.squares, left.squares - run.size
+    before, excess = left, left.squares - run.size
     starts_s = np.linspace(0.0, float(read.time_s[-1]), WINDOWS + 1)[1:-1]
     since = [replace(zero, first_s=float(s), last_s=None, edges=1) for s in starts_s]
     columns = [_of_part(c, read, run) for c in since]
@@ -163,12 +163,14 @@ def _of_steps(zero: Candidate, read: ReadRun, left: Beside, run: Indices) -> Ite
         steps.append(step)
         left = left.without(_of_part(step, read, run))
     if len(steps) > 1:
-        at = sorted((c.first_s or 0.0, c.amount) for c in steps)
+        together = before.project(np.column_stack([_of_part(c, read, run) for c in steps]))
+        amounts = np.linalg.lstsq(together, before.residual, rcond=None)[0].tolist()
+        at = sorted((c.first_s or 0.0, d) for c, d in zip(steps, amounts, strict=True))
         yield replace(
             zero,
             code="run-step",
             amount=sum(amount for _, amount in at),
-            reduction=squares - left.squares,
+            reduction=before.squares - left.squares,
             edges=len(steps),
             first_s=at[0][0],
             last_s=None,

@@ -1,0 +1,308 @@
+"""Each fault of a recording is told by its own law, on two short runs that are made up."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis.faults import search as s
+from tsas_cli.diagnosis.faults import shapes
+from tsas_cli.diagnosis.faults.candidates import Candidate, beside, candidates
+from tsas_cli.diagnosis.faults.shapes import passed, runs_at
+from tsas_cli.diagnosis.faults.words import record_of
+from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.fit import Solution, Unknown
+
+F, X, DRIVE = "f_out_N", "x_out_mm", "x_in_mm"
+N = 240
+T = 0.05 * np.arange(N)  # 24 parts of 0.5 s
+SD = {F: 0.5, X: 0.1}
+BY_DRIVE = {F: 3.0, X: 0.5}  # what each channel does by 1 mm of the drive
+RUN = np.repeat((0, 1), 2 * N)
+RNG = np.random.default_rng(3)
+JACOBIAN = 100.0 * RNG.standard_normal((RUN.size, 4))
+TOLERATED = RNG.standard_normal((RUN.size, 2))
+NOISE = RNG.standard_normal(RUN.size)
+NAMES = ("friction_coefficient", "tendon_stiffness_N", "slack_mm", "still")
+JACOBIAN[:, 3] = 0.0  # it changes nothing
+
+
+def motion(k, t=T):
+    return 4.0 * np.sin((1.0 + 0.3 * k) * t + k) + np.cos(2.3 * t)
+
+
+def values_of(k, name, t=T):
+    x = motion(k, t)
+    return 50.0 + 3.0 * x + 0.4 * x**2 if name == F else 0.5 * x - 0.01 * x**3
+
+
+class Errors:
+    """A run of which each sample is a residual: predicted less measured, over SD."""
+
+    def __init__(self, k):
+        self.k, self.simulation = k, k
+        self.samples = dict.fromkeys(SD, np.arange(N))
+        reversals = np.array([0, 80, 160, N - 1])
+        drive = SimpleNamespace(values=motion(k), noise=0.01, reversals=reversals)
+        self.run = SimpleNamespace(time_s=5.0 + T, drive_column=DRIVE, conditioned={DRIVE: drive})
+
+    def predict(self, rig):
+        return {name: values_of(self.k, name) for name in SD} | {"f_in_N": motion(self.k)}
+
+    def changed(self, changes):
+        return np.concatenate([changes.get(n, np.zeros(N)) / sd for n, sd in SD.items()])
+
+
+ERRORS = (Errors(0), Errors(1))
+BENCH = SimpleNamespace(
+    errors_for=lambda trial: ERRORS,
+    rig=lambda trial, k: None,
+    rigs=(SimpleNamespace(total_bend_rad=1.0), SimpleNamespace(total_bend_rad=2.0)),
+    channels=list(SD),
+)
+
+
+@pytest.fixture(autouse=True)
+def driven(monkeypatch):
+    """Let what is predicted follow the drive, by a straight line."""
+
+    def predict(k, rig, values):
+        moved = values - motion(k)
+        return {n: values_of(k, n) + BY_DRIVE[n] * moved for n in SD}
+
+    monkeypatch.setattr(shapes, "predict_driven", predict)
+
+
+def trial_of(residual):
+    unknowns = tuple(Unknown(name, None, 0.0, -1e6, 1e6, 1.0) for name in NAMES)
+    at_bound = np.array([False, False, True, False])
+    solution = Solution(np.zeros(4), at_bound, residual, JACOBIAN, True, "", 1)
+    return HypothesisFit((), unknowns, solution, (2 * N,) * 2, on_mesh=False)
+
+
+def read_wrongly(readings):
+    """Return the residuals where channels of runs read so much more."""
+    none = np.zeros(N)
+
+    def of(k, name):
+        moved = BY_DRIVE[name] * readings.get((k, DRIVE), none)
+        return (moved - readings.get((k, name), none)) / SD[name]
+
+    return np.concatenate([of(k, name) for k in (0, 1) for name in SD])
+
+
+def speed(k, name):
+    h = 1e-6
+    return (values_of(k, name, T + h) - values_of(k, name, T - h)) / (2.0 * h)
+
+
+def paced(k, name, rate):
+    """Return how much more a channel reads whose clock runs late by a share of the time."""
+    return np.interp((1.0 + rate) * T, T, values_of(k, name)) - values_of(k, name)
+
+
+MIDDLE = (T > 1.49) & (T < 4.49)
+LEVEL = float(np.quantile([values_of(0, F), values_of(1, F)], 0.4 + 0.58 * 9 / 15))
+PASSED = {(k, F): passed(T, values_of(k, F), 5.0) - values_of(k, F) for k in (0, 1)}
+HELD = {(k, F): -0.5 * np.maximum(values_of(k, F) - LEVEL, 0.0) for k in (0, 1)}
+LAWS = {
+    ("run-offset", 1, (F,), -2.0, 0, None, None): {(1, F): np.full(N, -2.0)},
+    ("run-offset", 0, (X,), 0.3, 1, 3.5, None): {(0, X): 0.3 * (T > 3.49)},
+    ("run-offset", 1, (X,), 0.3, 1, None, 2.5): {(1, X): 0.3 * (T < 2.49)},
+    ("run-gain", 1, (F,), 0.1, 2, 1.5, 4.5): {(1, F): 0.1 * values_of(1, F) * MIDDLE},
+    ("run-gain", 0, (DRIVE,), 0.05, 1, 6.0, None): {(0, DRIVE): 0.05 * motion(0) * (T > 5.99)},
+    ("run-delay", 0, (F,), 0.03): {(0, F): -0.03 * speed(0, F)},
+    ("run-delay", 1, (F, X), -0.03): {(1, n): 0.03 * speed(1, n) for n in SD},
+    ("channel_delay", None, (F,), 0.03): {(k, F): -0.03 * speed(k, F) for k in (0, 1)},
+    ("clock", 0, (X,), 4e-4): {(0, X): 4e-4 * T * np.gradient(values_of(0, X), T)},
+    ("clock", 1, (X,), 0.004): {(1, X): paced(1, X, 0.004)},
+    ("clock", None, (F, X), -0.005): {(k, n): paced(k, n, -0.005) for k in (0, 1) for n in SD},
+    ("ac-coupled", None, (F,), 5.0): PASSED,
+    ("saturates", None, (F,), LEVEL): HELD,
+    ("hum", None, (F,), 1.5): {(k, F): np.sin(2.0 * np.pi * 1.5 * T + k) for k in (0, 1)},
+}
+ROUGH = {"hum": 0.1, "run-delay": 2e-3, "channel_delay": 2e-3}  # by a slope, or a frequency
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_fault_explains_all_that_it_does_and_its_amount_is_told(law):
+    trial = trial_of(read_wrongly(LAWS[law]) + JACOBIAN[:, 0])
+    left = beside(trial, TOLERATED, RUN)
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)[0]
+    assert (best.code, best.run, best.channels) == law[:3]
+    assert best.amount == pytest.approx(law[3], rel=0.02)
+    edges, first_s, last_s = law[4:] or (0, None, None)
+    assert best.edges == edges
+    assert (best.first_s, best.last_s) == pytest.approx((first_s, last_s))
+    assert best.reduction == pytest.approx(left.squares, rel=ROUGH.get(best.code, 1e-6))
+
+
+def test_a_length_of_one_run_is_its_stiffness():
+    """Stiffer by a tenth than the model, that yields too much there; or softer in the other one."""
+    trial = trial_of(-0.1 * JACOBIAN[:, 1] * (RUN == 1))
+    left = beside(trial, TOLERATED, RUN)
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)[0]
+    assert (best.code, best.channels) == ("run-length", ())
+    assert best.amount == pytest.approx(0.1 if best.run else -0.1)
+    assert best.reduction == pytest.approx(left.squares)
+
+
+@pytest.mark.parametrize("alike", [False, True])
+def test_what_is_left_is_beside_the_free_parameters_and_the_tolerances(alike):
+    """Least squares of the residual, with one more row for each tolerance: its amount."""
+    trial = trial_of(30.0 * NOISE + JACOBIAN @ (0.1, 0.2, 0.3, 0.4))
+    frictions = 0.02 * JACOBIAN[:, [0]] * (RUN[:, None] == (0, 1))
+    own = np.column_stack((frictions[:, : 0 if alike else 2], TOLERATED))
+    m = own.shape[1]
+    above = np.column_stack((JACOBIAN[:, :2], own))
+    A = np.vstack((above, np.column_stack((np.zeros((m, 2)), np.eye(m)))))
+
+    def least(A):
+        b = np.append(trial.solution.residual, np.zeros(m))
+        return b - A @ np.linalg.lstsq(A, b, rcond=None)[0]
+
+    left = beside(trial, TOLERATED, RUN, alike=alike)
+    np.testing.assert_allclose(left.residual, least(A), atol=1e-9)
+    assert left.squares == pytest.approx(float(least(A) @ least(A)))
+    column = RNG.standard_normal(RUN.size)
+    further = least(np.column_stack((A, np.append(column, np.zeros(m)))))
+    np.testing.assert_allclose(left.without(column).residual, further, atol=1e-9)
+    np.testing.assert_allclose(left.without(column).project(column[:, None]), 0.0, atol=1e-9)
+
+
+def test_what_an_amplifier_passes_of_a_step_fades_away():
+    """By e^(−t/τ), each by its own time."""
+    steps = 1.0 + 3.0 * (T > 3.99)
+    expected = np.exp(-T / 2.0) + 3.0 * np.exp(-(T - 4.0) / 2.0) * (T > 3.99)
+    np.testing.assert_allclose(passed(T, steps, 2.0), expected)
+
+
+def search_of(residual, run=RUN):
+    return SimpleNamespace(
+        bench=BENCH,
+        trial=lambda names: trial_of(residual),
+        folds=SimpleNamespace(run=run),
+        tolerated={False: TOLERATED},
+    )
+
+
+def told(readings, *accepted):
+    return s.fault_of_recording(search_of(read_wrongly(readings) + NOISE), accepted)
+
+
+def test_the_ends_of_a_fault_are_found_between_the_parts():
+    reads = 0.8 * ((T > 3.63) & (T < 7.14))
+    found = told({(1, X): reads})
+    best = found.found[0]
+    assert (best.code, best.run, best.channels, best.edges) == ("run-offset", 1, (X,), 2)
+    assert (best.first_s, best.last_s) == pytest.approx((3.65, 7.15), abs=0.06)
+    assert best.amount == pytest.approx(0.8, rel=0.05)
+    excess = float(read_wrongly({(1, X): reads}) @ read_wrongly({(1, X): reads}))
+    assert found.excess == pytest.approx(excess, rel=0.1)
+    assert found.rest == pytest.approx(RUN.size, rel=0.1)
+    assert told({(1, X): reads}, "run-offset") is None
+    assert told({}) is None
+
+
+def test_steps_of_a_zero_are_told_one_by_one():
+    """Nothing, −1 since 2.1 s, −0.3 since 5.2 s, −1.3 since 9.3 s."""
+    reads = -1.0 * (T > 2.08) + 0.7 * (T > 5.18) - 1.0 * (T > 9.28)
+    best = told({(0, X): reads}).found[0]
+    assert (best.code, best.run, best.channels, best.edges) == ("run-step", 0, (X,), 3)
+    times, amounts = zip(*best.steps, strict=True)
+    assert times == pytest.approx((2.1, 5.2, 9.3), abs=0.06)
+    assert amounts == pytest.approx((-1.0, 0.7, -1.0), rel=0.1)
+    assert (best.amount, best.first_s) == pytest.approx((sum(amounts), times[0]))
+
+
+def test_a_time_constant_is_found_between_those_that_are_tried():
+    lost = {(k, F): passed(T, values_of(k, F), 3.2) - values_of(k, F) for k in (0, 1)}
+    best = told(lost).found[0]
+    assert (best.code, best.channels) == ("ac-coupled", (F,))
+    assert best.amount == pytest.approx(3.2, rel=0.05)
+
+
+@pytest.mark.parametrize(("friction", "found"), [(0.055, False), (0.065, True), (-0.065, True)])
+def test_a_friction_of_a_runs_own_is_beyond_three_deviations(friction, found):
+    """One is a fiftieth; of two runs, each differs by half of it from their mean."""
+    search = search_of(NOISE - friction * JACOBIAN[:, 0] * RUN)
+    result = s.fault_of_recording(search, ())
+    assert (result is not None) == found
+    if found:
+        best = result.found[0]
+        assert (best.code, best.channels, best.alone) == ("run-friction", (), True)
+        assert best.amount == pytest.approx(friction if best.run else -friction, rel=0.02)
+    assert s.fault_of_recording(search, ("run-friction",)) is None
+
+
+def judged(monkeypatch, found, *, squares=200.0):
+    """Return what is said of faults with given reductions, of 100 residuals."""
+    search = search_of(np.zeros(RUN.size), np.zeros(100, int))
+    monkeypatch.setattr(s, "beside", lambda *_: SimpleNamespace(squares=squares))
+    monkeypatch.setattr(s, "runs_at", lambda *_: [None])
+    monkeypatch.setattr(s, "candidates", lambda *_: found)
+    monkeypatch.setattr(s, "_closer", lambda found, *_: found)
+    monkeypatch.setattr(s, "of_frictions", lambda *_: iter(()))
+    return s.fault_of_recording(search, ())
+
+
+def fault(reduction, run=None, code="hum", channels=(F,), edges=1):
+    return Candidate(code, run, channels, 1.0, reduction, edges)
+
+
+@pytest.mark.parametrize(
+    ("squares", "reduction", "convinces"),
+    [(104.9, 4.9, False), (105.1, 5.1, True), (200.0, 69.0, False), (200.0, 71.0, True)],
+)
+def test_a_fault_convinces_by_its_share_of_what_is_beyond_the_noise(
+    squares, reduction, convinces, monkeypatch
+):
+    """Beyond a twentieth of the noise; more than seven tenths of it."""
+    found = judged(monkeypatch, [fault(reduction)], squares=squares)
+    assert (found is not None) == convinces
+    if found:
+        assert found.excess == pytest.approx(squares - 100.0)
+        assert found.share == pytest.approx(reduction / (squares - 100.0))
+        assert found.rest == pytest.approx(squares - reduction)
+    late = [fault(reduction, code="channel_delay")]
+    assert judged(monkeypatch, late, squares=squares) is None
+
+
+def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(monkeypatch):
+    def runs(*found):
+        return [c.run for c in judged(monkeypatch, list(found)).found]
+
+    best = fault(100.0, 0, edges=1)
+    assert runs(best, fault(90.1, 1), fault(89.9, 2)) == [0, 1]
+    assert runs(best, fault(99.0, 1), fault(98.0, 2), fault(97.0, 3)) == [0, 1, 2]
+    assert runs(best, fault(99.0, 0, "clock"), fault(98.0, 1), fault(97.0, 1, "clock")) == [0, 1]
+    assert runs(best, fault(96.0, 1, edges=2), fault(95.0, 2, edges=1)) == [0, 2]
+    assert runs(best, fault(99.0, 1, "channel_delay"), fault(98.0, 2)) == [0, 2]
+    two = fault(100.0, 0, edges=2), fault(99.0, 1, edges=2)
+    assert runs(*two, fault(96.9, 2)) == [0, 1, 2]
+    assert runs(*two, fault(97.1, 2)) == [2]  # with fewer ends as good
+
+
+@pytest.mark.parametrize(
+    ("code", "channels", "amount", "between", "said"),
+    [
+        ("run-offset", (F,), -1.0, (), "f_out_N reads 1 N less than the other runs and channels"),
+        ("run-offset", (F,), 0.2, (3, None), "N more than the other runs and channels fit since"),
+        ("run-offset", (X,), 0.2, (None, 4), "channels fit until about 4 s"),
+        ("run-offset", (X,), 0.2, (3, 4), "a clamp that slips, from about 3 to 4 s"),
+        ("run-gain", (F,), 0.03, (), "f_out_N reads 3 % more than in the other runs"),
+        ("run-delay", (F, X), -0.02, (), "f_out_N and x_out_mm come 20 ms earlier than the other"),
+        ("run-delay", (X,), 0.02, (), "x_out_mm comes 20 ms later than the other channels"),
+        ("clock", (X,), -0.003, (), "the clock of x_out_mm runs 0.3 % faster than that of the"),
+        ("run-length", (), np.log(1.25), (), "its tendon is 1.25 times as stiff as in the other"),
+        ("run-length", (), np.log(1.25), (), "sheath_length_mm were 0.8 times what the manifest"),
+        ("run-friction", (), np.log(0.5), (), "its friction is 0.5 times that of the other runs"),
+    ],
+)
+def test_a_fault_is_said_with_its_size_its_sign_and_its_time(code, channels, amount, between, said):
+    found = Candidate(code, 1, channels, amount, 9.0, 1, *between)
+    record, of_all = (record_of([c], ["a", "b"]) for c in (found, replace(found, run=None)))
+    assert said in record.sentence
+    assert record.sentence == f"run b: {of_all.sentence}"
+    assert (record.run, record.column) == ("b", channels[0] if channels else None)
