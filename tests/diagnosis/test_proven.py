@@ -66,6 +66,7 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
         ("load_spring_nonlinearity", "load_ripple", "over the tension", True),
         ("load_spring_nonlinearity", "load_ripple", "", False),
         ("load_spring_nonlinearity", "drive_ripple", "over the tension", False),
+        ("stribeck_friction", "sheath_compression", "over the speed", False),
         ("force_sensor_curvature", "force_sensor_tilt", "over the tension", True),
         ("force_sensor_curvature", "position_sensor_ripple", "over the tension", False),
     ],

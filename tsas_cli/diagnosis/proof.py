@@ -40,10 +40,14 @@ BOTH_SENSORS = {
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
 
-def place(effect: str) -> str:
-    """Return where an effect acts: the drive, the tendon, the load, or which sensors."""
-    acts_on = BY_NAME[effect].acts_on
-    return effect.partition("_sensor_")[0] if acts_on == "sensor" else acts_on
+def may_be_of_the_law_of(effect: str, other: str) -> bool:
+    """Return whether an effect may be what another one's law lacks: its sensor's, or a wave."""
+    places = [
+        e.name.partition("_sensor_")[0] if e.acts_on == "sensor" else e.acts_on
+        for e in (BY_NAME[effect], BY_NAME[other])
+    ]
+    wave = any(parameter.period for parameter in BY_NAME[effect].parameters)
+    return places[0] == places[1] and (wave or BY_NAME[effect].acts_on == "sensor")
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from tsas_cli.diagnosis.proof import (
     BY_NAME,
     FoundCause,
     failures,
+    may_be_of_the_law_of,
     may_be_zero,
-    place,
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
@@ -161,10 +161,10 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
 def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
     """Return a cause, refused where one that gains more acts at its place by a law of its own.
 
-    What that law lacks, a curve of another kind or a wave, is no cause of its own.
+    What that law lacks, a curve of another kind of a sensor or a wave, is no cause of its own.
     """
     for other in causes:
-        alike = place(other.effect) == place(cause.effect)
+        alike = may_be_of_the_law_of(cause.effect, other.effect)
         if other.law_differs and alike and other.gain_percent > cause.gain_percent:
             title = BY_NAME[other.effect].title.lower()
             said = f"acts where {title} does, whose law differs from the catalogue's"
