@@ -173,6 +173,7 @@ def test_chosen_residuals_are_spread_over_the_samples_behind_them():
     found = np.flatnonzero(made.spread("x_out_mm", chosen))
     assert found.tolist() == [0, 1, 2, 6, 7, 8, 2499]
     assert made.length == 2500
+    assert made.count == made.residuals(None).size == chosen.size
     with pytest.raises(KeyError):
         made.spread("f_out_N", chosen)
 

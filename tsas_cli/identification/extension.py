@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
@@ -167,25 +167,18 @@ class Bench:
         def residuals(k: int, values: Floats) -> Floats:
             return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, values))
 
-        def solved(start: Sequence[Unknown], slopes: Floats | None) -> Solution:
-            return solve(
-                start,
-                runs,
-                residuals,
-                tolerance=tolerance,
-                known=slopes,
-                values_only=values_only,
-            )
-
-        solution = solved(unknowns, None if near is None else near.slopes_of(unknowns))
+        solved = partial(
+            solve, runs=runs, residuals=residuals, tolerance=tolerance, values_only=values_only
+        )
+        solution = solved(unknowns, known=None if near is None else near.slopes_of(unknowns))
         inside = off_bounds(
             unknowns,
             solution,
             lambda values: np.concatenate(each(lambda k: residuals(k, values), range(runs))),
         )
         if inside is not None:
-            solution = solved(inside, solution.jacobian)
-        sizes = tuple(residuals(k, solution.values).size for k in range(runs))
+            solution = solved(inside, known=solution.jacobian)
+        sizes = tuple(run.count for run in errors)
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
 
     def errors_at(self, trial: HypothesisFit, changes: Mapping[str, float]) -> Floats:

@@ -66,6 +66,11 @@ class RunErrors:
         """The number of samples of the channel that has most."""
         return max(at.size for at in self.samples.values())
 
+    @property
+    def count(self) -> int:
+        """The number of residuals of all channels."""
+        return sum(mean_edges(at.size).size for at in self.samples.values())
+
     def raw(self, rig: Rig) -> dict[str, Floats]:
         """Return measured minus simulated of each channel, at the samples that enter the fit."""
         predicted = self.predict(rig)

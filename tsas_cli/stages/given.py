@@ -13,9 +13,8 @@ import numpy as np
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
-from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.errors import LONGEST_WORD, InputError, nearest
 
-LONGEST = 200  # characters of a value in a message
 NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS and Windows allow less
 Named = str | Path
 Thing = TypeVar("Thing")
@@ -116,7 +115,7 @@ def of_kind(kinds: tuple[type, ...], given: Any, name: str = "") -> Any:
     if isinstance(given, kinds) and (bool in kinds or not isinstance(given, bool)):
         return given
     names = dict.fromkeys(kind.__name__ for kind in kinds if kind is not NoneType)
-    what = f"{repr(given)[:LONGEST]} is of type {type(given).__name__}"
+    what = f"{repr(given)[:LONGEST_WORD]} is of type {type(given).__name__}"
     raise InputError(what, where=name, expected=" or ".join(names))
 
 
