@@ -72,15 +72,14 @@ def planned(speed, **other):
 @pytest.mark.parametrize(
     ("runs", "fits"),
     [
-        # 80 mm at 100 Hz: a hundred thousand samples at 0.08 mm/s.
-        (planned(0.0801), True),
-        (planned(0.08), True),
-        (planned(0.0799), False),
-        (planned(0.0401, periods=1), True),
-        (planned(0.0399, periods=1), False),
-        # Two periods of ten rests at the most, each below 50 s.
-        (planned(80000.0, dwell_s=49.9), True),
-        (planned(80000.0, dwell_s=50.1), False),
+        # 80 mm at 100 Hz, for half sines twice there and back: a million samples at 0.0251 mm/s.
+        (planned(0.0252), True),
+        (planned(0.0251), False),
+        (planned(0.0126, periods=1), True),
+        (planned(0.0125, periods=1), False),
+        # Two periods of eight rests at the most, each below 625 s.
+        (planned(80000.0, dwell_s=624.9), True),
+        (planned(80000.0, dwell_s=625.1), False),
     ],
 )
 def test_a_run_that_would_take_too_many_samples_is_refused(runs, fits):

@@ -236,6 +236,27 @@ def test_a_wrong_data_sheet_does_not_lead_astray(factor, channels):
     is_right(calibrated(run, **wrong), part=0.02)
 
 
+def test_positions_alone_and_a_tendon_that_is_known():
+    """What nobody states is fitted from far off: neither friction nor preload is the default."""
+    exact = recorded(sensors=replace(PERFECT, rate_Hz=200.0))
+    columns = {n: v for n, v in exact.items() if not n.endswith("_N")}
+    result = calibrated(
+        ran(columns, preload_N=None), friction_coefficient=None, load_stiffness_N_per_mm=None
+    )
+    estimates = fitted(result)
+    for name, value in VALUES.items():
+        if name != "tendon_stiffness_N":
+            assert estimates[name].value == pytest.approx(value, rel=1e-3), name
+    assert "tendon_stiffness_N" not in estimates
+    assert any(s.startswith("Without a force sensor all forces") for s in result.cannot_tell)
+
+
+def test_a_force_sensor_at_the_load_alone_shows_the_friction_that_nobody_states():
+    columns = {n: v for n, v in recorded().items() if n != "f_in_N"}
+    result = calibrated(ran(columns, preload_N=None), friction_coefficient=None)
+    is_right(result, part=0.03)
+
+
 def test_nothing_but_the_columns():
     """No rig, no conditions: friction stands for μθ, and the stiffness for that of a metre."""
     run = ran(recorded(), sheath_length_mm=None, total_bend_rad=None, preload_N=None, load="spring")

@@ -20,6 +20,7 @@ from tsas_cli.recordings.manifest import Run
 from tsas_cli.support.errors import InputError
 
 SEED = 2  # of the noise of runs that might be added
+OF_A_STROKE = 1000.0  # samples of a proposed run's fastest one, at most: more show nothing more
 
 
 @dataclass(frozen=True)
@@ -79,12 +80,15 @@ def joined_to_recorded(bench: Bench, free: Mapping[str, float] | None = None) ->
         k = plain.index(True)
         first = base.runs[k]
         noise = {name: sd for name, sd in first.noise.items() if sd > 0.0}
+        limits = recorded_limits(base.runs)
+        fastest_Hz = 0.5 * (limits.speed_mm_per_s or 1.0) / (limits.amplitude_mm or 1.0)
+        recorded_Hz = 1.0 / float(np.median(np.diff(first.time_s)))
         sensors = Sensors(
-            rate_Hz=1.0 / float(np.median(np.diff(first.time_s))),
+            rate_Hz=min(recorded_Hz, OF_A_STROKE * fastest_Hz),
             x_in_mm=first.conditioned["x_in_mm"].noise,
             **noise,
         )
-        proposed = candidates(recorded_limits(base.runs), bench.rigs[k])
+        proposed = candidates(limits, bench.rigs[k])
         further = simulated_candidates(proposed, sensors, bench.rigs[k], base.runs)
     return joined_runs(base.runs, further, base.initial, base.fixed, free)
 

@@ -1,11 +1,12 @@
 """Simulated recordings of planned runs: predictions of the nominal rig, with noise."""
 
+import math
 from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 
 import numpy as np
 
-from tsas_cli.diagnosis.motions import motion
+from tsas_cli.diagnosis.motions import STAIRS, motion
 from tsas_cli.diagnosis.rig_file import MOST_SAMPLES, PlannedRun, Sensors
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
@@ -51,7 +52,9 @@ def simulated_recordings(
 
 def _moved(run: PlannedRun, rate_Hz: float) -> tuple[np.ndarray, np.ndarray]:
     travel = 2.0 * run.amplitude_mm * run.periods * 2.0
-    if 10.0 * (travel / run.speed + 10.0 * run.periods * run.dwell_s) * rate_Hz > MOST_SAMPLES:
+    # The slowest motion is loops within loops, in half sines; a staircase has most rests.
+    most_s = math.pi * travel / run.speed + len(STAIRS) * run.periods * run.dwell_s
+    if most_s * rate_Hz > MOST_SAMPLES:
         raise InputError(
             f"run {run.id} would take more than {MOST_SAMPLES} samples",
             remedy="is its speed_mm_per_s or frequency_Hz right?",

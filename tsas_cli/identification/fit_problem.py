@@ -16,6 +16,10 @@ from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
 
 FURTHER_SCALE = 7.0  # plausible change without prior knowledge: logarithm, or effect's sizes
+WITHOUT_FORCES = (
+    "Without a force sensor all forces are relative to tendon_stiffness_N: it is fixed, and "
+    "preload and stiffness of the load are in proportion to it."
+)
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
@@ -70,8 +74,11 @@ def prepare_fit(
     used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]
     rigs = tuple(initial.rig(run.run) for run, _ in used)
     used_runs = tuple(run for run, _ in used)
-    unknowns = nominal_unknowns(initial, used_runs, plausible or {})
+    unknowns = nominal_unknowns(initial, fixed, used_runs, plausible or {})
     unknowns += [further_unknown(name, initial) for name in further]
+    notes = [s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)]
+    if used_runs and not any(map(_forces, used_runs)):
+        notes.append(WITHOUT_FORCES)
     return FitProblem(
         initial,
         fixed,
@@ -79,7 +86,7 @@ def prepare_fit(
         rigs,
         tuple(u for u in unknowns if shared or u.run is not None),
         tuple(run_errors(*each, rig, dynamics) for each, rig in zip(used, rigs, strict=True)),
-        tuple(s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)),
+        tuple(notes),
     )
 
 
@@ -94,11 +101,15 @@ def rig_at(rig: Rig, k: int, unknowns: Sequence[Unknown], values: Floats) -> Rig
 
 
 def nominal_unknowns(
-    initial: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
+    initial: Model,
+    fixed: Model,
+    runs: Sequence[Prepared],
+    plausible: Mapping[str, tuple[float, float]],
 ) -> list[Unknown]:
     """Return all candidates, in the order of the identifiability check.
 
-    With a load other than a spring the preload is equivalent to the zeros: it is fixed.
+    With a load other than a spring the preload is equivalent to the zeros, and without a force
+    sensor the tendon's stiffness is the scale of all forces: they are fixed.
     """
     out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
@@ -109,13 +120,22 @@ def nominal_unknowns(
             owners = springs
         if q.name == "load_stiffness_N_per_mm" and not springs:
             continue
+        if q.name == "tendon_stiffness_N" and not any(map(_forces, runs)):
+            continue
         for k in owners:
-            value = initial.value(q.name, None if k is None else runs[k].run.id)
+            owner = None if k is None else runs[k].run.id
+            value = initial.value(q.name, owner)
             low, high = map(q.scaled, plausible.get(q.name, (q.lower, q.upper)))
             scaled = q.scaled(q.default if value is None else value)
-            scale = LOG_SCALE if q.positive else ZERO_SCALE * travel
+            relative = FURTHER_SCALE if fixed.value(q.name, owner) is None else LOG_SCALE
+            scale = relative if q.positive else ZERO_SCALE * travel
             out.append(Unknown(q.name, k, min(max(scaled, low), high), low, high, scale))
     return out
+
+
+def _forces(run: Prepared) -> list[str]:
+    """Return the names of the force sensors of a run."""
+    return [name for name in run.measured if name.endswith("_N")]
 
 
 def unknown_of(name: str, value: float | None = None, scale: float = 1.0) -> Unknown:
