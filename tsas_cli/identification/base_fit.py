@@ -5,9 +5,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
-from tsas_cli.identification.joint_fit import solve_fit
+from tsas_cli.identification.joint_fit import residuals_with, solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
@@ -17,6 +18,8 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
 FAR = 5.0  # times the travel: a zero that a fit from 0 mm does not find
+FORCE_ZEROS = [f"{FORCE_SENSOR_OFFSET.name}.{p.name}" for p in FORCE_SENSOR_OFFSET.parameters]
+LAWS_OVER = {"tendon_law": "x_in_mm", "drive_law": "x_in_mm", "load_law": "x_out_mm"}
 SMALLEST_BEND = 1e-3  # rad
 SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
 
@@ -158,11 +161,39 @@ def base_fit(
 
 
 def with_own_values(model: Model, run: Prepared) -> Model:
-    """Return a model with the parameters of one run fitted to it; all others are fixed."""
+    """Return a model with the parameters of one run fitted to it; all others are fixed.
+
+    The zero of a force sensor is one of them where the model has an offset of it: it changes
+    whenever the sensor is mounted. Where a law of the model holds in a range of displacements, the
+    fit starts once more with the run in the middle of it: beyond it the law is constant, and shows
+    no way back.
+    """
     parts = segment(run)
     initial = _read_off(model, [run], [parts], [slopes_of(run, parts)])
     own = Model(tuple(e for e in initial.estimates if e.run is not None))
-    return solve_fit(prepare_fit(own.over(model), model.over(own), [run], shared=False)).model
+    offsets = [e.name for e in model.estimates if e.name in FORCE_ZEROS and e.value != 0.0]
+    aligned = _zeros_by_laws(model, run)
+    fits = [
+        solve_fit(
+            prepare_fit(start.over(model), model.over(own), [run], shared=False, further=offsets)
+        )
+        for start in ((own, aligned.over(own)) if aligned.estimates else (own,))
+    ]
+    return min(fits, key=lambda fit: float(np.mean(residuals_with(fit, {}) ** 2))).model
+
+
+def _zeros_by_laws(model: Model, run: Prepared) -> Model:
+    """Return the zeros of a run in the middle of the displacements that the laws hold for."""
+    zeros = {}
+    for law, channel in LAWS_OVER.items():
+        low, high = (model.value(f"{law}.{end}_mm") for end in ("low", "high"))
+        x = run.channel(channel)
+        if low is None or high is None or x is None:
+            continue
+        zeros[channel.replace("_mm", "_zero_mm")] = 0.5 * (
+            float(np.nanmin(x)) + float(np.nanmax(x)) - low - high
+        )
+    return Model(tuple(Estimate(n, v, "mm", "default", run.run.id) for n, v in zeros.items()))
 
 
 def slopes_of(run: Prepared, segments: list[Segment]) -> list[Slope]:

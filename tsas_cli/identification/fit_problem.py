@@ -68,13 +68,14 @@ def prepare_fit(
 
     `fixed` has the values of parameters that are not identifiable, `plausible` narrower bounds by
     name. Runs with too few samples are left out. Parameters in `further` are free besides the
-    nominal ones; without `shared` only those of single runs are.
+    nominal ones, of which without `shared` only those of single runs are.
     """
     samples = [fitted_samples(run, initial.rig(run.run)) for run in runs]
     used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]
     rigs = tuple(initial.rig(run.run) for run, _ in used)
     used_runs = tuple(run for run, _ in used)
     unknowns = nominal_unknowns(initial, fixed, used_runs, plausible or {})
+    unknowns = [u for u in unknowns if shared or u.run is not None]
     unknowns += [further_unknown(name, initial) for name in further]
     notes = [s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)]
     if used_runs and not any(map(_forces, used_runs)):
@@ -84,7 +85,7 @@ def prepare_fit(
         fixed,
         used_runs,
         rigs,
-        tuple(u for u in unknowns if shared or u.run is not None),
+        tuple(unknowns),
         tuple(run_errors(*each, rig, dynamics) for each, rig in zip(used, rigs, strict=True)),
         tuple(notes),
     )
