@@ -1,5 +1,6 @@
 """Errors in the recordings stop `calibrate` and `diagnose`, unless they are accepted."""
 
+import numpy as np
 import pytest
 
 import tsas_cli as tsas
@@ -47,3 +48,14 @@ def test_accepting_one_error_accepts_no_other(pounds):
 def test_a_code_that_no_check_has_is_refused(pounds):
     with pytest.raises(tsas.InputError, match=r"did you mean unit\?"):
         tsas.calibrate(pounds, despite="unti")
+
+
+def test_a_warning_is_an_error_where_most_runs_have_it(tmp_path):
+    """A channel that is held for 20 rows: in one of two runs it may be the motion's."""
+    good = recorded(RIG, 200.0)
+    held = good | {"x_out_mm": good["x_out_mm"][np.arange(good["x_out_mm"].size) // 20 * 20]}
+    for name, other, severity in (("one", good, "warning"), ("both", held, "error")):
+        folder = dataset_of(RIG, tmp_path / name, a=held, b=other)
+        found = [one for one in tsas.check(folder).findings if one.code == "slow-channel"]
+        assert {one.severity for one in found} == {severity}
+        assert len(found) == (2 if name == "both" else 1)

@@ -2,8 +2,8 @@
 
 The laws (`effects/laws`) act at an end of the tendon, and are fitted together with the nominal
 parameters and the proven effects, each channel's residual over its RMS without a law. A law is
-taken where it predicts held-out runs: it lowers the squares significantly, and makes no channel of
-any run worse. Nothing of it is a cause.
+taken where it predicts held-out runs: it lowers the squares significantly, by a good part of what
+exceeds the noise, and makes no channel of any run worse. Nothing of it is a cause.
 """
 
 from collections.abc import Mapping, Sequence
@@ -44,6 +44,7 @@ SETS: tuple[tuple[str, ...], ...] = (
     ("tendon_law", "load_law"),
     ("drive_law", "tendon_law", "load_law"),
 )
+LEAST_TAKEN = 1.0 / 3.0  # of what exceeds the noise, by a law: one that takes less describes little
 WORSE = 0.03  # relative rise of a channel's RMS on held-out runs that refuses a law
 
 
@@ -103,7 +104,8 @@ def describe(
             continue
         after = refitted(bench, fitted, folds, scatter=scatter)
         reduction = gain(before.squares, after.squares)
-        if reduction.convincing and not _worse(before, after, nominal):
+        taken = _taken(bench, before, after)
+        if reduction.convincing and taken > LEAST_TAKEN and not _worse(before, after, nominal):
             found.append((names, fitted, after, reduction.part))
             if all(after.rmse[n] < AT_NOISE * noise_floor(bench, n, 0.0) for n in after.rmse):
                 break
@@ -182,6 +184,17 @@ def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
         for name, at in run.samples.items()
     }
     return replace(run, weights=weights, turns=turns)
+
+
+def _taken(bench: Bench, before: HeldOutFit, after: HeldOutFit) -> float:
+    """Return the share of the squares beyond the noise that a law takes away.
+
+    On held-out data, each channel over its mean square without the law.
+    """
+    squares = {name: rms**2 for name, rms in before.rmse.items()}
+    excess = sum(1.0 - noise_floor(bench, n, 0.0) ** 2 / square for n, square in squares.items())
+    taken = sum(1.0 - after.rmse[n] ** 2 / square for n, square in squares.items())
+    return taken / excess if excess > 0.0 else 0.0
 
 
 def _worse(before: HeldOutFit, after: HeldOutFit, nominal: Mapping[str, float]) -> bool:

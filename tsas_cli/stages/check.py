@@ -24,8 +24,6 @@ _SHOWN_BY = {
     "f_out_N": "the tension at the load rests on its stiffness, and errors of the distal force "
     "sensor cannot be judged",
 }
-# Warnings that make results wrong where most runs have them; in one run they may be the motion's.
-_IN_MOST_RUNS = ("filtered", "repeated-values", "slow-channel", "hum")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -116,15 +114,7 @@ def accepted_errors(
     """
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
     found = [one for one in check_runs(dataset, step).findings if one.code in CODES]
-    runs: dict[tuple[str, str | None], set[str | None]] = {}
-    for one in found:
-        runs.setdefault((one.code, one.column), set()).add(one.run)
-    errors = [
-        one
-        for one in found
-        if one.severity == "error"
-        or (one.code in _IN_MOST_RUNS and 2 * len(runs[one.code, one.column]) > len(dataset.runs))
-    ]
+    errors = [one for one in found if one.severity == "error"]
     refused = [one for one in errors if one.code not in accepted]
     if refused:
         first, *others = refused

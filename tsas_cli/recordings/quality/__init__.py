@@ -81,6 +81,8 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
 DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (QualityCheck(of_dataset.copies),)
 CHECKS: tuple[QualityCheck[Any], ...] = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
 CODES = tuple(check.code for check in CHECKS)
+# Warnings that make results wrong where most runs have them; in one run they may be the motion's.
+IN_MOST_RUNS = ("filtered", "repeated-values", "slow-channel", "hum")
 
 
 @dataclass(frozen=True)
@@ -130,7 +132,22 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
-    return _report(results)
+    return _report(_weighed(results, len(dataset.runs)))
+
+
+def _weighed(results: Sequence[Finding | NotChecked], runs: int) -> list[Finding | NotChecked]:
+    """Return the results, warnings of `IN_MOST_RUNS` as errors where most of the runs have them."""
+    having: dict[tuple[str, str | None], set[str | None]] = {}
+    for one in results:
+        if isinstance(one, Finding) and one.code in IN_MOST_RUNS:
+            having.setdefault((one.code, one.column), set()).add(one.run)
+    most = {which for which, of in having.items() if 2 * len(of) > runs}
+    return [
+        replace(one, severity="error")
+        if isinstance(one, Finding) and (one.code, one.column) in most
+        else one
+        for one in results
+    ]
 
 
 def _report(results: Sequence[Finding | NotChecked]) -> Report:
