@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
-from tsas_cli.diagnosis.law import _taken, _worse, describe
+from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe
 from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.remainder import LATE, remainder
@@ -110,8 +110,8 @@ def test_a_law_may_take_back_a_small_part_of_what_the_causes_have_gained(after, 
     assert not _worse(errors[1], errors[0], {"f_in_N": 1.0})
 
 
-def test_the_share_that_a_law_takes_is_of_what_exceeds_the_noise(tmp_path):
-    """Of 3 times the noise 8 of 9 parts of the squares exceed it: half of them leave 5 of 9."""
+def test_the_share_that_exceeds_the_noise_and_the_share_that_a_law_takes(tmp_path):
+    """Of 3 times the noise 8 of 9 parts of the squares exceed it; 5 parts left are 4 taken."""
     bench = bench_for(tmp_path, Sensors(rate_Hz=50.0))
     noise = {name: noise_floor(bench, name, 0.0) for name in bench.channels}
 
@@ -119,6 +119,7 @@ def test_the_share_that_a_law_takes_is_of_what_exceeds_the_noise(tmp_path):
         rmse = {name: floor * np.sqrt(squares) for name, floor in noise.items()}
         return HeldOutFit(rmse, {}, np.zeros(0), {})
 
-    assert _taken(bench, held_out(9.0), held_out(5.0)) == pytest.approx(0.5)
-    assert _taken(bench, held_out(9.0), held_out(1.0)) == pytest.approx(1.0)
-    assert _taken(bench, held_out(0.9), held_out(0.5)) == 0.0
+    assert _excess(bench, held_out(9.0)) == pytest.approx(8.0 / 9.0)
+    assert _excess(bench, held_out(0.9)) == 0.0
+    assert _taken(held_out(9.0), held_out(5.0)) == pytest.approx(4.0 / 9.0)
+    assert _taken(held_out(5.0), held_out(9.0)) == pytest.approx(-4.0 / 5.0)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
-from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
+from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
 from tsas_cli.diagnosis.tolerances import scatter_is_no_effect
@@ -99,13 +99,14 @@ def describe(
         fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
         step()
         fewer = [f.mean_square * (1.0 - AS_WELL) for n, f, *_ in found if len(n) < len(names)]
-        least = min([without.mean_square * (1.0 - LEAST_REDUCTION), *fewer])
+        enough = LEAST_TAKEN * _excess(bench, before)
+        least = min([without.mean_square * (1.0 - enough), *fewer])
         if fitted.mean_square > least:  # what fits no better predicts no better
             continue
         after = refitted(bench, fitted, folds, scatter=scatter)
         reduction = gain(before.squares, after.squares)
-        taken = _taken(bench, before, after)
-        if reduction.convincing and taken > LEAST_TAKEN and not _worse(before, after, nominal):
+        some = reduction.convincing and _taken(before, after) > enough
+        if some and not _worse(before, after, nominal):
             found.append((names, fitted, after, reduction.part))
             if all(after.rmse[n] < AT_NOISE * noise_floor(bench, n, 0.0) for n in after.rmse):
                 break
@@ -186,15 +187,15 @@ def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
     return replace(run, weights=weights, turns=turns)
 
 
-def _taken(bench: Bench, before: HeldOutFit, after: HeldOutFit) -> float:
-    """Return the share of the squares beyond the noise that a law takes away.
+def _excess(bench: Bench, before: HeldOutFit) -> float:
+    """Return the share of the squares that exceeds the noise, the mean of all channels."""
+    shares = [1.0 - (noise_floor(bench, n, 0.0) / rms) ** 2 for n, rms in before.rmse.items()]
+    return max(float(np.mean(shares)), 0.0)
 
-    On held-out data, each channel over its mean square without the law.
-    """
-    squares = {name: rms**2 for name, rms in before.rmse.items()}
-    excess = sum(1.0 - noise_floor(bench, n, 0.0) ** 2 / square for n, square in squares.items())
-    taken = sum(1.0 - after.rmse[n] ** 2 / square for n, square in squares.items())
-    return taken / excess if excess > 0.0 else 0.0
+
+def _taken(before: HeldOutFit, after: HeldOutFit) -> float:
+    """Return the share of the squares that a law takes away, the mean of all channels."""
+    return float(np.mean([1.0 - (after.rmse[n] / rms) ** 2 for n, rms in before.rmse.items()]))
 
 
 def _worse(before: HeldOutFit, after: HeldOutFit, nominal: Mapping[str, float]) -> bool:
