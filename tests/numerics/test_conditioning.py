@@ -95,6 +95,36 @@ def test_a_rest_is_flat():
     assert steps[resting[1:] & resting[:-1]].max() < 1e-12
 
 
+def slowed(time_s, rest_s=0.5, brake_s=0.1, speed=10.0):
+    """Return strokes of 10 mm that begin and end with a constant acceleration, and rest between."""
+    phase = time_s % (4.0 * (1.0 + rest_s))
+    v = np.zeros(time_s.size)
+    for k, sign in enumerate((1.0, 1.0, -1.0, -1.0)):
+        since = phase - k * (1.0 + rest_s)
+        ramp = np.minimum(since, 1.0 - since) / brake_s
+        v += sign * speed * np.clip(ramp, 0.0, 1.0) * (since < 1.0)
+    return np.cumsum(v) * (time_s[1] - time_s[0]), v
+
+
+@pytest.mark.parametrize("sd", [1e-3, 5e-3])
+def test_a_rest_that_a_motion_ends_in_without_a_corner_is_flat(sd):
+    t = np.arange(0.0, 12.0, 0.004)
+    x, v = slowed(t)
+    smooth = condition(t, noisy(x, seed=5, sd=sd)).values
+    middle = np.convolve(v == 0.0, np.ones(76), "same") > 75.5  # 0.15 s from the motion on
+    assert middle.sum() > 300
+    assert np.abs(np.diff(smooth))[middle[1:] & middle[:-1]].max() < 1e-12
+    assert np.abs(smooth - x)[middle].max() < sd
+
+
+@pytest.mark.parametrize("creeping_mm_per_s", [0.02, 0.1])
+def test_a_creeping_motion_is_no_rest(creeping_mm_per_s):
+    t = np.arange(0.0, 20.0, 0.004)
+    x = creeping_mm_per_s * t
+    smooth = condition(t, noisy(x, seed=6, sd=1e-3)).values
+    assert np.abs(smooth - x).max() < 2e-3
+
+
 def test_without_noise_nothing_changes():
     motion = sine()
     assert np.abs(cleaned(motion, 0, sd=0.0).values - motion.x_in_mm).max() < 1e-6

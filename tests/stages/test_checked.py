@@ -7,9 +7,20 @@ import tsas_cli as tsas
 from tests.rigs import dataset_of, recorded
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
+from tsas_cli.support.steps import Steps
 from tsas_studies.challenge.rig.tendon import Rig
 
 RIG = Rig(cells=60)
+
+
+class Said(Steps):
+    """Keeps what a stage says."""
+
+    def __init__(self):
+        self.said = []
+
+    def say(self, sentence):
+        self.said.append(sentence)
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +70,15 @@ def test_a_warning_is_an_error_where_most_runs_have_it(tmp_path):
         found = [one for one in tsas.check(folder).findings if one.code == "slow-channel"]
         assert {one.severity for one in found} == {severity}
         assert len(found) == (2 if name == "both" else 1)
+
+
+def test_what_the_checks_warn_of_is_said_before_a_fit(tmp_path):
+    good = recorded(RIG, 200.0)
+    kept = np.delete(np.arange(good["time_s"].size), np.arange(900, 930))
+    lost = {n: v[: kept.size] if n == "time_s" else v[kept] for n, v in good.items()}
+    for runs, said in (({"a": good, "b": lost}, ["b"]), ({"a": good}, [])):
+        step = Said()
+        folder = dataset_of(RIG, tmp_path / "-".join(runs), **runs)
+        tsas.calibrate(folder, step=step)
+        warned = [s for s in step.said if "the checks warn of lost-samples" in s]
+        assert [s.partition("(")[2].partition(")")[0] for s in warned] == said

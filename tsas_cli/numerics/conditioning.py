@@ -29,6 +29,7 @@ METHOD = (
 )
 SHORTEST_BESIDE_CORNER = 4  # samples; to a line of fewer every acceleration is a corner
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
+STILL = 6.0  # standard deviations by which what rests moves in a window, at most
 REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
 REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
 
@@ -136,22 +137,45 @@ def flatten_rests(
     reach: int,
     noise: float,
 ) -> None:
-    """Set pieces at rest to their mean, in place, and clip the overshoot of their neighbours.
+    """Set what is at rest to its mean, in place, and clip the overshoot of its neighbours.
 
-    To a hysteretic model a drift of a thousandth of a millimetre at rest would be a reversal.
+    To a hysteretic model a drift of a thousandth of a millimetre at rest would be a reversal. A
+    rest is a whole piece, or lies inside one where the motion ends without a corner; there its
+    ends are not known, and the error stays that of the fit.
     """
     for k, (first, end) in enumerate(pairwise(cuts)):
+        rests, around = [(first, end)], (cuts[max(k - 1, 0)], cuts[min(k + 2, cuts.size - 1)])
         if not at_rest(time_s[first:end], values[first:end], noise):
-            continue
-        level = float(values[first:end].mean())
-        smooth[first:end] = level
-        sd[first:end] = noise / math.sqrt(end - first)
-        before = smooth[max(cuts[max(k - 1, 0)], first - reach) : first]
-        after = smooth[end : min(cuts[min(k + 2, cuts.size - 1)], end + reach)][::-1]
-        for neighbours in (before, after):  # both begin at their far ends
-            if neighbours.size:
-                limit = np.minimum if neighbours[0] < level else np.maximum
-                neighbours[:] = limit(neighbours, level)
+            parts = still_parts(smooth[first:end], sd[first:end], reach)
+            rests, around = [(first + a, first + b) for a, b in parts], (first, end)
+        for a, b in rests:
+            if not at_rest(time_s[a:b], values[a:b], noise):
+                continue
+            level = float(values[a:b].mean())
+            smooth[a:b] = level
+            if (a, b) == (first, end):
+                sd[a:b] = noise / math.sqrt(b - a)
+            before = smooth[max(around[0], a - reach) : a]
+            after = smooth[b : min(around[1], b + reach)][::-1]
+            for neighbours in (before, after):  # both begin at their far ends
+                if neighbours.size:
+                    limit = np.minimum if neighbours[0] < level else np.maximum
+                    neighbours[:] = limit(neighbours, level)
+
+
+def still_parts(smooth: Floats, sd: Floats, reach: int) -> list[tuple[int, int]]:
+    """Return the parts of a piece that moves in which the cleaned signal moves no more than errs.
+
+    Over a window, `reach` samples to either side; the windows at both ends are left out, since the
+    motion ends in them.
+    """
+    if smooth.size <= 2 * reach:
+        return []
+    moved = np.abs(smooth[2 * reach :] - smooth[: -2 * reach])
+    still = moved < STILL * sd[reach : smooth.size - reach]
+    edges = np.flatnonzero(np.diff(still, prepend=False, append=False)) + reach
+    runs = zip(edges[::2] + reach, edges[1::2] - reach, strict=True)
+    return [(int(a), int(b)) for a, b in runs if b - a > reach]
 
 
 def at_rest(time_s: Floats, values: Floats, noise: float) -> bool:

@@ -25,6 +25,8 @@ _SHOWN_BY = {
     "sensor cannot be judged",
 }
 
+FEW = 3  # runs that are named
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CheckResult(Result):
@@ -105,6 +107,8 @@ def accepted_errors(
 ) -> tuple[Finding, ...]:
     """Return the errors of the checks whose codes are in `despite`; `step` counts runs.
 
+    It says what they warn of.
+
     `further` codes are allowed there too.
 
     Raises
@@ -115,6 +119,13 @@ def accepted_errors(
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
     found = [one for one in check_runs(dataset, step).findings if one.code in CODES]
     errors = [one for one in found if one.severity == "error"]
+    warned: dict[str, list[str]] = {}
+    for one in found:
+        if one.severity == "warning":
+            warned.setdefault(one.code, []).append(one.run or MANIFEST_FILE)
+    for code, runs in warned.items():
+        where = ", ".join(runs) if len(runs) <= FEW else count_of(len(runs), "run")
+        step.say(f"the checks warn of {code} ({where}): see `tsas check`")
     refused = [one for one in errors if one.code not in accepted]
     if refused:
         first, *others = refused
