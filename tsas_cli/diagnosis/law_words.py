@@ -226,6 +226,10 @@ def _travels(value: Mapping[str, float]) -> Floats:
 
 
 def _heights(name: str, value: Mapping[str, float]) -> Floats:
-    """Return the heights of the curve over the place; that of a factor begins at 0."""
+    """Return the heights of the curve over the place; that of a factor begins at 0.
+
+    That of x_out is about its mean, which its zero takes.
+    """
     names = (f"curve_{k}{WHAT[name][1]}" for k in range(1, KNOTS + 1))
-    return np.array([value.get(name, 0.0) for name in names])
+    heights = np.array([value.get(name, 0.0) for name in names])
+    return heights - heights.mean() if name == "load_law" else heights

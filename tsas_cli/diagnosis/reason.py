@@ -13,6 +13,8 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.wording import listed
 
+LEAST_FALL = 0.03  # of a channel's RMS by a law, that is worth a word
+
 
 def reason_of(
     verdict: Verdict,
@@ -71,7 +73,7 @@ def reason_of(
             f"{name} from {number_text(law.before.rmse[name])} to "
             f"{number_text(law.after.rmse[name])} {BY_COLUMN[name].unit}"
             for name in law.after.rmse
-            if law.after.rmse[name] < law.before.rmse[name]
+            if law.after.rmse[name] < (1.0 - LEAST_FALL) * law.before.rmse[name]
         ]
         sentences.append(
             "A law of unnamed origin describes it: with it the RMS on held-out data falls in "
