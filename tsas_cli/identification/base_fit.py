@@ -188,11 +188,10 @@ def _zeros_by_laws(model: Model, run: Prepared) -> Model:
     for law, channel in LAWS_OVER.items():
         low, high = (model.value(f"{law}.{end}_mm") for end in ("low", "high"))
         x = run.channel(channel)
-        if low is None or high is None or x is None:
+        if low is None or high is None or x is None or not np.isfinite(x).any():
             continue
-        zeros[channel.replace("_mm", "_zero_mm")] = 0.5 * (
-            float(np.nanmin(x)) + float(np.nanmax(x)) - low - high
-        )
+        middle = 0.5 * (float(np.nanmin(x)) + float(np.nanmax(x)))
+        zeros[channel.replace("_mm", "_zero_mm")] = middle - 0.5 * (low + high)
     return Model(tuple(Estimate(n, v, "mm", "default", run.run.id) for n, v in zeros.items()))
 
 

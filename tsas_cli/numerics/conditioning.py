@@ -144,23 +144,30 @@ def flatten_rests(
     ends are not known, and the error stays that of the fit.
     """
     for k, (first, end) in enumerate(pairwise(cuts)):
-        rests, around = [(first, end)], (cuts[max(k - 1, 0)], cuts[min(k + 2, cuts.size - 1)])
-        if not at_rest(time_s[first:end], values[first:end], noise):
-            parts = still_parts(smooth[first:end], sd[first:end], reach)
-            rests, around = [(first + a, first + b) for a, b in parts], (first, end)
-        for a, b in rests:
-            if not at_rest(time_s[a:b], values[a:b], noise):
-                continue
-            level = float(values[a:b].mean())
-            smooth[a:b] = level
-            if (a, b) == (first, end):
-                sd[a:b] = noise / math.sqrt(b - a)
-            before = smooth[max(around[0], a - reach) : a]
-            after = smooth[b : min(around[1], b + reach)][::-1]
-            for neighbours in (before, after):  # both begin at their far ends
-                if neighbours.size:
-                    limit = np.minimum if neighbours[0] < level else np.maximum
-                    neighbours[:] = limit(neighbours, level)
+        if at_rest(time_s[first:end], values[first:end], noise):
+            beyond = cuts[max(k - 1, 0)], cuts[min(k + 2, cuts.size - 1)]
+            _flatten(values, smooth, (first, end), beyond, reach)
+            sd[first:end] = noise / math.sqrt(end - first)
+            continue
+        for a, b in still_parts(smooth[first:end], sd[first:end], reach):
+            rest = slice(first + a, first + b)
+            if at_rest(time_s[rest], values[rest], noise):
+                _flatten(values, smooth, (rest.start, rest.stop), (first, end), reach)
+
+
+def _flatten(
+    values: Floats, smooth: Floats, rest: tuple[int, int], around: tuple[int, int], reach: int
+) -> None:
+    """Set a rest to its mean, in place, and clip what overshoots it within `reach` samples."""
+    first, end = rest
+    level = float(values[first:end].mean())
+    smooth[first:end] = level
+    before = smooth[max(around[0], first - reach) : first]
+    after = smooth[end : min(around[1], end + reach)][::-1]
+    for neighbours in (before, after):  # both begin at their far ends
+        if neighbours.size:
+            limit = np.minimum if neighbours[0] < level else np.maximum
+            neighbours[:] = limit(neighbours, level)
 
 
 def still_parts(smooth: Floats, sd: Floats, reach: int) -> list[tuple[int, int]]:

@@ -24,7 +24,6 @@ _SHOWN_BY = {
     "f_out_N": "the tension at the load rests on its stiffness, and errors of the distal force "
     "sensor cannot be judged",
 }
-
 FEW = 3  # runs that are named
 
 
@@ -105,11 +104,9 @@ def check(
 def accepted_errors(
     dataset: Dataset, despite: str | Iterable[str], step: Steps, further: Sequence[str] = ()
 ) -> tuple[Finding, ...]:
-    """Return the errors of the checks whose codes are in `despite`; `step` counts runs.
+    """Return the errors of the checks whose codes are in `despite`.
 
-    It says what they warn of.
-
-    `further` codes are allowed there too.
+    `further` codes are allowed there too; `step` counts runs, and says what the checks warn of.
 
     Raises
     ------
