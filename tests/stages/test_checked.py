@@ -82,3 +82,12 @@ def test_what_the_checks_warn_of_is_said_before_a_fit(tmp_path):
         tsas.calibrate(folder, step=step)
         warned = [s for s in step.said if "the checks warn of lost-samples" in s]
         assert [s.partition("(")[2].partition(")")[0] for s in warned] == said
+
+
+def test_an_error_that_runs_share_is_said_once(tmp_path):
+    good = recorded(RIG, 200.0)
+    held = good | {"x_out_mm": good["x_out_mm"][np.arange(good["x_out_mm"].size) // 20 * 20]}
+    folder = dataset_of(RIG, tmp_path / "data", a=held, b=held | {"f_in_N": held["f_in_N"] + 0.01})
+    said = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
+    (shared,) = (sentence for sentence in said if sentence.endswith("(`slow-channel`)."))
+    assert shared.startswith("Despite an error in run a and run b: x_out_mm changes only every 20")

@@ -23,6 +23,7 @@ from pydantic import (
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.support import __version__
 from tsas_cli.support.files import write_json
+from tsas_cli.support.wording import listed
 
 TWO_SIDED = 1.96  # standard errors on each side of a 95 % interval
 _ROUNDING = 1e-9  # relative, of a value at the end of its interval
@@ -142,11 +143,11 @@ class OfDataset(StageFile):
 
     def accepted(self) -> list[str]:
         """Return a sentence for each error in the recordings that was accepted."""
-        return [
-            f"Despite an error in {f'run {error.run}' if error.run else 'the manifest'}: "
-            f"{error.sentence} (`{error.code}`)."
-            for error in self.despite
-        ]
+        found: dict[str, list[str]] = {}
+        for error in self.despite:
+            where = found.setdefault(f"{error.sentence} (`{error.code}`)", [])
+            where.append(f"run {error.run}" if error.run else "the manifest")
+        return [f"Despite an error in {listed(where)}: {what}." for what, where in found.items()]
 
     def source(self) -> DatasetSource:
         """Return the recordings as a model file names them."""
