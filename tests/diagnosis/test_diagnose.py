@@ -2,26 +2,30 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from tests.identification.recorded import manifest, prepared
 from tsas_cli.diagnosis import diagnose as d
-from tsas_cli.diagnosis.diagnose import verdict_of
+from tsas_cli.diagnosis.diagnose import nominal_fit, verdict_of
 from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.identification.model import data_sheet
+from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
 
 
-def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
-    """Told 1000 N, it lies between 0.85 of that and 1/0.85 of it."""
-    given = {}
-    monkeypatch.setattr(d, "base_fit", lambda *rest: given.update(plausible=rest[-1]))
-    for told in (1000.0, None):
-        sheet = SimpleNamespace(value=lambda name, told=told: told)
-        monkeypatch.setattr(d, "data_sheet", lambda manifest, sheet=sheet: sheet)
-        d.nominal_fit(None, None, [])
-        if told is None:
-            assert given["plausible"] == {}
+def test_a_tendon_stays_near_its_data_sheet_where_the_length_is_known():
+    """Between 0.85 of it and 1/0.85 of it; without the length the data show their ratio alone."""
+    for length in (VirtualRig().sheath_length_mm, None):
+        run = prepared(VirtualRig(), sheath_length_mm=length)
+        sheet = manifest(run)
+        problem = nominal_fit(sheet, data_sheet(sheet), [run])
+        (tendon,) = (u for u in problem.unknowns if u.name == "tendon_stiffness_N")
+        bounds = np.exp([tendon.lower, tendon.upper])
+        if length is None:
+            assert bounds == pytest.approx((10.0, 1e8))
         else:
-            low, high = given["plausible"]["tendon_stiffness_N"]
-            assert (low, high) == pytest.approx((850.0, 1000.0 / 0.85))
+            stiffness = VirtualRig().axial_stiffness
+            assert bounds == pytest.approx((0.85 * stiffness, stiffness / 0.85), rel=1e-3)
 
 
 def stated(*parts):

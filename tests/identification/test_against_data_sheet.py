@@ -31,7 +31,8 @@ def sheet(**changed):
         "friction_coefficient": 0.125,
         "load_stiffness_N_per_mm": 1.579,
     }
-    run = {"id": "a", "file": "a.parquet", "sha256": "0" * 64, "preload_N": 25.0} | changed
+    run = {"id": "a", "file": "a.parquet", "sha256": "0" * 64, "preload_N": 25.0}
+    run |= {"sheath_length_mm": 785.4, "total_bend_rad": 3.1416} | changed
     return Manifest.model_validate(
         {"format": 1, "name": "d", "kind": "measured", "rig": rig, "run": [run]}
     )
@@ -153,6 +154,16 @@ def test_what_a_data_sheet_is_off_by_is_silent(seed):
     off = dict(zip(STATED, [1.1 if seed >> k & 1 else 0.9 for k in range(4)], strict=True))
     assert contradictions(sheet(), fitted(**off)) == []
     assert contradictions(sheet(), Model(())) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "unknown"),
+    [("tendon_stiffness_N", "sheath_length_mm"), ("friction_coefficient", "total_bend_rad")],
+)
+def test_what_takes_the_place_of_an_unknown_length_or_bend_is_no_contradiction(name, unknown):
+    """The fit shows the stiffness over the length, and the product of friction and bend."""
+    assert len(contradictions(sheet(), fitted(**{name: 3.0}))) == 1
+    assert contradictions(sheet(**{unknown: None}), fitted(**{name: 3.0})) == []
 
 
 def test_what_the_recordings_do_not_tell_is_no_contradiction():

@@ -251,6 +251,22 @@ def test_positions_alone_and_a_tendon_that_is_known():
     assert any(s.startswith("Without a force sensor all forces") for s in result.cannot_tell)
 
 
+@pytest.mark.parametrize("far_mm", [0.0, 60.0])
+def test_positions_alone_and_a_preload_that_is_known(far_mm):
+    """The preload is the scale of all forces then; encoders may be far from their zeros."""
+    exact = recorded(sensors=replace(PERFECT, rate_Hz=200.0))
+    moved = {n: v + far_mm for n, v in exact.items() if n.endswith("_mm")}
+    names = ("friction_coefficient", "load_stiffness_N_per_mm", "tendon_modulus_GPa")
+    columns = moved | {"time_s": exact["time_s"]}
+    result = calibrated(ran(columns), **dict.fromkeys((*names, "tendon_diameter_mm")))
+    estimates = fitted(result)
+    for name, value in VALUES.items():
+        if name != "preload_N":
+            assert estimates[name].value == pytest.approx(value, rel=2e-3), name
+    assert "preload_N" not in estimates
+    assert estimates["x_in_zero_mm"].value == pytest.approx(far_mm, abs=0.01)
+
+
 def test_a_force_sensor_at_the_load_alone_shows_the_friction_that_nobody_states():
     columns = {n: v for n, v in recorded().items() if n != "f_in_N"}
     result = calibrated(ran(columns, preload_N=None), friction_coefficient=None)

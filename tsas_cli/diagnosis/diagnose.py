@@ -164,12 +164,15 @@ def _ended(search: Search, model: Model, cannot_tell: tuple[str, ...]) -> Diagno
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:
-    """Return the fit of the nominal parameters; the tendon is bounded by its data sheet."""
+    """Return the fit of the nominal parameters; the tendon is bounded by its data sheet.
+
+    Not where the length of a sheath is unknown: the data show the stiffness over it.
+    """
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     plausible = {}
     stiffness = data_sheet(manifest).value("tendon_stiffness_N")
-    if stiffness is not None:
+    if stiffness is not None and all(run.run.sheath_length_mm for run in runs):
         bounds = stiffness * (1.0 - PLAUSIBLE), stiffness / (1.0 - PLAUSIBLE)
         plausible["tendon_stiffness_N"] = bounds
     return base_fit(stated, runs, segments, measured, plausible)

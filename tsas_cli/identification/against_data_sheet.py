@@ -93,10 +93,16 @@ class _Deviation:
 def contradictions(manifest: Manifest, model: Model, named: Collection[str] = ()) -> list[str]:
     """Return sentences on where a fitted model contradicts the data sheet; none where nowhere.
 
-    What the model has not estimated is not compared. A wrong factor or data sheet may be the cause
-    in place of the effects that a diagnosis has `named`.
+    What the model has not estimated is not compared, nor what takes the place of a length or a bend
+    that is not stated. A wrong factor or data sheet may be the cause in place of the effects that a
+    diagnosis has `named`.
     """
-    found = {d.name: d for d in _deviations(data_sheet(manifest), model)}
+    compared = {
+        TENDON: all(run.sheath_length_mm is not None for run in manifest.run),
+        FRICTION: all(run.total_bend_rad is not None for run in manifest.run),
+    }
+    deviations = _deviations(data_sheet(manifest), model)
+    found = {d.name: d for d in deviations if compared.get(d.name, True)}
     alike = [name for name in named if name in IMITATED]
     rivals = f" Either would be a rival of {listed(alike)}." if alike else ""
     tried = [factor for scale in SCALES if (factor := _factor(scale, found))]

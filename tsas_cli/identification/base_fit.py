@@ -73,6 +73,23 @@ def _wrap(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> f
     return None
 
 
+def _zeros_at_start(run: Prepared) -> dict[str, float]:
+    """Return zeros at the first sample where the displacements are all far from 0 mm.
+
+    No force shows how far; the preload is then the tension at that sample.
+    """
+    found = {}
+    for name in ("x_in_mm", "x_out_mm"):
+        x = run.channel(name)
+        if x is None or not np.isfinite(x).any():
+            return {}
+        known = x[np.isfinite(x)]
+        if float(np.abs(known).min()) < float(np.ptp(known)):
+            return {}
+        found[name.replace("_mm", "_zero_mm")] = float(known[0])
+    return found
+
+
 def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> dict[str, float]:
     f_out, x_out = run.measured.get("f_out_N"), run.measured.get("x_out_mm")
     if f_out is not None and x_out is not None:
@@ -84,7 +101,7 @@ def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) ->
                 found |= _far_zeros(run, f_out, float(x_out[ok][0]), slope, intercept)
             return found
     if "contraction" not in km or "loosening" not in km:
-        return {}
+        return {} if f_out is not None or "f_in_N" in run.measured else _zeros_at_start(run)
     found = {"load_stiffness_N_per_mm": math.sqrt(km["contraction"] * km["loosening"])}
     f_in = run.measured.get("f_in_N")
     if f_in is not None:

@@ -90,7 +90,7 @@ def calibrate_runs(
         *contradictions(manifest, model),
         *thinned_notes(runs),
         *residual_notes,
-        *_unknown_conditions(runs),
+        *unknown_conditions(runs),
         *sentences,
     ]
     return Calibration(
@@ -125,12 +125,14 @@ def _predicted_slopes(run: Prepared, predicted: Compared, segments: list[Segment
     return slopes(run.conditioned["x_in_mm"].values, predicted.response.f_in_N, segments)
 
 
-def _unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
+def unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
+    """Return a sentence for each condition that the manifest does not state."""
     out = []
     if any(r.run.total_bend_rad is None for r in runs):
+        alike = "; the runs are taken to have the same bend" if len(runs) > 1 else ""
         out.append(
             "total_bend_rad is not in the manifest: with an assumed 1 rad friction_coefficient is "
-            "the product of friction and bend."
+            f"the product of friction and bend{alike}."
         )
     if any(r.run.sheath_length_mm is None for r in runs):
         out.append(

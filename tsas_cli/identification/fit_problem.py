@@ -16,10 +16,6 @@ from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
 
 FURTHER_SCALE = 7.0  # plausible change without prior knowledge: logarithm, or effect's sizes
-WITHOUT_FORCES = (
-    "Without a force sensor all forces are relative to tendon_stiffness_N: it is fixed, and "
-    "preload and stiffness of the load are in proportion to it."
-)
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
@@ -78,8 +74,12 @@ def prepare_fit(
     unknowns = [u for u in unknowns if shared or u.run is not None]
     unknowns += [further_unknown(name, initial) for name in further]
     notes = [s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)]
-    if used_runs and not any(map(_forces, used_runs)):
-        notes.append(WITHOUT_FORCES)
+    scale = scale_of_forces(fixed, used_runs)
+    if scale is not None:
+        notes.append(
+            f"Without a force sensor all forces are relative to {scale}: it is fixed, and the "
+            "others are in proportion to it."
+        )
     return FitProblem(
         initial,
         fixed,
@@ -109,9 +109,10 @@ def nominal_unknowns(
 ) -> list[Unknown]:
     """Return all candidates, in the order of the identifiability check.
 
-    With a load other than a spring the preload is equivalent to the zeros, and without a force
-    sensor the tendon's stiffness is the scale of all forces: they are fixed.
+    With a load other than a spring the preload is equivalent to the zeros: it is fixed, as is the
+    scale of all forces.
     """
+    of_forces = scale_of_forces(fixed, runs)
     out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
     springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
@@ -121,7 +122,7 @@ def nominal_unknowns(
             owners = springs
         if q.name == "load_stiffness_N_per_mm" and not springs:
             continue
-        if q.name == "tendon_stiffness_N" and not any(map(_forces, runs)):
+        if q.name == of_forces:
             continue
         for k in owners:
             owner = None if k is None else runs[k].run.id
@@ -134,9 +135,16 @@ def nominal_unknowns(
     return out
 
 
-def _forces(run: Prepared) -> list[str]:
-    """Return the names of the force sensors of a run."""
-    return [name for name in run.measured if name.endswith("_N")]
+def scale_of_forces(fixed: Model, runs: Sequence[Prepared]) -> str | None:
+    """Return the parameter that all forces are relative to, where no force was measured.
+
+    The stiffness of the tendon, unless only the preload is known.
+    """
+    if not runs or any(name.endswith("_N") for run in runs for name in run.measured):
+        return None
+    stated = all(fixed.value("preload_N", r.run.id) or r.run.preload_N for r in runs)
+    known = fixed.value("tendon_stiffness_N") is not None
+    return "preload_N" if stated and not known else "tendon_stiffness_N"
 
 
 def unknown_of(name: str, value: float | None = None, scale: float = 1.0) -> Unknown:

@@ -12,6 +12,7 @@ from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.against_data_sheet import contradictions
+from tsas_cli.identification.calibration import unknown_conditions
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.fitted_to import FittedTo, fitted_to
 from tsas_cli.identification.model import Model
@@ -218,6 +219,7 @@ def diagnose(
             evidence=found.evidence_of(result),
             cannot_tell=(
                 *counted.notes,
+                *unknown_conditions(prepared),
                 *contradictions(data.manifest, result.model, [c.effect for c in result.causes]),
                 *result.cannot_tell,
             ),
