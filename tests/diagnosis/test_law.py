@@ -119,7 +119,7 @@ def test_the_share_that_exceeds_the_noise_and_the_share_that_a_law_takes(tmp_pat
         rmse = {name: floor * np.sqrt(squares) for name, floor in noise.items()}
         return HeldOutFit(rmse, {}, np.zeros(0), {})
 
-    assert _excess(bench, held_out(9.0)) == pytest.approx(8.0 / 9.0)
-    assert _excess(bench, held_out(0.9)) == 0.0
+    assert _excess(noise, held_out(9.0)) == pytest.approx(8.0 / 9.0)
+    assert _excess(noise, held_out(0.9)) == 0.0
     assert _taken(held_out(9.0), held_out(5.0)) == pytest.approx(4.0 / 9.0)
     assert _taken(held_out(5.0), held_out(9.0)) == pytest.approx(-4.0 / 5.0)

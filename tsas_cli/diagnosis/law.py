@@ -16,6 +16,7 @@ from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
 from tsas_cli.diagnosis.tolerances import scatter_is_no_effect
+from tsas_cli.effects.laws import FOLLOWS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
@@ -28,8 +29,7 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-# The displacement that each law follows, and the channel that shows it.
-FOLLOWS = {"drive_law": "x_in_mm", "tendon_law": "x_in_mm", "load_law": "x_out_mm"}
+# The channel that shows each law.
 CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"}
 # Longest width over the longest stroke: an element as wide as half of it only adds a straight line.
 WIDEST = {"drive_law": 0.25, "tendon_law": 0.125, "load_law": 0.25}
@@ -85,6 +85,7 @@ def describe(
     bench, start = in_channel_units(bench, trial, ranges), _without_slopes(trial)
     possible = {n for n in CHANGES if n in ranges and CHANGES[n] in bench.channels}
     sets = [names for names in SETS if possible.issuperset(names)]
+    noise = {name: noise_floor(bench, name, 0.0) for name in bench.channels}
     step.ahead(len(sets))
     scatter = scatter_is_no_effect(trial, folds.run)
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
@@ -99,7 +100,7 @@ def describe(
         fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
         step()
         fewer = [f.mean_square * (1.0 - AS_WELL) for n, f, *_ in found if len(n) < len(names)]
-        enough = LEAST_TAKEN * _excess(bench, before)
+        enough = LEAST_TAKEN * _excess(noise, before)
         least = min([without.mean_square * (1.0 - enough), *fewer])
         if fitted.mean_square > least:  # what fits no better predicts no better
             continue
@@ -108,7 +109,7 @@ def describe(
         some = reduction.convincing and _taken(before, after) > enough
         if some and not _worse(before, after, nominal):
             found.append((names, fitted, after, reduction.part))
-            if all(after.rmse[n] < AT_NOISE * noise_floor(bench, n, 0.0) for n in after.rmse):
+            if all(after.rmse[n] < AT_NOISE * noise[n] for n in after.rmse):
                 break
     if not found:
         return None
@@ -187,9 +188,9 @@ def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
     return replace(run, weights=weights, turns=turns)
 
 
-def _excess(bench: Bench, before: HeldOutFit) -> float:
+def _excess(noise: Mapping[str, float], before: HeldOutFit) -> float:
     """Return the share of the squares that exceeds the noise, the mean of all channels."""
-    shares = [1.0 - (noise_floor(bench, n, 0.0) / rms) ** 2 for n, rms in before.rmse.items()]
+    shares = [1.0 - (noise[n] / rms) ** 2 for n, rms in before.rmse.items()]
     return max(float(np.mean(shares)), 0.0)
 
 

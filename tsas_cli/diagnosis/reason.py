@@ -13,8 +13,6 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.wording import listed
 
-LEAST_FALL = 0.03  # of a channel's RMS by a law, that is worth a word
-
 
 def reason_of(
     verdict: Verdict,
@@ -70,10 +68,11 @@ def reason_of(
         sentences += _dependence(after)
     if law is not None:
         falls = [
-            f"{name} from {number_text(law.before.rmse[name])} to "
-            f"{number_text(law.after.rmse[name])} {BY_COLUMN[name].unit}"
-            for name in law.after.rmse
-            if law.after.rmse[name] < (1.0 - LEAST_FALL) * law.before.rmse[name]
+            f"{name} from {number_text(law.before.rmse[name])} to {number_text(now)} "
+            f"{BY_COLUMN[name].unit}"
+            for name, now in law.after.rmse.items()
+            if now < law.before.rmse[name]
+            and number_text(now) != number_text(law.before.rmse[name])
         ]
         sentences.append(
             "A law of unnamed origin describes it: with it the RMS on held-out data falls in "

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET
+from tsas_cli.effects.laws import FOLLOWS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
 from tsas_cli.identification.joint_fit import residuals_with, solve_fit
@@ -19,7 +20,6 @@ from tsas_cli.support.arrays import Floats
 
 FAR = 5.0  # times the travel: a zero that a fit from 0 mm does not find
 FORCE_ZEROS = [f"{FORCE_SENSOR_OFFSET.name}.{p.name}" for p in FORCE_SENSOR_OFFSET.parameters]
-LAWS_OVER = {"tendon_law": "x_in_mm", "drive_law": "x_in_mm", "load_law": "x_out_mm"}
 SMALLEST_BEND = 1e-3  # rad
 SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
 
@@ -101,7 +101,7 @@ def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) ->
                 found |= _far_zeros(run, f_out, float(x_out[ok][0]), slope, intercept)
             return found
     if "contraction" not in km or "loosening" not in km:
-        return {} if f_out is not None or "f_in_N" in run.measured else _zeros_at_start(run)
+        return {} if run.has_force else _zeros_at_start(run)
     found = {"load_stiffness_N_per_mm": math.sqrt(km["contraction"] * km["loosening"])}
     f_in = run.measured.get("f_in_N")
     if f_in is not None:
@@ -196,13 +196,15 @@ def with_own_values(model: Model, run: Prepared) -> Model:
         )
         for start in ((own, aligned.over(own)) if aligned.estimates else (own,))
     ]
+    if len(fits) == 1:
+        return fits[0].model
     return min(fits, key=lambda fit: float(np.mean(residuals_with(fit, {}) ** 2))).model
 
 
 def _zeros_by_laws(model: Model, run: Prepared) -> Model:
     """Return the zeros of a run in the middle of the displacements that the laws hold for."""
     zeros = {}
-    for law, channel in LAWS_OVER.items():
+    for law, channel in FOLLOWS.items():
         low, high = (model.value(f"{law}.{end}_mm") for end in ("low", "high"))
         x = run.channel(channel)
         if low is None or high is None or x is None or not np.isfinite(x).any():

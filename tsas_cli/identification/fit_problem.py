@@ -70,11 +70,11 @@ def prepare_fit(
     used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]
     rigs = tuple(initial.rig(run.run) for run, _ in used)
     used_runs = tuple(run for run, _ in used)
+    scale = scale_of_forces(fixed, used_runs)
     unknowns = nominal_unknowns(initial, fixed, used_runs, plausible or {})
-    unknowns = [u for u in unknowns if shared or u.run is not None]
+    unknowns = [u for u in unknowns if u.name != scale and (shared or u.run is not None)]
     unknowns += [further_unknown(name, initial) for name in further]
     notes = [s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)]
-    scale = scale_of_forces(fixed, used_runs)
     if scale is not None:
         notes.append(
             f"Without a force sensor all forces are relative to {scale}: it is fixed, and the "
@@ -109,10 +109,8 @@ def nominal_unknowns(
 ) -> list[Unknown]:
     """Return all candidates, in the order of the identifiability check.
 
-    With a load other than a spring the preload is equivalent to the zeros: it is fixed, as is the
-    scale of all forces.
+    With a load other than a spring the preload is equivalent to the zeros: it is fixed.
     """
-    of_forces = scale_of_forces(fixed, runs)
     out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
     springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
@@ -121,8 +119,6 @@ def nominal_unknowns(
         if q.name == "preload_N":
             owners = springs
         if q.name == "load_stiffness_N_per_mm" and not springs:
-            continue
-        if q.name == of_forces:
             continue
         for k in owners:
             owner = None if k is None else runs[k].run.id
@@ -140,7 +136,7 @@ def scale_of_forces(fixed: Model, runs: Sequence[Prepared]) -> str | None:
 
     The stiffness of the tendon, unless only the preload is known.
     """
-    if not runs or any(name.endswith("_N") for run in runs for name in run.measured):
+    if not runs or any(run.has_force for run in runs):
         return None
     stated = all(fixed.value("preload_N", r.run.id) or r.run.preload_N for r in runs)
     known = fixed.value("tendon_stiffness_N") is not None

@@ -83,6 +83,11 @@ class Prepared:
         hidden = HIDDEN * noise / float(np.nanmax(np.abs(f_in)))
         return min(max(hidden, FINEST_TOLERANCE), TOLERANCE)
 
+    @property
+    def has_force(self) -> bool:
+        """Whether a force was measured, whether it drives an end or not."""
+        return any(name.endswith("_N") for name in (*self.measured, *self.conditioned))
+
     def channel(self, name: str) -> Floats | None:
         """Return a column, conditioned if it drives the model, else as measured, or None."""
         conditioned = self.conditioned.get(name)

@@ -116,10 +116,10 @@ def accepted_errors(
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
     found = [one for one in check_runs(dataset, step).findings if one.code in CODES]
     errors = [one for one in found if one.severity == "error"]
-    warned: dict[str, list[str]] = {}
+    warned: dict[str, dict[str, None]] = {}
     for one in found:
         if one.severity == "warning":
-            warned.setdefault(one.code, []).append(one.run or MANIFEST_FILE)
+            warned.setdefault(one.code, {})[one.run or MANIFEST_FILE] = None
     for code, runs in warned.items():
         where = ", ".join(runs) if len(runs) <= FEW else count_of(len(runs), "run")
         step.say(f"the checks warn of {code} ({where}): see `tsas check`")

@@ -1,1 +1,4 @@
 """Laws of unnamed origin: what describes a residual that no proven cause explains."""
+
+# The displacement that each law follows.
+FOLLOWS = {"drive_law": "x_in_mm", "tendon_law": "x_in_mm", "load_law": "x_out_mm"}
