@@ -9,15 +9,21 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import base_fit as s
 from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.prepared import Prepared
 
 UP, DOWN = Segment(0, 3, "contraction"), Segment(3, 6, "loosening")
+
+
+class FewFields(SimpleNamespace):
+    has_force = Prepared.has_force
 
 
 def run_of(x_in=None, *, load="spring", preload_N=None, drive="x_in_mm", x_out=None, **measured):
     values = {name: np.asarray(v, dtype=float) for name, v in measured.items()}
     driven = {} if x_in is None else {"x_in_mm": np.asarray(x_in, dtype=float)}
     driven |= {} if x_out is None else {"x_out_mm": np.asarray(x_out, dtype=float)}
-    return SimpleNamespace(
+    driven |= {drive: values.pop(drive)} if drive in values else {}
+    return FewFields(
         run=SimpleNamespace(load=load, preload_N=preload_N),
         measured=values,
         channel=lambda name: values.get(name, driven.get(name)),
@@ -81,6 +87,22 @@ def test_the_load_spring_is_the_line_of_f_out_over_x_out(x_out, f_out, found):
     names = ("load_stiffness_N_per_mm", "preload_N")
     expected = {} if found is None else dict(zip(names, found, strict=True))
     assert s._spring(run, [], {}) == pytest.approx(expected)
+
+
+AFAR = [40.0, 41.0, 42.0]
+
+
+@pytest.mark.parametrize(
+    ("run", "found"),
+    [
+        (run_of(AFAR, x_out=AFAR), {"x_in_zero_mm": 40.0, "x_out_zero_mm": 40.0}),
+        (run_of(AFAR, x_out=[0.0, 1.0, 2.0]), {}),  # near: a fit from 0 mm finds both
+        (run_of(AFAR, x_out=AFAR, f_in_N=AFAR), {}),
+        (run_of(f_in_N=AFAR, x_out=AFAR, drive="f_in_N"), {}),  # driven, and measured all the same
+    ],
+)
+def test_zeros_are_those_of_the_first_sample_only_where_no_force_is_known(run, found):
+    assert s._spring(run, [], {}) == found
 
 
 KM = {"contraction": 4.0, "loosening": 1.0}
