@@ -98,7 +98,7 @@ AFAR = [40.0, 41.0, 42.0]
         (run_of(AFAR, x_out=AFAR), {"x_in_zero_mm": 40.0, "x_out_zero_mm": 40.0}),
         (run_of(AFAR, x_out=[0.0, 1.0, 2.0]), {}),  # near: a fit from 0 mm finds both
         (run_of(AFAR, x_out=AFAR, f_in_N=AFAR), {}),
-        (run_of(f_in_N=AFAR, x_out=AFAR, drive="f_in_N"), {}),  # driven, and measured all the same
+        (run_of(f_in_N=AFAR, x_in_mm=AFAR, x_out=AFAR, drive="f_in_N"), {}),  # a force all the same
     ],
 )
 def test_zeros_are_those_of_the_first_sample_only_where_no_force_is_known(run, found):
