@@ -296,7 +296,7 @@ def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(mon
         ("run-delay", (X,), 0.02, (), "x_out_mm comes 20 ms later than the other channels"),
         ("clock", (X,), -0.003, (), "the clock of x_out_mm runs 0.3 % faster than that of the"),
         ("run-length", (), np.log(1.25), (), "its tendon is 1.25 times as stiff as in the other"),
-        ("run-length", (), np.log(1.25), (), "sheath_length_mm were 0.8 times what the manifest"),
+        ("run-length", (), np.log(1.25), (), "sheath_length_mm were 0.8 times what is stated"),
         ("run-friction", (), np.log(0.5), (), "its friction is 0.5 times that of the other runs"),
     ],
 )

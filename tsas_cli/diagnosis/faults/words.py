@@ -102,7 +102,7 @@ def _clock(c: Candidate) -> str:
 def _friction(c: Candidate) -> str:
     said = (
         f"its friction is {math.exp(c.amount):.3g} times that of the other runs, as if its "
-        "total_bend_rad were that many times what the manifest says"
+        "total_bend_rad were that many times what is stated or assumed"
     )
     if not c.alone:
         return said
@@ -115,7 +115,7 @@ def _friction(c: Candidate) -> str:
 def _length(c: Candidate) -> str:
     return (
         f"its tendon is {math.exp(c.amount):.3g} times as stiff as in the other runs, as if its "
-        f"sheath_length_mm were {math.exp(-c.amount):.3g} times what the manifest says"
+        f"sheath_length_mm were {math.exp(-c.amount):.3g} times what is stated or assumed"
     )
 
 
