@@ -5,14 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis.friction_scatter import is_in_line, is_scatter, within_scatter
 from tsas_cli.diagnosis.held_out import folds_of, held_out_squares
 from tsas_cli.diagnosis.tolerances import (
-    is_in_line,
-    is_scatter,
     of_others,
     tolerances,
     with_tolerances,
-    within_scatter,
     within_tolerances,
     without_tolerances,
 )

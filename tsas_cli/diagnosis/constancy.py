@@ -14,6 +14,7 @@ from functools import cache
 import numpy as np
 
 from tsas_cli.diagnosis.evidence import Reduction, gain
+from tsas_cli.diagnosis.friction_scatter import is_scatter, with_friction_of_runs
 from tsas_cli.diagnosis.held_out import (
     Folds,
     gauss_newton_step,
@@ -21,11 +22,7 @@ from tsas_cli.diagnosis.held_out import (
     in_stretches,
 )
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
-from tsas_cli.diagnosis.tolerances import (
-    is_scatter,
-    with_friction_of_runs,
-    without_tolerances,
-)
+from tsas_cli.diagnosis.tolerances import without_tolerances
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.support.arrays import Floats, Indices

@@ -13,9 +13,9 @@ import numpy as np
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.evidence import gain
+from tsas_cli.diagnosis.friction_scatter import scatter_is_no_effect
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
-from tsas_cli.diagnosis.tolerances import scatter_is_no_effect
 from tsas_cli.effects.laws import FOLLOWS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit

@@ -8,6 +8,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.constancy import absorbed_by, beside_tolerances, worst_split
 from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain, gain_percent
+from tsas_cli.diagnosis.friction_scatter import scatter_is_no_effect, within_scatter
 from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
 from tsas_cli.diagnosis.intervals import Tolerated, estimates_with_tolerances
@@ -23,14 +24,7 @@ from tsas_cli.diagnosis.proof import (
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
-from tsas_cli.diagnosis.tolerances import (
-    LOAD_CELL,
-    largest_forces,
-    scatter_is_no_effect,
-    tolerances,
-    within_scatter,
-    within_tolerances,
-)
+from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER
 from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
-from tsas_cli.diagnosis.tolerances import FRICTION, PLAUSIBLE, SCATTER
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at

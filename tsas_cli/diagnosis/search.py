@@ -25,16 +25,12 @@ from tsas_cli.diagnosis.evidence import (
     Reduction,
     gain,
 )
+from tsas_cli.diagnosis.friction_scatter import is_in_line, with_friction_of_runs
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
 from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerances import (
-    is_in_line,
-    tolerances,
-    with_friction_of_runs,
-    with_tolerances,
-)
+from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES

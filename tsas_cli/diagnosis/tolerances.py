@@ -1,7 +1,7 @@
 """What every rig has by a small amount, and is no cause.
 
-Friction that differs from run to run, load cells whose scale is off or bent or that feel the other
-force, a sheath that is bent unevenly.
+Load cells whose scale is off or bent or that feel the other force, a sheath that is bent unevenly;
+beside them the friction of each run (`friction_scatter`).
 """
 
 from collections.abc import Sequence
@@ -9,20 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER, friction_of_runs
 from tsas_cli.identification.extension import FAR, UNEVEN, Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.screening import projector
+from tsas_cli.identification.screening import orthogonal_to, projector
 from tsas_cli.numerics.covariance import inverse_gram
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats, Indices
 
-FRICTION = "friction_coefficient"
-PLAUSIBLE = 2.0  # standard deviations of it
-SCATTER = 0.02  # standard deviation of the friction from run to run, relative
-OF_A_LINE = 2  # frictions, that a line goes through
-COINCIDENCE = 1e-3  # probability below which frictions in line are no coincidence
 BEND = "bend_slope", "bend_bow"  # the modes of an uneven bend
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
@@ -34,16 +30,6 @@ LOAD_CELLS = {
     "force_sensor_curvature.f_in_per_N": "f_in_N",
     "force_sensor_curvature.f_out_per_N": "f_out_N",
 }
-
-
-def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
-    """Return the residuals' change by one standard deviation of each run's friction, (n, runs)."""
-    column = next((j for j, u in enumerate(trial.unknowns) if u.name == FRICTION), None)
-    runs = np.arange(int(run.max()) + 1)
-    if column is None or runs.size < 2:
-        return np.zeros((run.size, 0))
-    slope = SCATTER * trial.solution.jacobian[:, column]
-    return np.asarray(slope[:, None] * (run[:, None] == runs))
 
 
 def tolerances(bench: Bench, trial: HypothesisFit) -> Floats:
@@ -97,7 +83,7 @@ def without_tolerances(
     columns, amounts = _explained_by(trial, tolerated, run)
     if not amounts.size:
         return trial.solution.residual
-    return np.asarray(trial.solution.residual - _beside(projector(trial), columns) @ amounts)
+    return np.asarray(trial.solution.residual - orthogonal_to(projector(trial), columns) @ amounts)
 
 
 def rigs_with_tolerances(
@@ -141,7 +127,7 @@ def _explained_by(
     most = np.repeat((np.inf, PLAUSIBLE), (own.shape[1], tolerated.shape[1]))
     if not most.size:
         return columns, most
-    beside = _beside(projector(trial), columns)
+    beside = orthogonal_to(projector(trial), columns)
     root = np.linalg.cholesky(beside.T @ beside + np.eye(most.size))
     amounts = lsq_linear(root.T, np.linalg.solve(root, beside.T @ residual), (-most, most)).x
     return columns, np.asarray(amounts)
@@ -153,27 +139,15 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduct
     `reduction` is that of the squares by the effect: where the other parameters nearly do what it
     does, its change is small beside them, and is not what it takes away.
     """
-    own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
-    J, values = trial.solution.jacobian, trial.solution.values
-    held = replace(trial.solution, at_bound=trial.solution.at_bound | own)
+    held = replace(trial.solution, at_bound=trial.solution.at_bound | trial.of_effect(effect))
     others = projector(replace(trial, solution=held))
-    change = _beside(others, J[:, own] @ (values - _neutral(trial))[own])
-    columns = _beside(others, columns)
+    change = orthogonal_to(others, trial.change_by(effect))
+    columns = orthogonal_to(others, columns)
     amounts = np.linalg.solve(columns.T @ columns + np.eye(columns.shape[1]), columns.T @ change)
     left = change - columns @ amounts
     plausible = bool(np.all(np.abs(amounts) <= PLAUSIBLE))
     squares = float(change @ change)
     return plausible and squares - float(left @ left) > 0.5 * max(squares, reduction)
-
-
-def _neutral(trial: HypothesisFit) -> Floats:
-    """Return the scaled values of the unknowns that change nothing, shape (p,)."""
-    return np.array([QUANTITIES[u.name].scaled(QUANTITIES[u.name].default) for u in trial.unknowns])
-
-
-def _beside(basis: Floats, columns: Floats) -> Floats:
-    """Return columns, shape (n,) or (n, m), without what an orthonormal basis spans."""
-    return np.asarray(columns - basis @ (basis.T @ columns))
 
 
 def with_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
@@ -183,82 +157,6 @@ def with_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
     """
     names = [(f"tolerance {k}", None, 1.0) for k in range(tolerated.shape[1])]
     return trial.with_columns(names, tolerated, PLAUSIBLE)
-
-
-def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
-    """Return a fit with a plausible friction of its own for each run."""
-    columns = friction_of_runs(trial, run)
-    names = [(f"{FRICTION} {k}", k, 1.0) for k in range(columns.shape[1])]
-    return trial.with_columns(names, columns, PLAUSIBLE)
-
-
-def is_in_line(trial: HypothesisFit, run: Indices, session_s: Floats) -> bool:
-    """Return whether the frictions of the runs change with the session, and are no scatter.
-
-    `session_s` is the start of each run in the session [s], shape (runs,). They are where their
-    scatter about a line is too small for a coincidence (F test).
-    """
-    columns = friction_of_runs(trial, run)
-    if columns.shape[1] <= OF_A_LINE or np.ptp(session_s) == 0.0:
-        return False
-    frictions = _left_of_frictions(trial, columns)
-    line = np.column_stack((np.ones(session_s.size), session_s / np.ptp(session_s)))
-    fitted = line @ np.linalg.lstsq(line, frictions, rcond=None)[0]
-    return _by_chance(fitted, frictions - fitted) < COINCIDENCE
-
-
-def _left_of_frictions(trial: HypothesisFit, columns: Floats) -> Floats:
-    """Return the friction of each run that the residual of a fit has left, in deviations."""
-    beside = _beside(projector(trial), columns)
-    return np.asarray(np.linalg.lstsq(beside, trial.solution.residual, rcond=1e-6)[0])
-
-
-def _by_chance(line: Floats, scatter: Floats) -> float:
-    """Return the probability of frictions on a line, with a scatter about it (F test)."""
-    from scipy.special import fdtrc
-
-    free, squares = line.size - OF_A_LINE, float(scatter @ scatter)
-    size = float(np.sum((line - line.mean()) ** 2))
-    return float(fdtrc(1, free, size * free / squares)) if squares > 0.0 else 0.0
-
-
-def within_scatter(trial: HypothesisFit, effect: str, run: Indices) -> bool:
-    """Return whether an effect is no more than a plausible friction of its own for each run.
-
-    It is more where the scatter of the frictions about it is too small for a coincidence (F test).
-    """
-    columns = friction_of_runs(trial, run)
-    own = np.array([u.name.partition(".")[0] == effect for u in trial.unknowns])
-    J = trial.solution.jacobian
-    if not any(is_scatter(trial, column, run) for column in J[:, own].T):
-        return False
-    change = J[:, own] @ (trial.solution.values - _neutral(trial))[own]
-    common = columns.sum(axis=1)  # what the friction coefficient does
-    change = change - common * float(common @ change) / float(common @ common)
-    frictions = np.linalg.lstsq(columns, change, rcond=None)[0]
-    left = change - columns @ frictions
-    if float(left @ left) > 0.5 * float(change @ change):
-        return False
-    size = float(np.sum((frictions - frictions.mean()) ** 2))
-    few = frictions.size <= OF_A_LINE
-    by_chance = 1.0 if few else _by_chance(frictions, _left_of_frictions(trial, columns))
-    return size <= PLAUSIBLE**2 and by_chance > COINCIDENCE
-
-
-def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
-    """Return whether a column of the Jacobian is nearly a friction of each run's own."""
-    columns = friction_of_runs(trial, run)
-    if not columns.shape[1]:
-        return False
-    left = _beside(np.linalg.qr(columns)[0], column)
-    return float(left @ left) < 0.1 * float(column @ column)
-
-
-def scatter_is_no_effect(trial: HypothesisFit, run: Indices) -> bool:
-    """Return whether no effect of a fit does what a friction of its own for each run does."""
-    columns = zip(trial.solution.jacobian.T, trial.unknowns, strict=True)
-    of_effects = (column for column, u in columns if u.name.partition(".")[0] in trial.effects)
-    return not any(is_scatter(trial, column, run) for column in of_effects)
 
 
 def moved_by_tolerances(

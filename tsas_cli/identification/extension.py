@@ -17,7 +17,7 @@ from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Mask
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
 MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
@@ -48,6 +48,18 @@ class HypothesisFit:
         edges = np.cumsum(self.sizes)[:-1]
         residuals = np.split(self.solution.residual, edges)
         return list(zip(residuals, np.split(self.solution.jacobian, edges), strict=True))
+
+    def of_effect(self, effect: str) -> Mask:
+        """Return which unknowns are parameters of an effect, shape (p,)."""
+        return np.array([u.name.partition(".")[0] == effect for u in self.unknowns])
+
+    def change_by(self, effect: str) -> Floats:
+        """Return the residuals' change by an effect, from its neutral value on, shape (n,)."""
+        own = self.of_effect(effect)
+        quantities = [QUANTITIES[u.name] for u in self.unknowns]
+        neutral = np.array([q.scaled(q.default) for q in quantities])
+        change: Floats = self.solution.jacobian[:, own] @ (self.solution.values - neutral)[own]
+        return change
 
     def moved_by(self, changes: Floats) -> Floats:
         """Return the shifts of the estimates, (p, m), for changes of the residuals, (n, m)."""

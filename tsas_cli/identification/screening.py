@@ -91,6 +91,11 @@ def projector(trial: HypothesisFit) -> Floats:
     return np.asarray(basis[:, own])
 
 
+def orthogonal_to(basis: Floats, columns: Floats) -> Floats:
+    """Return columns, shape (n,) or (n, m), without what an orthonormal basis spans."""
+    return np.asarray(columns - basis @ (basis.T @ columns))
+
+
 def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) -> Screened:
     """Return an effect screened at a fitted trial, with the best of its shapes.
 
@@ -113,7 +118,7 @@ def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screen
         if not np.isfinite(signatures).all():
             continue
         sizes = [v - p.neutral for v, p in zip(values, parameters, strict=True) if not p.shape]
-        own = signatures - basis @ (basis.T @ signatures)
+        own = orthogonal_to(basis, signatures)
         amounts = _amounts(own, residual, amplitudes, sizes)
         remaining = residual + own @ amounts
         part = 1.0 - float(remaining @ remaining) / float(residual @ residual)

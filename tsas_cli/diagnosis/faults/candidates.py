@@ -19,9 +19,10 @@ from tsas_cli.diagnosis.faults.shapes import (
     passed,
     shapes_of,
 )
+from tsas_cli.diagnosis.friction_scatter import SCATTER, friction_of_runs
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.tolerances import SCATTER, friction_of_runs
 from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.screening import orthogonal_to
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
 STIFFNESS, OWN_FRICTION = "tendon_stiffness_N", "run-friction"
@@ -93,7 +94,7 @@ def beside(trial: HypothesisFit, tolerated: Floats, run: Indices, *, alike: bool
     priors = np.hstack((np.zeros((count, np.count_nonzero(size))), np.eye(count)))
     basis = np.linalg.qr(np.vstack((columns, priors)))[0]
     residual = np.append(trial.solution.residual, np.zeros(count))
-    residual = residual - basis @ (basis.T @ residual)
+    residual = orthogonal_to(basis, residual)
     return Beside(basis, residual, float(residual @ residual))
 
 
