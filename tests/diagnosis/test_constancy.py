@@ -7,8 +7,8 @@ import pytest
 
 from tsas_cli.diagnosis.constancy import absorbed_by, worst_split
 from tsas_cli.diagnosis.held_out import folds_of
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 RUNS, ROWS = 4, 600
 EFFECT, NAME = "drive_friction", "drive_friction.friction_N"

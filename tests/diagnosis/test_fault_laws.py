@@ -11,8 +11,8 @@ from tsas_cli.diagnosis.faults import shapes
 from tsas_cli.diagnosis.faults.candidates import Candidate, beside, candidates
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
 from tsas_cli.diagnosis.faults.words import record_of
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 F, X, DRIVE = "f_out_N", "x_out_mm", "x_in_mm"
 N = 240

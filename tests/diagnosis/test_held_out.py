@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import folds_of, held_out_squares, held_out_values, predicted_folds
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 RUNS, ROWS = 4, 60
 

@@ -10,8 +10,8 @@ from scipy.optimize import least_squares
 from tsas_cli.diagnosis import refitted as module
 from tsas_cli.diagnosis.held_out import folds_of, held_out_values
 from tsas_cli.diagnosis.refitted import refitted, refitted_values
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Unknown, solve
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 RUNS, ROWS, NOISE = 4, 120, 0.05
 T = np.linspace(0.0, 3.0, ROWS)

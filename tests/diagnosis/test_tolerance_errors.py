@@ -7,8 +7,8 @@ import pytest
 
 from tsas_cli.diagnosis import tolerances
 from tsas_cli.diagnosis.tolerances import moved_by_tolerances
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 RUNS, ROWS = 4, 500
 BLOCKS = [np.arange(ROWS) // 25 for _ in range(RUNS)]

@@ -14,8 +14,8 @@ from tsas_cli.diagnosis.tolerances import (
     within_tolerances,
     without_tolerances,
 )
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 RUNS, ROWS = 4, 500
 RUN = np.repeat(np.arange(RUNS), ROWS)

@@ -10,8 +10,8 @@ from tsas_cli.diagnosis import visibility as v
 from tsas_cli.diagnosis.amplitudes import Amplitude
 from tsas_cli.diagnosis.visibility import Imitation, Part
 from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 BLOCKS, EACH = 20, 10
 SIZE = BLOCKS * EACH

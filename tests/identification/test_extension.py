@@ -11,6 +11,7 @@ from tsas_cli.identification import extension as e
 from tsas_cli.identification.extension import Bench, _parameters
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.fit_problem import FitProblem, unknown_of
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
@@ -59,7 +60,7 @@ def trial_of(unknowns=(), values=(), residual=None, *, J=None, at_bound=None, si
     values = np.array(values, dtype=float)
     bound = np.zeros(values.size, bool) if at_bound is None else np.array(at_bound)
     solution = Solution(values, bound, residual, J, True, "", 1)
-    return e.HypothesisFit(("free_tendon",), tuple(unknowns), solution, tuple(sizes), mesh)
+    return HypothesisFit(("free_tendon",), tuple(unknowns), solution, tuple(sizes), mesh)
 
 
 def test_residuals_and_slopes_are_told_run_by_run():

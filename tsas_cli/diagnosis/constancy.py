@@ -23,7 +23,7 @@ from tsas_cli.diagnosis.held_out import (
 )
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
 from tsas_cli.diagnosis.tolerances import without_tolerances
-from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.support.arrays import Floats, Indices
 

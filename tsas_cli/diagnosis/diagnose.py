@@ -21,8 +21,9 @@ from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
-from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
+from tsas_cli.identification.extension import Bench, bench_of
 from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import FittedModel, solve_fit
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment

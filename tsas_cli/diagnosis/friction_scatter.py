@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.screening import orthogonal_to, projector
 from tsas_cli.support.arrays import Floats, Indices
 

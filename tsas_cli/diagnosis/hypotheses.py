@@ -8,7 +8,8 @@ from tsas_cli.diagnosis.evidence import (
     gain,
 )
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.identification.extension import Bench, HypothesisFit, reweighted_bench
+from tsas_cli.identification.extension import Bench, reweighted_bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.screening import Screened
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps

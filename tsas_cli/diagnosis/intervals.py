@@ -14,8 +14,8 @@ import numpy as np
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.tolerances import moved_by_tolerances, of_others
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import HypothesisFit, correlation_of
 from tsas_cli.identification.fit import with_errors
+from tsas_cli.identification.hypothesis_fit import HypothesisFit, correlation_of
 from tsas_cli.identification.joint_fit import estimates_of
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.records.base import TWO_SIDED

@@ -18,8 +18,9 @@ from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
 from tsas_cli.effects.laws import FOLLOWS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import with_errors
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import estimates_of
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES

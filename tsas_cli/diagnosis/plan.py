@@ -19,7 +19,8 @@ from tsas_cli.diagnosis.rig_file import RigFile
 from tsas_cli.diagnosis.simulated_runs import simulated_recordings
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.base_fit import base_fit, slopes_of
-from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
+from tsas_cli.identification.extension import Bench, bench_of
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment

@@ -12,9 +12,10 @@ import numpy as np
 
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER
 from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
-from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
+from tsas_cli.identification.extension import TOLERANCE, Bench
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.support.arrays import Floats, Mask
 
 

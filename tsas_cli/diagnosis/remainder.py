@@ -17,7 +17,8 @@ from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
 from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, without_tolerances
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from tsas_cli.diagnosis.signals import DIRECTION, RUN, signals_of
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.records.diagnosis import Bin, Maps
 from tsas_cli.support.arrays import Floats
 

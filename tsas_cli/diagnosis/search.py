@@ -32,7 +32,8 @@ from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances
 from tsas_cli.effects import EFFECTS, Effect
-from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
+from tsas_cli.identification.extension import TOLERANCE, Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, least_part, screen_all
 from tsas_cli.support.arrays import Floats

@@ -10,9 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER, friction_of_runs
-from tsas_cli.identification.extension import FAR, UNEVEN, Bench, HypothesisFit
+from tsas_cli.identification.extension import UNEVEN, Bench
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
+from tsas_cli.identification.hypothesis_fit import FAR, HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import orthogonal_to, projector
 from tsas_cli.numerics.covariance import inverse_gram

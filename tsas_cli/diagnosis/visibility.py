@@ -19,9 +19,10 @@ from tsas_cli.diagnosis.amplitudes import Amplitude, Visibility, amplitudes_of, 
 from tsas_cli.diagnosis.evidence import CRITICAL_VALUE, LEAST_REDUCTION
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import Effect
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import jacobian
 from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector
 from tsas_cli.support.arrays import Floats, Indices

@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
+from tsas_cli.identification.extension import Bench, bench_of
 from tsas_cli.identification.fit import with_errors
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import FittedModel, estimates_of
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen

@@ -13,7 +13,8 @@ from itertools import product
 import numpy as np
 
 from tsas_cli.effects import Effect, Parameter
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 

@@ -15,8 +15,9 @@ from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
 from tsas_cli.diagnosis.hypotheses import Names
 from tsas_cli.diagnosis.search import MOST_EFFECTS, Search
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import HypothesisFit, bench_of
+from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.fit import UNDETERMINED
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import prepare

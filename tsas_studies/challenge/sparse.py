@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.screening import projector
 from tsas_cli.physics.rig import Rig

@@ -10,9 +10,9 @@ from scipy.signal import lfilter
 
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution
 from tsas_cli.identification.fit_problem import unknown_of
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError

@@ -21,7 +21,8 @@ from tsas_cli.diagnosis.faults.shapes import (
 )
 from tsas_cli.diagnosis.friction_scatter import SCATTER, friction_of_runs
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.screening import orthogonal_to
 from tsas_cli.support.arrays import Floats, Indices, Mask
 

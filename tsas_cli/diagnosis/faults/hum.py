@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.diagnosis.signals import AtResiduals
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.support.arrays import Floats, Indices
 
 MOTIONS_OWN = 2.5  # multiple of the fastest motion's frequency, below which it may be the motion's

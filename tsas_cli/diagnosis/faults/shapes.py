@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsas_cli.identification.extension import Bench, HypothesisFit
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.run_simulation import Predictions, predict_driven
 from tsas_cli.physics.rig import Rig
