@@ -69,14 +69,14 @@ def test_a_value_at_a_bound_is_flagged(lower, upper):
     assert found.values[0] == pytest.approx(max(lower, min(0.0, upper)), abs=1e-3)
 
 
-# An unknown is told where coloured noise (10 times white) leaves its error below a tenth of its
-# scale: where its column, for one scale, is longer than 100.
-TOLD, UNTOLD = 101.0, 99.0
+# An unknown is identifiable where coloured noise (10 times white) leaves its error below its scale:
+# where its column, for one scale, is longer than 10.
+ENOUGH, TOO_LITTLE = 10.1, 9.9
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.2])
-def test_what_shows_enough_is_told(scale):
-    J = np.diag([TOLD, UNTOLD]) / scale
+def test_what_shows_enough_is_identifiable(scale):
+    J = np.diag([ENOUGH, TOO_LITTLE]) / scale
     chosen, confounded = identifiable([unknown(scale=scale), unknown("b", scale=scale)], J)
     assert chosen == [0]
     assert confounded == {1: []}  # not shown at all

@@ -77,32 +77,42 @@ X_OUT = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
         (X_OUT, 7.0 + 2.0 * X_OUT, (2.0, 7.0)),
         (X_OUT, 7.0 - 2.0 * X_OUT, (-2.0, 7.0)),
         (0.1 * X_OUT, 7.0 + 0.2 * X_OUT, (2.0, 7.0)),
-        (X_OUT, np.where(X_OUT < 4.0, np.nan, 7.0 + 2.0 * X_OUT), (2.0, 7.0)),
+        (X_OUT, np.where(abs(X_OUT - 3.5) < 1.0, np.nan, 7.0 + 2.0 * X_OUT), (2.0, 7.0)),
         (X_OUT, np.where(X_OUT < 5.0, np.nan, 7.0 + 2.0 * X_OUT), None),  # two samples
         (np.full(6, 3.0), X_OUT, None),
     ],
 )
 def test_the_load_spring_is_the_line_of_f_out_over_x_out(x_out, f_out, found):
-    run = run_of(np.linspace(0.0, 10.0, 6), f_out_N=f_out, x_out_mm=x_out)
+    run = run_of(f_out_N=f_out, x_out_mm=x_out, drive="f_in_N")
     names = ("load_stiffness_N_per_mm", "preload_N")
     expected = {} if found is None else dict(zip(names, found, strict=True))
     assert s._spring(run, [], {}) == pytest.approx(expected)
 
 
-AFAR = [40.0, 41.0, 42.0]
+AFAR = [41.0, 40.0, 42.0]
 
 
 @pytest.mark.parametrize(
     ("run", "found"),
     [
-        (run_of(AFAR, x_out=AFAR), {"x_in_zero_mm": 40.0, "x_out_zero_mm": 40.0}),
-        (run_of(AFAR, x_out=[0.0, 1.0, 2.0]), {}),  # near: a fit from 0 mm finds both
-        (run_of(AFAR, x_out=AFAR, f_in_N=AFAR), {}),
-        (run_of(f_in_N=AFAR, x_in_mm=AFAR, x_out=AFAR, drive="f_in_N"), {}),  # a force all the same
+        (run_of(AFAR, x_out=[7.0, 8.0, 9.0]), {"x_in_zero_mm": 40.0, "x_out_zero_mm": 8.0}),
+        (run_of(AFAR), {"x_in_zero_mm": 40.0}),
+        (run_of(AFAR, x_out=[7.0, np.nan, 9.0]), {"x_in_zero_mm": 40.0}),
+        (run_of(AFAR, f_in_N=[1.0, 2.0, 3.0]), {}),  # a force without phases
+        (run_of(x_out=AFAR), {}),
+        (run_of(f_in_N=AFAR, x_in_mm=AFAR, drive="f_in_N"), {}),  # one that drives is one too
     ],
 )
-def test_zeros_are_those_of_the_first_sample_only_where_no_force_is_known(run, found):
+def test_zeros_are_where_the_drive_lets_go_furthest_if_no_force_is_known(run, found):
     assert s._spring(run, [], {}) == found
+
+
+def test_without_a_force_or_a_displacement_at_the_load_those_at_the_drive_take_their_place():
+    x, force = np.array([0.0, 1.0, 2.0]), np.array([4.0, 6.0, 8.0])
+    expected = pytest.approx({"load_stiffness_N_per_mm": 2.0, "preload_N": 4.0})
+    assert s._spring(run_of(x, f_out_N=force), [], {}) == expected
+    assert s._spring(run_of(x_out=x, f_in_N=force, drive="f_in_N"), [], {}) == expected
+    assert s._spring(run_of(x, f_out_N=-force), [], {}) == {}  # falls
 
 
 KM = {"contraction": 4.0, "loosening": 1.0}
@@ -114,54 +124,60 @@ def test_the_load_spring_by_the_slopes_and_the_preload_by_the_lines():
     f_in = [18.0, 22.0, np.nan, 4.0, 3.0, 2.0]  # 18 + 4 x and 2 + x
     found = s._spring(run_of(X_IN, f_in_N=f_in), [UP, DOWN], KM)
     assert found == pytest.approx({"load_stiffness_N_per_mm": 2.0, "preload_N": 6.0})
-    without = s._spring(run_of(X_IN, f_out_N=f_in), [UP, DOWN], KM)
-    assert without == pytest.approx({"load_stiffness_N_per_mm": 2.0})
     for phase in KM:
         assert s._spring(run_of(X_IN, f_in_N=f_in), [UP, DOWN], {phase: 4.0}) == {}
 
 
 @pytest.mark.parametrize("at_zero", [-2.0, 0.0])
-def test_a_line_that_is_slack_at_zero_tells_the_zero_of_x_in(at_zero):
-    """From lines of 18 + 4 x and −2 + x to a stated 20 N: at 0.5 mm and 22 mm."""
+def test_a_line_that_is_slack_at_zero_gives_the_zero_of_x_in(at_zero):
+    """From lines of 18 + 4 x and −2 + x to a stated 20 N: at 0.5 mm and 22 mm; or to the mean."""
     f_in = [18.0, 22.0, 26.0, at_zero + 2.0, at_zero + 1.0, at_zero]
     stated = run_of(X_IN, f_in_N=f_in, preload_N=20.0)
     found = s._spring(stated, [UP, DOWN], KM)
     zero = 0.5 * (0.5 + 20.0 - at_zero)
     assert found == pytest.approx({"load_stiffness_N_per_mm": 2.0, "x_in_zero_mm": zero})
-    unknown = run_of(X_IN, f_in_N=f_in)
-    assert s._spring(unknown, [UP, DOWN], KM) == pytest.approx({"load_stiffness_N_per_mm": 2.0})
+    mean = float(np.mean(f_in))
+    zero = 0.5 * ((mean - 18.0) / 4.0 + (mean - at_zero) / 1.0)
+    unknown = s._spring(run_of(X_IN, f_in_N=f_in), [UP, DOWN], KM)
+    assert unknown == pytest.approx(
+        {"load_stiffness_N_per_mm": 2.0, "x_in_zero_mm": zero, "preload_N": mean}
+    )
 
 
-def far(x_in, f_out, *, first=30.0, slope=2.0, intercept=10.0, **told):
-    return s._far_zeros(run_of(x_in, **told), np.asarray(f_out), first, slope, intercept)
+def far(x_in, f_out, *, first=1.5, slope=2.0, intercept=10.0, **stated):
+    return s._far_zeros(run_of(x_in, **stated), np.asarray(f_out), first, slope, intercept)
 
 
 def test_zeros_that_are_near_stay_at_nothing():
-    """A travel of 2 mm: up to five times as far off, without slack in the run, a fit finds them."""
+    """A travel of 2 mm: up to one as far off, without slack in the run, a fit finds them."""
     travel = np.array([0.0, 1.0, 2.0])
     f_out = 10.0 + 2.0 * travel
-    for first in (0.0, 10.0, -5.0):  # 10 N are gone 5 mm below zero
+    for first in (0.0, 1.9, -1.9):
         assert far(first + travel, f_out) == {}
-    for first in (10.1, -5.1):
+    for first in (2.1, -2.1):
         assert far(first + travel, f_out) == pytest.approx({"x_in_zero_mm": first})
         assert far(first + travel, f_out, drive="f_in_N") == {}
+    assert far(travel - 1.5, f_out - 8.0, intercept=2.0) == pytest.approx({"x_in_zero_mm": -1.5})
 
 
-def test_a_zero_of_x_in_is_the_median_of_what_the_samples_say():
+def test_a_zero_of_x_in_is_the_median_of_what_the_samples_show():
     f_out = np.array([10.0, 12.0, np.nan, 16.0])
     found = far([40.0, 41.0, 42.0, 46.0], f_out)  # 40, 40 and 43
     assert found == pytest.approx({"x_in_zero_mm": 40.0})
 
 
 @pytest.mark.parametrize(("stated", "preload"), [(14.0, 14.0), (None, 50.0)])
-def test_a_spring_that_is_slack_at_zero_is_counted_from_afar(stated, preload):
-    """f_out = −10 + 2 x_out: stated, or what the run begins with at 30 mm."""
-    found = far([0.0, 1.0, 2.0], np.full(3, preload), intercept=-10.0, preload_N=stated)
-    assert found == pytest.approx({"x_out_zero_mm": (preload + 10.0) / 2.0, "preload_N": preload})
-    tight = far([0.0, 1.0, 2.0], [0.5, 2.5, 4.5], intercept=0.5, preload_N=14.0)
-    assert tight == {}  # half a newton at zero is enough
-    none = far([0.0, 1.0, 2.0], np.full(3, 14.0), intercept=0.0, preload_N=14.0)
-    assert none == pytest.approx({"x_out_zero_mm": 7.0, "preload_N": 14.0})
+@pytest.mark.parametrize("intercept", [-10.0, 0.0, 40.0])
+def test_an_x_out_that_begins_strokes_away_is_counted_from_the_preload(stated, preload, intercept):
+    """f_out = intercept + 2 x_out: stated, or what the run begins with."""
+    first = 0.5 * (50.0 - intercept)
+    found = far(
+        [0.0, 1.0, 2.0], np.full(3, preload), first=first, intercept=intercept, preload_N=stated
+    )
+    zero = 0.5 * (preload - intercept)
+    assert found == pytest.approx({"x_out_zero_mm": zero, "preload_N": preload})
+    near = far([0.0, 1.0, 2.0], [50.0, 54.0, 65.0], first=7.4, intercept=50.0, preload_N=14.0)
+    assert near == {}
 
 
 RIG = GROUP_A._replace(sheath_length_mm=1000.0, tendon_stiffness_N=500.0, preload_N=3.0)

@@ -295,15 +295,23 @@ def test_a_straight_sheath_with_friction_is_told_to_be_wrong():
     assert any("f_in_N: reduced chi-square" in sentence for sentence in result.cannot_tell)
 
 
-def test_what_does_not_show_is_kept_as_the_data_sheet_says():
-    columns = {n: v for n, v in recorded().items() if n in ("time_s", "x_in_mm", "f_out_N")}
-    result = calibrated(ran(columns))
-    kept = {e.name: (e.value, e.origin) for e in result.model.estimates if e.stderr is None}
-    assert kept["friction_coefficient"] == (0.125, "data sheet")
-    assert (
-        "friction_coefficient is not identifiable from these recordings; it is fixed at 0.125."
-        in (result.cannot_tell)
-    )
+@pytest.mark.parametrize("off_mm", [0.0, -4.0, 7.0, 60.0])
+@pytest.mark.parametrize(
+    "channels",
+    [(), ("f_out_N",), ("f_in_N",), ("f_in_N", "x_out_mm"), ("f_out_N", "x_out_mm")],
+)
+def test_few_channels_and_zeros_anywhere_give_the_friction_all_the_same(channels, off_mm):
+    """The data sheet's 0.125, 7 % too low, is not kept where the recordings show more."""
+    channels = channels or ("x_out_mm",)
+    columns = recorded()
+    columns = {n: columns[n] for n in ("time_s", "x_in_mm", *channels)}
+    columns["x_in_mm"] = columns["x_in_mm"] + off_mm
+    if "x_out_mm" in columns:
+        columns["x_out_mm"] = columns["x_out_mm"] - 1.5 * off_mm
+    result = calibrated(ran(columns), friction_coefficient=0.05)
+    friction = fitted(result)["friction_coefficient"]
+    assert friction.interval_low < 0.135 < friction.interval_high
+    assert not any("chi-square" in sentence for sentence in result.cannot_tell)
 
 
 def test_a_short_run_among_long_ones():

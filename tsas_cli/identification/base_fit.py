@@ -18,9 +18,10 @@ from tsas_cli.identification.transfer import Slope, slopes
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
-FAR = 5.0  # times the travel: a zero that a fit from 0 mm does not find
+FAR = 1.0  # strokes: a zero that a fit from 0 mm does not find
 FORCE_ZEROS = [f"{FORCE_SENSOR_OFFSET.name}.{p.name}" for p in FORCE_SENSOR_OFFSET.parameters]
 SMALLEST_BEND = 1e-3  # rad
+RARE = 0.05  # share of the samples on either side of what a ratio of tensions mostly is
 SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
 
 
@@ -68,77 +69,111 @@ def _wrap(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> f
         down = _samples(segments, "loosening", ratio)
         if np.isfinite(up).any() and np.isfinite(down).any():
             return 0.5 * float(np.nanmedian(up) - np.nanmedian(down))
+        known = ratio[np.isfinite(ratio)]
+        if run.drive_column == "f_in_N" and known.size:  # a force has no phases
+            return 0.5 * float(np.ptp(np.quantile(known, (RARE, 1.0 - RARE))))
     if "contraction" in km and "loosening" in km:
         return 0.5 * math.log(km["contraction"] / km["loosening"])
     return None
 
 
-def _zeros_at_start(run: Prepared) -> dict[str, float]:
-    """Return zeros at the first sample where the displacements are all far from 0 mm.
-
-    No force shows how far; the preload is then the tension at that sample.
-    """
-    found = {}
-    for name in ("x_in_mm", "x_out_mm"):
-        x = run.channel(name)
-        if x is None or not np.isfinite(x).any():
-            return {}
-        known = x[np.isfinite(x)]
-        if float(np.abs(known).min()) < float(np.ptp(known)):
-            return {}
-        found[name.replace("_mm", "_zero_mm")] = float(known[0])
-    return found
+def _lowest_zeros(run: Prepared) -> dict[str, float]:
+    """Return zeros where the drive lets go furthest: no force shows where the tendon is slack."""
+    x_in = run.channel("x_in_mm")
+    if x_in is None or not np.isfinite(x_in).any():
+        return {}
+    lowest = int(np.nanargmin(x_in))
+    readings = {name: run.channel(name) for name in ("x_in_mm", "x_out_mm")}
+    return {
+        name.replace("_mm", "_zero_mm"): float(x[lowest])
+        for name, x in readings.items()
+        if x is not None and np.isfinite(x[lowest])
+    }
 
 
 def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> dict[str, float]:
-    f_out, x_out = run.measured.get("f_out_N"), run.measured.get("x_out_mm")
-    if f_out is not None and x_out is not None:
-        ok = np.isfinite(f_out) & np.isfinite(x_out)
-        if ok.sum() > 2 and np.ptp(x_out[ok]) > 0.0:
-            slope, intercept = map(float, np.polyfit(x_out[ok], f_out[ok], 1))
-            found = {"load_stiffness_N_per_mm": slope, "preload_N": intercept}
-            if slope > 0.0:
-                found |= _far_zeros(run, f_out, float(x_out[ok][0]), slope, intercept)
-            return found
+    """Return the load's spring, the preload and zeros, by the line of a force over a displacement.
+
+    Of f_out, else f_in, over x_out; else of f_out over x_in; else of f_in over x_in, in both
+    directions; without any force the zeros alone.
+    """
+    f_out, x_out, x_in = (run.channel(name) for name in ("f_out_N", "x_out_mm", "x_in_mm"))
+    force = run.channel("f_in_N") if f_out is None else f_out
+    at_load = _line(x_out, force)
+    if at_load is not None and force is not None and x_out is not None:
+        slope, intercept = at_load
+        found = {"load_stiffness_N_per_mm": slope, "preload_N": intercept}
+        if slope > 0.0:
+            first = float(x_out[np.isfinite(force) & np.isfinite(x_out)][0])
+            found |= _far_zeros(run, force, first, slope, intercept)
+        return found
+    over_drive = _line(x_in, f_out)
+    if over_drive is not None and over_drive[0] > 0.0 and f_out is not None:
+        slope, intercept = over_drive
+        return {"load_stiffness_N_per_mm": slope} | _at_drive(run, f_out, [slope], [intercept])
     if "contraction" not in km or "loosening" not in km:
-        return {} if run.has_force else _zeros_at_start(run)
+        return {} if run.has_force else _lowest_zeros(run)
     found = {"load_stiffness_N_per_mm": math.sqrt(km["contraction"] * km["loosening"])}
     f_in = run.measured.get("f_in_N")
-    if f_in is not None:
-        x = run.conditioned["x_in_mm"].values
-        at_zero = []
-        for phase in ("contraction", "loosening"):
-            offset = _samples(segments, phase, f_in) - km[phase] * _samples(segments, phase, x)
-            at_zero.append(float(np.nanmean(offset)))
-        if min(at_zero) > 0.0:
-            found["preload_N"] = math.sqrt(at_zero[0] * at_zero[1])
-        elif run.run.preload_N is not None:
-            at_preload = [
-                (run.run.preload_N - tension) / km[phase]
-                for phase, tension in zip(("contraction", "loosening"), at_zero, strict=True)
-            ]
-            found["x_in_zero_mm"] = float(np.mean(at_preload))
+    if f_in is not None and x_in is not None:
+        both = km["contraction"], km["loosening"]
+        lines = zip(("contraction", "loosening"), both, strict=True)
+        at_zero = [
+            float(np.nanmean(_samples(segments, p, f_in) - slope * _samples(segments, p, x_in)))
+            for p, slope in lines
+        ]
+        found |= _at_drive(run, f_in, both, at_zero)
     return found
 
 
+def _line(x: Floats | None, force: Floats | None) -> tuple[float, float] | None:
+    """Return slope and intercept of a force over a displacement; None without both."""
+    if x is None or force is None:
+        return None
+    ok = np.isfinite(force) & np.isfinite(x)
+    if ok.sum() <= 2 or np.ptp(x[ok]) == 0.0:
+        return None
+    slope, intercept = map(float, np.polyfit(x[ok], force[ok], 1))
+    return slope, intercept
+
+
+def _at_drive(
+    run: Prepared, force: Floats, slopes: Sequence[float], at_zero: Sequence[float]
+) -> dict[str, float]:
+    """Return the preload by the lines of a force over x_in, or the zero of x_in.
+
+    The tensions at 0 mm are the preload, unless a tendon would be slack there: its zero is then
+    where the lines are at the stated preload, or at the mean of the force.
+    """
+    if min(at_zero) > 0.0:
+        return {"preload_N": math.exp(float(np.mean(np.log(at_zero))))}
+    stated = run.run.preload_N
+    preload = float(np.nanmean(force)) if stated is None else stated
+    zeros = [(preload - at) / slope for slope, at in zip(slopes, at_zero, strict=True)]
+    found = {"x_in_zero_mm": float(np.mean(zeros))}
+    return found if stated is not None else found | {"preload_N": preload}
+
+
 def _far_zeros(
-    run: Prepared, f_out: Floats, first_mm: float, slope: float, intercept: float
+    run: Prepared, force: Floats, first_mm: float, slope: float, intercept: float
 ) -> dict[str, float]:
     """Return zeros of displacements with a distant origin, and the preload with them.
 
     With zeros at 0 mm the spring would be slack where x_out reads 0 (the tension there is the
-    `intercept` of its line), or the tendon within the run, from where a fit does not converge. The
-    tendon's own stretch is neglected.
+    `intercept` of its line), or the tendon within the run, from where a fit does not converge, as
+    from many strokes away. The tendon's own stretch is neglected.
     """
     found = {}
     preload = intercept
-    if intercept <= 0.0:  # the preload is then the stated one, or the run's initial tension
+    stroke = float(np.nanmax(force) - np.nanmin(force)) / slope
+    if intercept <= 0.0 or abs(first_mm) > FAR * stroke:
+        # the preload is then the stated one, or the run's initial tension
         stated = run.run.preload_N
         preload = intercept + slope * first_mm if stated is None else stated
         found = {"x_out_zero_mm": (preload - intercept) / slope, "preload_N": preload}
     if run.drive_column == "x_in_mm":
         x_in = run.conditioned["x_in_mm"].values
-        zero = float(np.nanmedian(x_in - (f_out - preload) / slope))
+        zero = float(np.nanmedian(x_in - (force - preload) / slope))
         slack = float(np.min(x_in)) < -preload / slope
         if slack or abs(zero) > FAR * float(np.ptp(x_in)):
             found["x_in_zero_mm"] = zero

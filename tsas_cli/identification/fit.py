@@ -23,7 +23,6 @@ WRONG = 2.0  # mean square of the residuals beyond which the model is wrong
 FEWEST_RUNS = 3  # for standard errors of a wrong model
 ALONE = 50.0  # growth of the variance of a parameter without the run that alone determines it
 UNDETERMINED = 1e-3  # tolerance of the resolution of a determined parameter
-KNOWN = 0.1  # of its scale: with a larger standard error, alone, an unknown is not identifiable
 INDEPENDENT = 1e-3  # share of an unknown's column that has to be independent of the others
 COLOUR = 10.0  # ratio of the standard errors for coloured and for white noise, at most
 
@@ -89,6 +88,9 @@ def jacobian(
 def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dict[int, list[int]]]:
     """Return the unknowns that are identifiable together, chosen in the given order.
 
+    They are where the residuals, their noise coloured, leave less than their plausible change: a
+    fixed one that is off by that much would be the larger part of what remains.
+
     Returns
     -------
     chosen, confounded
@@ -104,11 +106,11 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
             np.linalg.lstsq(scaled[:, chosen], column, rcond=None)[0] if chosen else np.zeros(0)
         )
         new = float(np.linalg.norm(column - scaled[:, chosen] @ weights))
-        if new * KNOWN > COLOUR and new > INDEPENDENT * float(np.linalg.norm(column)):
+        if new > COLOUR and new > INDEPENDENT * float(np.linalg.norm(column)):
             chosen.append(j)
         else:
             imitated = np.linalg.norm(scaled[:, chosen] * weights, axis=0)
-            visible = float(np.linalg.norm(column)) * KNOWN > COLOUR
+            visible = float(np.linalg.norm(column)) > COLOUR
             order = np.argsort(-imitated) if visible else np.zeros(0, dtype=np.int64)
             confounded[j] = [chosen[k] for k in order if imitated[k] > 0.1 * imitated.max()]
     return chosen, confounded

@@ -15,8 +15,12 @@ from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
 
-FURTHER_SCALE = 7.0  # plausible change without prior knowledge: logarithm, or effect's sizes
-ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
+STATED_SCALE = {"friction_coefficient": 1.0}  # of the logarithm; of others LOG_SCALE
+UNSTATED_SCALE = 7.0  # plausible logarithm of a nominal parameter that nobody states, over another
+FURTHER_SCALE = 0.7  # plausible change of bristles (logarithm) and effects (their sizes)
+ZERO_SCALE = 0.1  # of a displacement's range: its zero is where somebody has set it
+# The condition of the runs without which a parameter is known but for a factor.
+OVER = {"friction_coefficient": "total_bend_rad", "tendon_stiffness_N": "sheath_length_mm"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,12 +124,15 @@ def nominal_unknowns(
             owners = springs
         if q.name == "load_stiffness_N_per_mm" and not springs:
             continue
+        over = OVER.get(q.name)
+        but_for_a_factor = over is not None and any(getattr(r.run, over) is None for r in runs)
         for k in owners:
             owner = None if k is None else runs[k].run.id
             value = initial.value(q.name, owner)
             low, high = map(q.scaled, plausible.get(q.name, (q.lower, q.upper)))
             scaled = q.scaled(q.default if value is None else value)
-            relative = FURTHER_SCALE if fixed.value(q.name, owner) is None else LOG_SCALE
+            stated = fixed.value(q.name, owner) is not None and not but_for_a_factor
+            relative = STATED_SCALE.get(q.name, LOG_SCALE) if stated else UNSTATED_SCALE
             scale = relative if q.positive else ZERO_SCALE * travel
             out.append(Unknown(q.name, k, min(max(scaled, low), high), low, high, scale))
     return out
