@@ -168,6 +168,9 @@ def test_what_ended_where_it_does_nothing_is_no_bound():
 def test_what_has_no_error_or_no_end_is_said():
     (said,) = doubts(estimate(stderr=None))
     assert said.startswith("friction_coefficient is not identifiable at the minimum")
+    (said,) = doubts(estimate(low=1.0000000001e-4, high=10.0))  # the whole range
+    assert said.startswith("friction_coefficient is not identifiable at the minimum")
+    assert doubts(estimate(low=1e-4), estimate(high=10.0)) == []
     (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
     assert said.startswith("The fit did not converge (too many evaluations): its estimates")
 

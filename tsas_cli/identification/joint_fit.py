@@ -267,7 +267,7 @@ def doubts_of(estimates: Sequence[Estimate], result: Fitted) -> list[str]:
     notes += [
         f"{names[e]} is not identifiable at the minimum: its interval is the plausible range."
         for e in estimates
-        if e.stderr is None
+        if e.stderr is None or _is_whole_range(e)
     ]
     if not result.converged:
         notes.append(
@@ -275,6 +275,14 @@ def doubts_of(estimates: Sequence[Estimate], result: Fitted) -> list[str]:
             "unreliable."
         )
     return notes
+
+
+def _is_whole_range(estimate: Estimate) -> bool:
+    """Return whether an interval goes from one plausible bound to the other."""
+    quantity, low, high = QUANTITIES[estimate.name], estimate.interval_low, estimate.interval_high
+    if low is None or high is None:
+        return False
+    return math.isclose(low, quantity.lower) and math.isclose(high, quantity.upper)
 
 
 def _fixed_value(fixed: Model, name: str, owner: str) -> str:
