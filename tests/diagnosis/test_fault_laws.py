@@ -54,10 +54,19 @@ class Errors:
         return np.concatenate([changes.get(n, np.zeros(N)) / sd for n, sd in SD.items()])
 
 
+STIFFNESS_N = 500.0
+
+
+def errors_at(trial, changes):
+    (stiffness,) = changes.values() or (STIFFNESS_N,)
+    return NOISE + np.log(stiffness / STIFFNESS_N) * JACOBIAN[:, NAMES.index("tendon_stiffness_N")]
+
+
 ERRORS = (Errors(0), Errors(1))
 BENCH = SimpleNamespace(
     errors_for=lambda trial: ERRORS,
-    rig=lambda trial, k: None,
+    rig=lambda trial, k: SimpleNamespace(tendon_stiffness_N=STIFFNESS_N),
+    errors_at=errors_at,
     rigs=(SimpleNamespace(total_bend_rad=1.0), SimpleNamespace(total_bend_rad=2.0)),
     channels=list(SD),
 )

@@ -128,16 +128,16 @@ def _predicted_slopes(run: Prepared, predicted: Compared, segments: list[Segment
 def unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
     """Return a sentence for each condition that the manifest does not state."""
     out = []
+    alike = "; the runs are taken to have the same {}" if len(runs) > 1 else ""
     if any(r.run.total_bend_rad is None for r in runs):
-        alike = "; the runs are taken to have the same bend" if len(runs) > 1 else ""
         out.append(
             "total_bend_rad is not in the manifest: with an assumed 1 rad friction_coefficient is "
-            f"the product of friction and bend{alike}."
+            f"the product of friction and bend{alike.format('bend')}."
         )
     if any(r.run.sheath_length_mm is None for r in runs):
         out.append(
             "sheath_length_mm is not in the manifest: with an assumed 1000 mm tendon_stiffness_N "
-            "is the stiffness of one metre."
+            f"is the stiffness of one metre{alike.format('length')}."
         )
     return out
 

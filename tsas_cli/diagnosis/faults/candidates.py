@@ -4,6 +4,7 @@ The zero or the gain of a channel over a part of a run, its delay, the pace of i
 friction or the stiffness of one run; in all runs a coupling to AC, a saturation, or a swing.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -31,6 +32,7 @@ OF_THE_CATALOGUE = "channel_delay"  # no fault of a run: the search for causes f
 CONSTANTS_S = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)  # of amplifiers coupled to AC
 LEVELS = np.linspace(0.4, 0.98, 16)  # of all values, below which a sensor may not saturate
 TINY = 1e-9
+STIFFER = 0.01  # step of a finite difference, relative
 MOST_SCATTER = 3.0  # standard deviations of the friction from run to run
 ONCE = (0.5, 2.0)  # the amount of an effect whose size its shape tells
 HELD_BACK = (0.1, 1.5)  # the share that a saturated sensor holds back, with a scatter
@@ -109,7 +111,7 @@ def candidates(
         *_of_clocks(shapes, left),
         *(c for constant_s in CONSTANTS_S for c in of_amplifiers(reads, left, constant_s)),
         *_of_saturation(reads, left),
-        *_of_manifest(trial, left, run),
+        *_of_manifest(bench, trial, left, run),
         *_of_hum(bench, trial, left, run),
     ]
     return sorted(found, key=lambda c: -c.reduction)
@@ -230,13 +232,19 @@ def _of_all(
     yield from one(code, None, channels, column, left)
 
 
-def _of_manifest(trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[Candidate]:
-    """Yield a stiffness, or a length, of one run's own."""
-    for j, unknown in enumerate(trial.unknowns):
-        if unknown.name == STIFFNESS and not trial.solution.at_bound[j]:
-            for k in range(int(run.max()) + 1):
-                column = -trial.solution.jacobian[:, j] * (run == k)
-                yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)
+def _of_manifest(
+    bench: Bench, trial: HypothesisFit, left: Beside, run: Indices
+) -> Iterator[Candidate]:
+    """Yield a stiffness, or a length, of one run's own, unless that of all is at a bound."""
+    at_bound = dict(zip((u.name for u in trial.unknowns), trial.solution.at_bound, strict=True))
+    if at_bound.get(STIFFNESS):
+        return
+    stiffness = bench.rig(trial, 0).tendon_stiffness_N
+    stiffer = bench.errors_at(trial, {STIFFNESS: (1.0 + STIFFER) * stiffness})
+    slope = (stiffer - bench.errors_at(trial, {})) / math.log1p(STIFFER)
+    for k in range(int(run.max()) + 1):
+        column = -slope * (run == k)
+        yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)
 
 
 def _of_hum(bench: Bench, trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[Candidate]:
