@@ -248,6 +248,14 @@ def test_a_unit_off_by_a_round_factor_is_named(column, factor, unit):
     assert remark.sentence.endswith(unit) or f"{unit}, or " in remark.sentence
 
 
+def test_a_load_that_travels_further_than_its_drive_has_a_wrong_scale():
+    far = found(changed(x_out_mm=3.0 * GOOD["x_out_mm"]), "unit")
+    assert far.severity == "warning"
+    assert "times as far as x_in_mm" in far.sentence
+    factor = float(far.sentence.split("moves ")[1].split(" ")[0])
+    assert 2.0 < factor <= 3.0
+
+
 @pytest.mark.parametrize("shift_s", [-0.02, 0.005, 0.02])
 def test_a_delay_is_reported_with_an_interval_that_holds_it(shift_s):
     late = np.interp(TIME - shift_s, TIME, GOOD["f_out_N"])

@@ -43,6 +43,7 @@ _STIFFNESS = {
 _TWICE = 1.2  # factor within which x_in is taken for twice what it is
 _STRETCH = 10.0  # times what the whole tendon stretches by at the largest change of the tension
 _SAME = 1.25  # factor within which a slope agrees with the stated one
+_FARTHER = 1.2  # travel of the load's end over the drive's, beyond which a scale is wrong
 _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
 
@@ -54,8 +55,9 @@ def unit(trial: RunSignals) -> Remarks:
     tensions (their ratio is averaged geometrically over both directions, which cancels friction);
     the slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval
     with the duration of the strokes. A slope that is off by no known unit is a wrong gain or a
-    wrong data sheet. A wide dead band also reduces the distal travel, but then the distal path is
-    no scaled copy of the proximal one.
+    wrong data sheet; a load's end that travels further than the drive's has a wrong scale. A wide
+    dead band also reduces the distal travel, but then the distal path is no scaled copy of the
+    proximal one.
     """
     yield from _time(trial)
     tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
@@ -65,8 +67,17 @@ def unit(trial: RunSignals) -> Remarks:
         travel = _slope(trial, "x_in_mm", "x_out_mm")
     if travel is None and tension is None and stiffness is None:
         yield CannotTell("no two channels whose sizes must agree were recorded and move")
-    yield from _suspect_unit(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
-    yield from _halved(trial, travel)
+    moves = "x_out_mm moves {:.4g} mm per mm of x_in_mm"
+    of_travel = [*_suspect_unit(travel, moves, _TRAVEL, 1.4), *_halved(trial, travel)]
+    yield from of_travel
+    farther = 0.0 if driven else _times_as_far(trial)
+    if farther > _FARTHER and not of_travel:
+        yield Remark(
+            "warning",
+            f"x_out_mm moves {farther:.3g} times as far as x_in_mm; a tendon moves its load less",
+            "check unit and pulley radius of both; of a joint or a tip, the arm that moves it",
+            "x_out_mm",
+        )
     for remark in _suspect_unit(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
         if remark.column != "f_out_N" or not _as_stated(stiffness):
             yield remark
@@ -79,6 +90,13 @@ def unit(trial: RunSignals) -> Remarks:
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
         )
+
+
+def _times_as_far(trial: RunSignals) -> float:
+    """Return the travel of the load's end over that of the drive's; 0 without strokes or one."""
+    ends = [trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm")]
+    x_in, x_out = (0.0 if end is None else end.span for end in ends)
+    return x_out / x_in if trial.strokes and x_in > 0.0 else 0.0
 
 
 def _halved(trial: RunSignals, travel: float | None) -> Iterator[Remark]:
