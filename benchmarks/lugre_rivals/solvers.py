@@ -228,7 +228,9 @@ def _compiled_rate(problem: Problem) -> Rate:
 
 
 def _step(solver: Any) -> None:
-    failure = solver.step()
+    # scipy's BDF subtracts rows of its table that it has not filled yet: any numbers, maybe NaN.
+    with np.errstate(invalid="ignore", over="ignore"):
+        failure = solver.step()
     if failure:
         raise RuntimeError(failure)
 

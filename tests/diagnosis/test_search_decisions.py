@@ -174,6 +174,19 @@ def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
     assert rivals_of(search, names(A), A) == rivals
 
 
+@pytest.mark.parametrize(("left", "share"), [(0.9, 0.0), (1.0, 0.0), (4.0, 0.75)])
+def test_what_exceeds_the_noise_is_structure(made, left, share):
+    assert made({names(A): left}).structure(names(A)) == pytest.approx(share)
+
+
+@pytest.mark.parametrize(("unsure", "rivals"), [(0.0, ()), (0.025, ()), (0.035, (B,))])
+def test_an_effect_that_leaves_a_little_more_of_a_wrong_model_is_a_rival(made, unsure, rivals):
+    """4 % more: beyond the one per cent that tells right models apart."""
+    search = made({names(): 9.0, names(A): 4.8, names(B): 5.0})
+    search.add = lambda before, least=0.0: [(B, CONVINCES)]
+    assert rivals_of(search, names(A), A, unsure) == rivals
+
+
 def test_the_simplest_that_is_not_surely_beaten(made):
     singles = [(B, CONVINCES), (A, CONVINCES)]
     assert len(OF[A].parameters) < len(OF[B].parameters)

@@ -8,11 +8,14 @@ from tsas_cli.diagnosis.search import Search, tried
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.quantities import QUANTITIES
 
+MODEL_ERROR = 0.1  # of the squares that a wrong model leaves, by which two effects differ by chance
+
 
 def find_effects(search: Search) -> Hypotheses:
     """Return the effects that are significant together, their rivals, and all other fits."""
     named = exchanged(search, search.run())
-    rivals = {e.name: rivals_of(search, named, e.name) for e in EFFECTS if e.name in named}
+    unsure = MODEL_ERROR * search.structure(named)
+    rivals = {e.name: rivals_of(search, named, e.name, unsure) for e in EFFECTS if e.name in named}
     screened = tuple(search.screen(frozenset()))
     for names in judged_sets(named):
         search.trial(names, on_mesh=search.bench.on_mesh(named))
@@ -35,8 +38,11 @@ def exchanged(search: Search, named: Names, before: frozenset[Names] = frozenset
     return named
 
 
-def rivals_of(search: Search, named: Names, name: str) -> tuple[str, ...]:
-    """Return the effects that do as well as a named one in its place, or better."""
+def rivals_of(search: Search, named: Names, name: str, unsure: float = 0.0) -> tuple[str, ...]:
+    """Return the effects that do as well as a named one in its place, or better.
+
+    Those that leave more by a share that is `unsure` do as well too.
+    """
     fewer = named - {name}
     out = []
     for other, found in search.add(fewer, search.reduction(fewer, named)):
@@ -44,7 +50,7 @@ def rivals_of(search: Search, named: Names, name: str) -> tuple[str, ...]:
         if other in named or not found.convincing:
             continue
         converged = search.trial(instead).solution.converged
-        if converged and not search.gain(instead, named).beyond(LEAST_DIFFERENCE):
+        if converged and not search.gain(instead, named).beyond(LEAST_DIFFERENCE + unsure):
             out.append(other)
     return tuple(out)
 

@@ -155,6 +155,12 @@ class Search:
         scatter = self.scatters(before, mesh)
         return self._excess(before, mesh, scatter) - self._excess(after, mesh, scatter)
 
+    def structure(self, names: Names) -> float:
+        """Return the share of the held-out squares with these effects that is more than noise."""
+        mesh = self.bench.on_mesh(names)
+        excess = max(self._excess(names, mesh, self.scatters(names, mesh)), 0.0)
+        return excess / (1.0 + excess)
+
     def sufficient(self, names: Names, mesh: bool) -> float:
         """Return the reduction of the held-out mean square that a further cause has to make."""
         scatter = self.scatters(names, mesh)
