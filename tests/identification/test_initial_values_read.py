@@ -48,6 +48,16 @@ def test_friction_is_half_the_logarithm_of_the_ratios_quotient():
     assert s._wrap(alone, [UP, DOWN], one_way) == pytest.approx(math.log(3.0))
 
 
+def test_the_friction_of_a_force_that_drives_is_that_of_its_common_ratios():
+    """It has no phases: ratios of 4 and 1/2, but for four samples of a hundred."""
+    f_in = np.repeat([4.0, 0.5, 1e3, 1e-3], [48, 48, 2, 2])
+    run = run_of(f_in_N=f_in, f_out_N=np.ones(100), drive="f_in_N")
+    nothing = [Segment(0, 100, "unknown")]
+    assert s._wrap(run, nothing, {}) == pytest.approx(0.5 * math.log(8.0))
+    driven = run_of(np.arange(100.0), f_in_N=f_in, f_out_N=np.ones(100))
+    assert s._wrap(driven, nothing, {}) is None
+
+
 def test_a_bend_of_nothing_is_a_thousandth():
     run = run_of(f_in_N=np.full(6, 10.0), load="force")
     km = [SimpleNamespace(phase=p, value=v) for p, v in (("contraction", 4.0), ("loosening", 1.0))]

@@ -298,13 +298,11 @@ def test_a_straight_sheath_with_friction_is_told_to_be_wrong():
 @pytest.mark.parametrize("off_mm", [0.0, -4.0, 7.0, 60.0])
 @pytest.mark.parametrize(
     "channels",
-    [(), ("f_out_N",), ("f_in_N",), ("f_in_N", "x_out_mm"), ("f_out_N", "x_out_mm")],
+    [("x_out_mm",), ("f_out_N",), ("f_in_N",), ("f_in_N", "x_out_mm"), ("f_out_N", "x_out_mm")],
 )
 def test_few_channels_and_zeros_anywhere_give_the_friction_all_the_same(channels, off_mm):
-    """The data sheet's 0.125, 7 % too low, is not kept where the recordings show more."""
-    channels = channels or ("x_out_mm",)
-    columns = recorded()
-    columns = {n: columns[n] for n in ("time_s", "x_in_mm", *channels)}
+    """The data sheet's, at little more than a third of it, gives way to what the data show."""
+    columns = {n: v for n, v in recorded().items() if n in ("time_s", "x_in_mm", *channels)}
     columns["x_in_mm"] = columns["x_in_mm"] + off_mm
     if "x_out_mm" in columns:
         columns["x_out_mm"] = columns["x_out_mm"] - 1.5 * off_mm

@@ -236,12 +236,15 @@ def _of_manifest(
     bench: Bench, trial: HypothesisFit, left: Beside, run: Indices
 ) -> Iterator[Candidate]:
     """Yield a stiffness, or a length, of one run's own, unless that of all is at a bound."""
-    at_bound = dict(zip((u.name for u in trial.unknowns), trial.solution.at_bound, strict=True))
-    if at_bound.get(STIFFNESS):
+    free = next((j for j, u in enumerate(trial.unknowns) if u.name == STIFFNESS), None)
+    if free is None:
+        stiffness = bench.rig(trial, 0).tendon_stiffness_N
+        stiffer = bench.errors_at(trial, {STIFFNESS: (1.0 + STIFFER) * stiffness})
+        slope = (stiffer - bench.errors_at(trial, {})) / math.log1p(STIFFER)
+    elif trial.solution.at_bound[free]:
         return
-    stiffness = bench.rig(trial, 0).tendon_stiffness_N
-    stiffer = bench.errors_at(trial, {STIFFNESS: (1.0 + STIFFER) * stiffness})
-    slope = (stiffer - bench.errors_at(trial, {})) / math.log1p(STIFFER)
+    else:
+        slope = trial.solution.jacobian[:, free]
     for k in range(int(run.max()) + 1):
         column = -slope * (run == k)
         yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)

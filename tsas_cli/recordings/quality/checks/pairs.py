@@ -65,12 +65,12 @@ def unit(trial: RunSignals) -> Remarks:
     travel = None
     if trial.strokes and not driven and "x_out_mm" in trial.channels:
         travel = _slope(trial, "x_in_mm", "x_out_mm")
-    if travel is None and tension is None and stiffness is None:
+    farther = 0.0 if driven else _times_as_far(trial)
+    if travel is None and tension is None and stiffness is None and farther <= _FARTHER:
         yield CannotTell("no two channels whose sizes must agree were recorded and move")
     moves = "x_out_mm moves {:.4g} mm per mm of x_in_mm"
     of_travel = [*_suspect_unit(travel, moves, _TRAVEL, 1.4), *_halved(trial, travel)]
     yield from of_travel
-    farther = 0.0 if driven else _times_as_far(trial)
     if farther > _FARTHER and not of_travel:
         yield Remark(
             "warning",
