@@ -10,8 +10,9 @@ class Parameter:
 
     A `shape` parameter matters only where another one of the effect is not neutral; a `period` is
     one of a wave over a position, which shows where the stroke is longer. A `given` one is set by
-    the range of the recordings and not fitted. `starts` are the initial values that a fit tries one
-    after the other; empty means `start` alone.
+    the range of the recordings and not fitted; one `of_forces` is not fitted where none is
+    recorded, since the motion alone does not determine it. `starts` are the initial values that a
+    fit tries one after the other; empty means `start` alone.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Parameter:
     shape: bool = False
     period: bool = False
     given: bool = False
+    of_forces: bool = False
     starts: tuple[float, ...] = ()
 
 

@@ -15,7 +15,8 @@ class Quantity:
 
     A positive one is fitted by its logarithm, any other in units of `size`. An effect's is named
     effect.parameter. One that is not shared has a value for each run; a shape matters only where
-    another parameter of its effect is not neutral; a given one is never fitted.
+    another parameter of its effect is not neutral; a given one is never fitted, one of forces only
+    where one is recorded.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Quantity:
     size: float = 1.0
     shape: bool = False
     given: bool = False
+    of_forces: bool = False
 
     def scaled(self, value: float) -> float:
         """Return the scaled value of a parameter, clipped to its bounds."""
@@ -74,6 +76,7 @@ QUANTITIES = {q.name: q for q in (*NOMINAL, *BRISTLES)} | {
         size=abs(p.start - p.neutral) or abs(p.start) or 1.0,
         shape=p.shape,
         given=p.given,
+        of_forces=p.of_forces,
     )
     for effect in (*EFFECTS, *LAWS)
     for p in effect.parameters

@@ -425,6 +425,30 @@ def test_the_unit_of_a_clock_follows_from_its_steps_and_its_date(path, step, fir
     assert propose([path]).channels[0].entry["unit"] == unit
 
 
+@pytest.mark.parametrize(("every_s", "unit"), [(0.01, "s"), (1.001, "?")])
+def test_a_clock_of_a_slow_logger_is_asked_about(path, every_s, unit):
+    columns = run(step=40)
+    columns["time_s"] = np.arange(columns["x_in_mm"].size) * every_s
+    named = [("t", columns["time_s"]), ("x_in [mm]", columns["x_in_mm"])]
+    write_csv(path, [*named, ("f_in [N]", columns["f_in_N"])])
+    assert propose([path]).channels[0].entry["unit"] == unit
+
+
+def test_a_motor_position_without_a_unit_is_that_of_the_drive(path):
+    r = run()
+    named = [("Time [s]", r["time_s"]), ("Motor position", r["x_in_mm"])]
+    others = [("Spool position", r["x_in_mm"]), ("Knob position", r["x_out_mm"])]
+    write_csv(path, [*named, others[1]])
+    found = {c.name: c.entry["source"] for c in propose([path]).channels}
+    assert found["x_in_mm"] == "Motor position"
+    assert found["x_out_mm"] == "Knob position"
+    assert "motor_angle_rad" not in found
+    write_csv(path, [*named, *others])
+    found = {c.name: c.entry["source"] for c in propose([path]).channels}
+    assert found["motor_angle_rad"] == "Motor position"
+    assert found["x_in_mm"] == "Spool position"
+
+
 def test_title_lines_padded_with_delimiters_are_skipped(path):
     write_csv(path, [*run().items()], delimiter=";")
     path.write_text("Bench 42;;;\n;;;\nrecorded by;M;;\n" + path.read_text())

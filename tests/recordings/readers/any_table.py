@@ -210,8 +210,9 @@ def foreign_tables(draw: st.DrawFn, folder: Path) -> Known:
         content: Any = dict(data)
         if kind == "matrix":
             content = {"m": np.array(columns).T}
-            named = [f"m(:,{j + 1})" for j in range(count)] if count > 1 else ["m"]
-            known = dict(zip(named, columns, strict=True))
+            along = columns if rows >= count else content["m"].tolist()  # the longer side
+            named = [f"m(:,{j + 1})" for j in range(len(along))] if count > 1 else ["m"]
+            known = dict(zip(named, along, strict=True))
         if kind == "capture":
             channels = [(name, np.array(c), "N", 1) for name, c in data.items()]
             content = {"rec": controldesk([time_s], channels)}

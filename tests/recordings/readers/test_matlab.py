@@ -31,7 +31,8 @@ def ask(path, *wanted, **options):
 
 def plain_5(path):
     inner = {"a": T, "b": {"c": F}}
-    save_5(path, t=T, i=np.arange(5, dtype=np.int16), m=np.c_[T, F], s=inner, note="50 mm")
+    matrices = {"m": np.c_[T, F], "across": np.array([T, F])}
+    save_5(path, t=T, i=np.arange(5, dtype=np.int16), **matrices, s=inner, note="50 mm")
 
 
 def plain_73(path):
@@ -39,6 +40,7 @@ def plain_73(path):
         numbers(file, "t", T)
         numbers(file, "i", np.arange(5))
         numbers(file, "m", np.c_[T, F])
+        numbers(file, "across", np.array([T, F]))
         numbers(struct(file, "s"), "a", T)
         numbers(struct(file["s"], "b"), "c", F)
         text(file, "note", "50 mm")
@@ -50,6 +52,7 @@ def plain_73(path):
 def test_vectors_matrices_and_structs_have_names(path, write):
     write(path)
     expected = {"t": T, "i": np.arange(5.0), "m(:,2)": F, "s.a": T, "s.b.c": F}
+    expected["across(:,2)"] = F  # samples lie along the longer side
     columns, table = ask(path, *expected)
     assert columns == {name: values.tolist() for name, values in expected.items()}
     assert "note = 50 mm" in table.header

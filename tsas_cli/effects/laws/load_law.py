@@ -29,7 +29,6 @@ class LoadLaw(NamedTuple):
     lost_4_mm: float = 0.0
     lost_5_mm: float = 0.0
     lost_6_mm: float = 0.0
-    curve_1_mm: float = 0.0
     curve_2_mm: float = 0.0
     curve_3_mm: float = 0.0
     curve_4_mm: float = 0.0
@@ -46,7 +45,7 @@ def load_law_motion(law: LoadLaw, x: Floats, f_out: Floats, memory: Floats) -> F
     From arrays of shape (n,); `memory` is that of the elements, updated in place.
     """
     states = states_of(x, widths_of(law.travel_mm), memory)
-    curve = curve_of(x, law.low_mm, law.high_mm, law[FIRST + ELEMENTS : -1])
+    curve = curve_of(x, law.low_mm, law.high_mm, (0.0, *law[FIRST + ELEMENTS : -1]))
     lost: Floats = law[FIRST : FIRST + ELEMENTS] @ states + law.compliance_mm_per_N * f_out
     return curve - lost
 
@@ -63,8 +62,8 @@ LOAD_LAW = Effect(
         Parameter("low_mm", "mm", 0.0, 0.0, -1e5, 1e5, given=True),
         Parameter("high_mm", "mm", 1.0, 1.0, -1e5, 1e5, given=True),
         *(Parameter(f"lost_{k}_mm", "mm", 0.0, 0.1, 0.0, 1e4) for k in range(1, 7)),
-        *(Parameter(f"curve_{k}_mm", "mm", 0.0, 0.1, -1e4, 1e4) for k in range(1, 6)),
-        Parameter("compliance_mm_per_N", "mm/N", 0.0, 0.01, 0.0, 1e3),
+        *(Parameter(f"curve_{k}_mm", "mm", 0.0, 0.1, -1e4, 1e4) for k in range(2, 6)),
+        Parameter("compliance_mm_per_N", "mm/N", 0.0, 0.01, 0.0, 1e3, of_forces=True),
     ),
     experiment="Measure the displacement of the tendon's end beside x_out, at several forces.",
 )

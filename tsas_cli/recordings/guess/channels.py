@@ -36,12 +36,16 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
 def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
     """Return the columns of channels that are neither displacement nor tension of the tendon.
 
-    A motor's position in mm is the proximal displacement, its angle is the motor angle.
+    A motor's position in mm is the proximal displacement, its angle is the motor angle; a position
+    without a unit is the displacement if no other column is named as that of the drive.
     """
     found: dict[str, list[FileColumn]] = {}
+    of_drive = any(c.end == "in" and c.quantity in LENGTHS for c in columns)
     for column in columns:
         quantity, motor = column.quantity, column.end == "motor"
-        turns = column.kind in ("angle", "label", None)
+        turns = column.kind in ("angle", "label") or (
+            column.kind is None and (quantity == "angle" or of_drive)
+        )
         if quantity == "temperature":
             found.setdefault("temperature_C", []).append(column)
         elif quantity == "speed" and (motor or column.kind == "speed"):

@@ -14,7 +14,7 @@ from tsas_cli.recordings.units import conversion
 from tsas_cli.support.arrays import Floats
 
 _USUAL_S = (2.5e-5, 0.2)  # usual sample intervals of a rig
-_FASTEST_S = 5e-6
+_FASTEST_S, _SLOWEST_S = 5e-6, 2.0
 _STROKE_S = (0.02, 500.0)  # plausible strokes of a rig
 _UNITS = ("s", "ms", "us", "ns")
 _EPOCH_S = (9.4e8, 4.1e9)  # 2000 to 2099, since 1970
@@ -102,7 +102,8 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
     """Return the unit for the map, the reason or the question, and alternative units.
 
     The unit is empty if ingest finds it in the file. A stated unit has to result in a plausible
-    sample rate and stroke duration (of `rows` rows); without one, exactly one unit has to.
+    sample rate and stroke duration (of `rows` rows); without one, exactly one unit has to, among
+    which a slow logger counts if its strokes are plausible.
     """
     step = interval(column)
     if column.kind == "time":
@@ -113,7 +114,7 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
         stated = f"its stated unit {column.unit} means {_rate(seconds)} and "
         stated += f"{seconds * column.values.size:.3g} s in total"
         return QUESTION, f"{stated}; {_listed(step)}", ()
-    likely = [unit for unit in _UNITS if (_USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1])]
+    likely = [unit for unit in _UNITS if _plausible(step, unit, rows)]
     first = float(column.values[0])
     since_1970 = [u for u in _UNITS if _EPOCH_S[0] <= _seconds(first, u) <= _EPOCH_S[1]]
     likely = [unit for unit in likely if unit in since_1970] or likely
@@ -124,6 +125,18 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
     (unit,) = likely
     others = [f"{u}: {_rate(_seconds(step, u))}" for u in (*_UNITS, "min") if u != unit]
     return unit, f"no unit is stated; {unit} means {_rate(_seconds(step, unit))}", tuple(others)
+
+
+def _plausible(step: float, unit: str, rows: float) -> bool:
+    """Return whether a rig may be sampled at this step, with a stroke of so many rows.
+
+    Slow loggers write seconds.
+    """
+    interval_s = _seconds(step, unit)
+    is_slow = unit == "s" and _USUAL_S[1] < interval_s <= _SLOWEST_S
+    if is_slow and interval_s * rows <= _STROKE_S[1]:
+        return True
+    return _USUAL_S[0] <= interval_s <= _USUAL_S[1]
 
 
 def _seconds(step: float, unit: str) -> float:

@@ -172,6 +172,7 @@ def with_unit(column: FileColumn, name: str) -> tuple[Raw, dict[str, str]]:
     if column.kind is None:
         questions["unit"] = (
             f"which unit does {column.shown} have? Neither its name nor the file states it."
+            + (" An angle needs pulley_radius_mm beside it." if to == "mm" else "")
         )
     elif column.kind == "label":
         questions["factor"] = f"how many {to} (or what else) is one of {column.unit}?"

@@ -14,7 +14,7 @@ from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
 from tsas_cli.recordings.guards import Expanded, foreign
-from tsas_cli.recordings.readers.offered import Column, Offered
+from tsas_cli.recordings.readers.offered import Column, Offered, columns_in
 from tsas_cli.recordings.readers.table import ReadOptions, floats
 from tsas_cli.recordings.readers.timebase import TIME
 from tsas_cli.support import limits
@@ -34,7 +34,7 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a MATLAB file.
 
-    A vector is a column with its name, column j of a matrix is `name(:,j)`, and a member of a
+    A vector is a column with its name, those of a matrix are as in `columns_in`, and a member of a
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
     `table` in the map, names are relative to that variable.
 
@@ -45,7 +45,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     if capture is not None:
         yield channels_of(capture, path)
         return
-    columns = [Column(name, partial(np.asarray, v)) for name, v in dict(_vectors(content)).items()]
+    columns = list({column.name: column for column in _columns(content)}.values())
     header = tuple(f"{k} = {v}" for k, v in content.items() if isinstance(v, str | int | float))
     yield Offered(columns, header)
 
@@ -81,22 +81,12 @@ def _inside(content: Raw, table: str | None, path: Path) -> Raw:
     return content
 
 
-def _vectors(content: Raw, prefix: str = "") -> Iterator[tuple[str, Floats]]:
-    """Yield every numeric vector with its name in a map."""
+def _columns(content: Raw, prefix: str = "") -> Iterator[Column]:
     for name, value in content.items():
         if isinstance(value, dict):
-            yield from _vectors(value, f"{prefix}{name}.")
-        elif _is_matrix(value):
-            if 1 in value.shape or value.ndim == 1:
-                yield f"{prefix}{name}", value.ravel()
-            else:
-                for j in range(value.shape[1]):
-                    yield f"{prefix}{name}(:,{j + 1})", value[:, j]
-
-
-def _is_matrix(value: Any) -> bool:
-    is_array = isinstance(value, np.ndarray) and value.ndim in {1, 2} and value.size > 0
-    return is_array and value.dtype.kind in "fiub"
+            yield from _columns(value, f"{prefix}{name}.")
+        elif isinstance(value, np.ndarray):
+            yield from columns_in(f"{prefix}{name}", value)
 
 
 def check_unpacked(path: Path) -> None:
