@@ -19,10 +19,17 @@ from tsas_cli.identification.quantities import QUANTITIES
 
 def test_an_effect_frees_its_own_parameters_and_nothing_else():
     for effect in EFFECTS:
-        assert _parameters([effect.name]) == [f"{effect.name}.{p.name}" for p in effect.parameters]
-    both = _parameters(["free_tendon", "backlash"])
+        own = [f"{effect.name}.{p.name}" for p in effect.parameters]
+        assert _parameters([effect.name], has_force=True) == own
+    both = _parameters(["free_tendon", "backlash"], has_force=True)
     assert {name.split(".")[0] for name in both} == {"free_tendon", "backlash"}
-    assert _parameters([]) == []
+    assert _parameters([], has_force=True) == []
+
+
+def test_without_a_force_a_compliance_at_the_load_is_not_fitted():
+    with_force, without = (_parameters(["load_law"], has_force=known) for known in (True, False))
+    assert set(with_force) - set(without) == {"load_law.compliance_mm_per_N"}
+    assert not any(name.endswith(("travel_mm", "low_mm", "high_mm")) for name in with_force)
 
 
 def test_what_the_closed_form_does_not_hold_for_needs_a_mesh():

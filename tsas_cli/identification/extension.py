@@ -10,7 +10,7 @@ from tsas_cli.identification.fit import Unknown, solve
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.hypothesis_fit import NODES, HypothesisFit
 from tsas_cli.identification.joint_fit import FittedModel
-from tsas_cli.identification.quantities import QUANTITIES, Quantity
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
 from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.numerics.side_by_side import each
@@ -46,18 +46,6 @@ class Bench:
         """Return whether a hypothesis needs the slip chain."""
         return self.never_closed or any(name in ON_CHAIN for name in effects)
 
-    def _parameters(self, effects: Sequence[str]) -> list[Quantity]:
-        """Return the parameters of effects that are fitted to these recordings."""
-        has_force = any(errors.run.has_force for errors in self.closed)
-        return [
-            quantity
-            for name, quantity in QUANTITIES.items()
-            if name.split(".")[0] in effects
-            and "." in name
-            and not quantity.given
-            and (has_force or not quantity.of_forces)
-        ]
-
     def fit(
         self,
         effects: Sequence[str] = (),
@@ -86,8 +74,9 @@ class Bench:
         known = {} if near is None else {(u.name, u.run): float(v) for u, v in _pairs(near)}
         base = [replace(u, initial=known.get((u.name, u.run), u.initial)) for u in self.free]
         freed = []
-        for quantity in self._parameters(effects):
-            name = quantity.name
+        has_force = any(errors.run.has_force for errors in self.closed)
+        for name in _parameters(effects, has_force=has_force):
+            quantity = QUANTITIES[name]
             value = known.get((name, None))
             if initial is not None and name in initial:
                 value = quantity.scaled(initial[name])
@@ -215,3 +204,15 @@ def reweighted_bench(bench: Bench, trial: HypothesisFit) -> Bench:
 
 def _pairs(trial: HypothesisFit) -> list[tuple[Unknown, float]]:
     return list(zip(trial.unknowns, trial.solution.values, strict=True))
+
+
+def _parameters(effects: Sequence[str], *, has_force: bool) -> list[str]:
+    """Return the parameters of effects that are fitted; those of forces only where one is known."""
+    return [
+        name
+        for name, quantity in QUANTITIES.items()
+        if name.split(".")[0] in effects
+        and "." in name
+        and not quantity.given
+        and (has_force or not quantity.of_forces)
+    ]
