@@ -1,6 +1,7 @@
 """What counts in the fit, and how much: weights near reversals, samples near the ends."""
 
 import gc
+import math
 import weakref
 from dataclasses import replace
 from types import SimpleNamespace
@@ -16,12 +17,13 @@ from tsas_cli.identification.run_errors import (
     ReversalShapes,
     RunErrors,
     _advanced,
-    _before_reversals,
+    _beside,
     _reversal_shapes,
+    _turned_at_rest,
     run_errors,
 )
 from tsas_cli.identification.run_simulation import fitted_samples
-from tsas_studies.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
+from tsas_studies.challenge.rig.motions import Motion, nested, sine, through, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -152,16 +154,39 @@ def test_every_stroke_is_moved_on_its_own_way():
     assert moved.tolist() == [0.25] * 5 + [-0.25] * 4 + [0.25]
 
 
-def test_samples_just_before_a_reversal_may_be_behind_it():
-    """Within three standard deviations of the place of the turn at sample 4: samples 3 and 4.
+RESTING = np.array([0.0, 1.0, 2.0, 3.0, 3.0, 3.0, 3.0, 2.0, 1.0, 0.0])
 
-    They get the largest square that comes within as many samples behind it; the same at sample 8.
-    """
-    change = np.array([0.0, 1.0, 2.0, 3.0, 5.0, 4.0, 7.0, 9.0, 2.0, 6.0])
-    square = np.full(X.size, 100.0)
-    _before_reversals(square, change, conditioned(0.05))  # 0.15 mm: 2.9 and 3.0 are alike
-    added = square - 100.0
-    assert added.tolist() == [0.0, 0.0, 0.0, 49.0, 49.0, 0.0, 0.0, 0.0, 36.0, 0.0]
+
+@pytest.mark.parametrize(("sd", "step", "back"), [(0.01, 0.0, 0.01), (0.01, 0.2, 0.2)])
+def test_where_the_drive_rests_it_may_have_turned_back(sd, step, back):
+    """By its error or by a step, against the stroke that ends there, at every other sample."""
+    resting = SimpleNamespace(
+        values=RESTING,
+        reversals=np.array([0, 6, 9]),
+        sd=np.full(RESTING.size, sd),
+        step=step,
+        window_s=2.0,
+    )
+    turned = _turned_at_rest(resting, np.arange(10.0)) - RESTING
+    expected = np.zeros(10)
+    expected[[3, 5]] = -back
+    expected[9] = back  # the run ends: whether it moves on is unknown
+    assert turned == pytest.approx(expected)
+    assert _beside(turned) == pytest.approx(back * np.array([0, 0, 1, 1, 1, 1, 1, 0, 1, 1]))
+
+
+@pytest.mark.parametrize(("hunting_mm", "count_mm"), [(0.0005, 0.001), (0.002, 0.004)])
+def test_a_drive_that_hunts_at_rest_within_a_count_is_no_error(hunting_mm, count_mm):
+    """A micrometre moves f_in there by tens of its noise, and the encoder does not show it."""
+    way = through([8.0, 8.0, 3.0, 3.0, 9.0, 9.0, 0.0])
+    window = np.hanning(401) / np.hanning(401).sum()  # no jerk
+    smooth = np.convolve(np.pad(way.x_in_mm, 200, mode="edge"), window, "valid")
+    phase = 2.0 * math.pi * way.time_s
+    hunted = Motion(way.time_s, smooth + hunting_mm * np.sin(3.0 * phase) * np.sin(0.7 * phase))
+    encoder = Sensors(rate_Hz=RATE_HZ, jitter_s=0.0, x_in_mm=Sensor(step=count_mm))
+    errors, rig = errors_of(prepared(Rig(), hunted, sensors=encoder))
+    assert np.abs(errors.raw(rig)["f_in_N"]).max() > 30.0 * errors.run.noise["f_in_N"]
+    assert np.mean(errors.errors(rig)["f_in_N"] ** 2) < 1.0
 
 
 def test_chosen_residuals_are_spread_over_the_samples_behind_them():

@@ -80,7 +80,7 @@ def model(monkeypatch):
     monkeypatch.setattr(rs, "mechanics_of", lambda rig, drive: rig)
     monkeypatch.setattr(rs, "is_closed", lambda rig, drive: False)
     monkeypatch.setattr(rs, "points", lambda run: EVERY)
-    monkeypatch.setattr(r, "_before_reversals", lambda square, change, conditioned: None)
+    monkeypatch.setattr(r, "_turned_at_rest", lambda conditioned, time_s: conditioned.values)
     return made
 
 
@@ -116,15 +116,13 @@ def test_a_channel_without_noise_has_next_to_none(model):
     np.testing.assert_allclose(errors_of(run).weights["f_in_N"], 1e-9)
 
 
-def test_what_is_before_a_turn_is_added_for_each_end(monkeypatch, model):
-    def before(square, change, conditioned):
-        np.testing.assert_allclose(change, 0.3 * WAY)
-        assert conditioned is run.conditioned["x_in_mm"]
-        square += 100.0
-
-    monkeypatch.setattr(r, "_before_reversals", before)
-    run = run_of()
-    np.testing.assert_allclose(errors_of(run).weights["f_in_N"], np.sqrt(4.0 + 0.09 + 100.0))
+def test_what_a_hidden_turn_does_is_added_with_its_neighbours(monkeypatch, model):
+    """k = 3: to turn back by 0.5 mm at sample 7 is 1.5 N, there and beside it."""
+    back = np.where(EVERY == 7, 0.5, 0.0)
+    monkeypatch.setattr(r, "_turned_at_rest", lambda conditioned, _: conditioned.values + back)
+    added = np.where((EVERY >= 6) & (EVERY <= 8), 1.5**2, 0.0)
+    found = errors_of(run_of()).weights["f_in_N"]
+    np.testing.assert_allclose(found, np.sqrt(4.0 + 0.09 + added))
 
 
 def test_a_run_is_answered_as_it_is_asked_for(model):
@@ -165,13 +163,13 @@ def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(mo
 def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(model):
     found = errors_of(run_of(), dynamics="lugre")
     own = [how["step_ends_s"] is rs.OWN_STEPS for *_, how in model.asked]
-    assert own == [True, False, True, True]  # its steps, its answer, both errors of the drive
+    assert own == [True, False, True, True, True]  # its steps, its answer, errors of the drive
     model.asked.clear()
     found.errors(9.0)
     assert [how["step_ends_s"].tolist() for *_, how in model.asked] == [[0.25, 0.5]]
     model.asked.clear()
     r.reweighted(found, 9.0)
-    assert len(model.asked) == 4  # its old predictions had other steps
+    assert len(model.asked) == 5  # its old predictions had other steps
 
 
 def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, model):

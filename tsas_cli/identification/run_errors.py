@@ -25,7 +25,6 @@ from tsas_cli.identification.run_simulation import (
 )
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
-from tsas_cli.numerics.turning_points import last_beyond
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -209,10 +208,11 @@ def _weighted(
         moved = predict_driven(simulation, rig, **{end: _advanced(conditioned)})
         with_small_reversals = conditioned.values + conditioned.unseen
         disturbed = predict_driven(simulation, rig, **{end: with_small_reversals})
+        turned = predict_driven(simulation, rig, **{end: _turned_at_rest(conditioned, run.time_s)})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
             values += change[name] ** 2 + (disturbed[name] - plain[name]) ** 2
-            _before_reversals(values, change[name], conditioned)
+            values += _beside(turned[name] - plain[name]) ** 2
     weights = {name: np.sqrt(values) for name, values in square.items()}
     reversals = run.conditioned[run.drive_column].reversals
     turns = {
@@ -244,16 +244,29 @@ def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:
     return [run.blocks(rig, longest) for run, rig in zip(runs, rigs, strict=True)]
 
 
-def _before_reversals(square: Floats, change: Floats, conditioned: Conditioned) -> None:
-    """Add the uncertainty after each reversal to the samples just before it, in place.
+def _turned_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
+    """Return the values with every other sample turned back where the drive hardly moves.
 
-    There the distance to the extremum is within its noise: the drive may have reversed already.
+    There it may have reversed unseen, by an error or by a quantisation step, as a drive does whose
+    controller hunts. Friction along the sheath makes of a micrometre a large part of the loop.
     """
-    x, sd = conditioned.values, conditioned.sd
-    for reversal in conditioned.reversals[1:-1]:
-        first = last_beyond(x, reversal, REVERSAL_SD * sd[reversal]) + 1
-        behind = change[reversal : 2 * reversal - first + 2]
-        square[first : reversal + 1] += np.max(behind**2)
+    x, turned = conditioned.values, conditioned.values.copy()
+    samples = max(round(0.5 * conditioned.window_s / float(np.median(np.diff(time_s)))), 1)
+    padded = np.pad(x, samples, mode="edge")
+    moved = np.minimum(np.abs(padded[2 * samples :] - x), np.abs(x - padded[: -2 * samples]))
+    rests = moved < np.maximum(REVERSAL_SD * conditioned.sd, conditioned.step)
+    back = np.where(rests, np.maximum(conditioned.sd, conditioned.step), 0.0)
+    back[::2] = 0.0
+    for first, end in pairwise(conditioned.reversals):
+        part = slice(first + 1, end + 1)
+        turned[part] -= back[part] * (1.0 if x[end] >= x[first] else -1.0)
+    return turned
+
+
+def _beside(change: Floats) -> Floats:
+    """Return the larger change of every other sample and its neighbours."""
+    size = np.pad(np.abs(change), 1)
+    return np.asarray(np.maximum(size[1:-1], np.maximum(size[:-2], size[2:])))
 
 
 def _advanced(conditioned: Conditioned) -> Floats:

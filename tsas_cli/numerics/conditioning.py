@@ -41,7 +41,7 @@ class Conditioned:
     `sd` is the standard deviation of its error per sample, `unseen` the correction that makes it
     monotone between reversals, `window_s` the median window, `noise` the raw noise, `reversals`
     the indices of the extrema, with both ends, `smallest_reversal` the amplitude below which a
-    reversal counts as noise.
+    reversal counts as noise, `step` the quantisation step.
     """
 
     values: Floats
@@ -51,6 +51,7 @@ class Conditioned:
     noise: float
     reversals: Indices
     smallest_reversal: float = 0.0
+    step: float = 0.0
 
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
@@ -69,7 +70,8 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     threshold = smallest_reversal(sd, noise)
     reversals = turning_points(smooth, threshold)
     clean = monotone_between(smooth, reversals)
-    return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold)
+    step = quantisation_step(values)
+    return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold, step)
 
 
 def noise_and_memory(values: Floats) -> tuple[float, float]:
