@@ -25,7 +25,7 @@ EXPERIMENT = {e.name: e.experiment for e in EFFECTS}
 
 def test_the_next_experiment_follows_from_the_verdict():
     undecided = Diagnosis("undecided", "", Model(()), Model(()))
-    assert n.next_experiment(undecided).startswith("Record at least three runs")
+    assert n.next_experiment(undecided).startswith("Record longer runs, at least three")
     told = diagnosis("named", cause(PLAY, gain=20.0), cause(MASS, gain=30.0))
     assert n.next_experiment(told) == EXPERIMENT[MASS]  # what gains most
     assert n.next_experiment(diagnosis("unexplained")).startswith("Repeat one run")

@@ -19,7 +19,7 @@ from tsas_cli.identification.run_errors import (
     _advanced,
     _beside,
     _reversal_shapes,
-    _turned_at_rest,
+    _reversed_at_rest,
     run_errors,
 )
 from tsas_cli.identification.run_simulation import fitted_samples
@@ -167,7 +167,7 @@ def test_where_the_drive_rests_it_may_have_turned_back(sd, step, back):
         step=step,
         window_s=2.0,
     )
-    turned = _turned_at_rest(resting, np.arange(10.0)) - RESTING
+    turned = _reversed_at_rest(resting, np.arange(10.0)) - RESTING
     expected = np.zeros(10)
     expected[[3, 5]] = -back
     expected[9] = back  # the run ends: whether it moves on is unknown

@@ -80,7 +80,7 @@ def model(monkeypatch):
     monkeypatch.setattr(rs, "mechanics_of", lambda rig, drive: rig)
     monkeypatch.setattr(rs, "is_closed", lambda rig, drive: False)
     monkeypatch.setattr(rs, "points", lambda run: EVERY)
-    monkeypatch.setattr(r, "_turned_at_rest", lambda conditioned, time_s: conditioned.values)
+    monkeypatch.setattr(r, "_reversed_at_rest", lambda conditioned, time_s: conditioned.values)
     return made
 
 
@@ -119,7 +119,7 @@ def test_a_channel_without_noise_has_next_to_none(model):
 def test_what_a_hidden_turn_does_is_added_with_its_neighbours(monkeypatch, model):
     """k = 3: to turn back by 0.5 mm at sample 7 is 1.5 N, there and beside it."""
     back = np.where(EVERY == 7, 0.5, 0.0)
-    monkeypatch.setattr(r, "_turned_at_rest", lambda conditioned, _: conditioned.values + back)
+    monkeypatch.setattr(r, "_reversed_at_rest", lambda conditioned, _: conditioned.values + back)
     added = np.where((EVERY >= 6) & (EVERY <= 8), 1.5**2, 0.0)
     found = errors_of(run_of()).weights["f_in_N"]
     np.testing.assert_allclose(found, np.sqrt(4.0 + 0.09 + added))

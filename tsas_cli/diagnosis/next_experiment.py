@@ -20,8 +20,8 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
         return "Repeat the call and let the search end; fewer runs (--runs) take less time."
     if result.verdict == "undecided":
         return (
-            "Record at least three runs in which the drive travels through several whole strokes, "
-            "with f_in_N and one of f_out_N and x_out_mm."
+            "Record longer runs, at least three: in each the drive has to travel through several "
+            "whole strokes, with f_in_N and one of f_out_N and x_out_mm."
         )
     unsure = [cause for cause in result.causes if cause.rivals]
     if unsure and result.judged is not None and result.final is not None:

@@ -208,11 +208,11 @@ def _weighted(
         moved = predict_driven(simulation, rig, **{end: _advanced(conditioned)})
         with_small_reversals = conditioned.values + conditioned.unseen
         disturbed = predict_driven(simulation, rig, **{end: with_small_reversals})
-        turned = predict_driven(simulation, rig, **{end: _turned_at_rest(conditioned, run.time_s)})
+        hidden = predict_driven(simulation, rig, **{end: _reversed_at_rest(conditioned, run.time_s)})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
             values += change[name] ** 2 + (disturbed[name] - plain[name]) ** 2
-            values += _beside(turned[name] - plain[name]) ** 2
+            values += _beside(hidden[name] - plain[name]) ** 2
     weights = {name: np.sqrt(values) for name, values in square.items()}
     reversals = run.conditioned[run.drive_column].reversals
     turns = {
@@ -244,13 +244,13 @@ def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:
     return [run.blocks(rig, longest) for run, rig in zip(runs, rigs, strict=True)]
 
 
-def _turned_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
-    """Return the values with every other sample turned back where the drive hardly moves.
+def _reversed_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
+    """Return the values with every other sample moved back where the drive hardly moves.
 
     There it may have reversed unseen, by an error or by a quantisation step, as a drive does whose
     controller hunts. Friction along the sheath makes of a micrometre a large part of the loop.
     """
-    x, turned = conditioned.values, conditioned.values.copy()
+    x, reversed_ = conditioned.values, conditioned.values.copy()
     samples = max(round(0.5 * conditioned.window_s / float(np.median(np.diff(time_s)))), 1)
     padded = np.pad(x, samples, mode="edge")
     moved = np.minimum(np.abs(padded[2 * samples :] - x), np.abs(x - padded[: -2 * samples]))
@@ -259,8 +259,8 @@ def _turned_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
     back[::2] = 0.0
     for first, end in pairwise(conditioned.reversals):
         part = slice(first + 1, end + 1)
-        turned[part] -= back[part] * (1.0 if x[end] >= x[first] else -1.0)
-    return turned
+        reversed_[part] -= back[part] * (1.0 if x[end] >= x[first] else -1.0)
+    return reversed_
 
 
 def _beside(change: Floats) -> Floats:

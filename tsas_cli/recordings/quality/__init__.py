@@ -24,6 +24,7 @@ from tsas_cli.recordings.pieces import known_columns, long_run, pieces
 from tsas_cli.recordings.quality.checks import (
     clock,
     extremes,
+    jump,
     motion,
     noise,
     of_dataset,
@@ -58,6 +59,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(clock.gap),
     QualityCheck(rows.lost_samples, needs=("x_in_mm",)),
     QualityCheck(noise.outlier),
+    QualityCheck(jump.jump),
     QualityCheck(noise.bursts),
     QualityCheck(noise.hum),
     QualityCheck(rows.repeated_rows),
