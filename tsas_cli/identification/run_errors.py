@@ -208,7 +208,8 @@ def _weighted(
         moved = predict_driven(simulation, rig, **{end: _advanced(conditioned)})
         with_small_reversals = conditioned.values + conditioned.unseen
         disturbed = predict_driven(simulation, rig, **{end: with_small_reversals})
-        hidden = predict_driven(simulation, rig, **{end: _reversed_at_rest(conditioned, run.time_s)})
+        with_reversals_at_rest = _reversed_at_rest(conditioned, run.time_s)
+        hidden = predict_driven(simulation, rig, **{end: with_reversals_at_rest})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
             values += change[name] ** 2 + (disturbed[name] - plain[name]) ** 2
@@ -250,7 +251,7 @@ def _reversed_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
     There it may have reversed unseen, by an error or by a quantisation step, as a drive does whose
     controller hunts. Friction along the sheath makes of a micrometre a large part of the loop.
     """
-    x, reversed_ = conditioned.values, conditioned.values.copy()
+    x = conditioned.values
     samples = max(round(0.5 * conditioned.window_s / float(np.median(np.diff(time_s)))), 1)
     padded = np.pad(x, samples, mode="edge")
     moved = np.minimum(np.abs(padded[2 * samples :] - x), np.abs(x - padded[: -2 * samples]))
@@ -258,9 +259,8 @@ def _reversed_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
     back = np.where(rests, np.maximum(conditioned.sd, conditioned.step), 0.0)
     back[::2] = 0.0
     for first, end in pairwise(conditioned.reversals):
-        part = slice(first + 1, end + 1)
-        reversed_[part] -= back[part] * (1.0 if x[end] >= x[first] else -1.0)
-    return reversed_
+        back[first + 1 : end + 1] *= 1.0 if x[end] >= x[first] else -1.0
+    return np.asarray(x - back)
 
 
 def _beside(change: Floats) -> Floats:
