@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.recordings.readers.workbooks import save_xlsx
 from tsas_cli.recordings.ingest import find_files
 from tsas_cli.recordings.readers import names, read
 from tsas_cli.recordings.readers.joined import joined_by
@@ -101,3 +102,19 @@ def test_a_clock_of_dates_needs_an_offset(bench, tmp_path):
     with pytest.raises(InputError, match="counts from the first date of its own file"):
         names(bench(text), ReadOptions())
     assert len(names(bench(f"{text}\noffset_s = 0.0"), ReadOptions())) == 3
+
+
+RUNS = {"fast": 1.0, "slow": 5.0}
+
+
+def test_each_sheet_of_a_workbook_can_be_a_run(tmp_path):
+    sheets = {name: [["t [s]", "x"], [0.0, at], [1.0, at + 1.0]] for name, at in RUNS.items()}
+    save_xlsx(tmp_path / "book.xlsx", sheets)
+    for name in sheets:
+        text = f'[bench]\nfile = "book.xlsx"\ntime = "t [s]"\nread = {{ table = "{name}" }}\n'
+        (tmp_path / f"{name}.join").write_text(text)
+    found = find_files([tmp_path], "*")
+    assert [path.stem for path in found] == ["fast", "slow"]
+    for path in found:
+        table = read(path, ReadOptions(), ["time", "bench.x"])
+        assert table.columns["bench.x"].tolist() == [RUNS[path.stem], RUNS[path.stem] + 1.0]

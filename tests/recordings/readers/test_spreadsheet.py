@@ -38,7 +38,8 @@ def test_the_guess_asks_for_the_sheet(write):
     opened = open_file(write(Short=LOG[:3], Log=LOG))
     assert opened.read["table"][0] == "Log"
     assert opened.asked == {
-        "table": "which table: Log, Short? The channels below are those of Log."
+        "table": "which table: Log, Short? The channels below are those of Log. If each is a run, "
+        "list them (.join, docs/ingest.md)."
     }
 
 

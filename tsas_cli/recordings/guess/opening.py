@@ -100,7 +100,10 @@ def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
         return {}, {}
     if len(found) == 1:
         return {"table": (found[0], "the only table in the file is there")}, {}
-    question = f"which table: {', '.join(found)}? The channels below are those of {found[0]}."
+    question = (
+        f"which table: {', '.join(found)}? The channels below are those of {found[0]}. If each is "
+        "a run, list them (.join, docs/ingest.md)."
+    )
     return {"table": (found[0], "")}, {"table": question}
 
 
