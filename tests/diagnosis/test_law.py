@@ -1,13 +1,14 @@
 """A law of unnamed origin for what the independent rig hides and no catalogue holds."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
-from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe
+from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe, priors_of
 from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.remainder import LATE, remainder
@@ -21,6 +22,7 @@ from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model_file import stated_model
 from tsas_cli.identification.prepared import prepare
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
@@ -73,6 +75,29 @@ def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
     assert within < 2.5 * PLAY_MM
     assert 0.0 < said.after_reversal_margin[-1] < 0.2 * PLAY_MM
     assert abs(said.after_reversal[-1] - PLAY_MM) < 2.0 * said.after_reversal_margin[-1]
+
+
+def test_a_parameter_that_does_as_much_as_the_residual_costs_a_tenth_of_a_block():
+    """RMS 0.05 mm and 2 N at a mean tension of 20 N, in 4 blocks of 25."""
+    signals = {"f_in_N": np.full(8, -20.0), "f_out_N": None}
+    run = SimpleNamespace(
+        run=SimpleNamespace(channel=signals.get),
+        samples={"f_in_N": np.arange(8), "x_out_mm": np.arange(8)},
+        weights={"f_in_N": np.full(8, 2.0), "x_out_mm": np.full(8, 0.05)},
+    )
+    bench = SimpleNamespace(closed=(run,), channels=("f_in_N", "x_out_mm"))
+    without = SimpleNamespace(solution=SimpleNamespace(residual=np.full(4, 5.0)))
+    priors = priors_of(bench, without, SimpleNamespace(blocks=4))
+
+    def cost(name, value):
+        return (priors[name] * QUANTITIES[name].scaled(value)) ** 2
+
+    assert cost("drive_law.friction_3_N", 2.0) == pytest.approx(2.5)
+    assert cost("drive_law.gap_share_1", 0.1) == pytest.approx(2.5)
+    assert cost("load_law.lost_2_mm", 0.05) == pytest.approx(2.5)
+    assert cost("load_law.compliance_mm_per_N", 0.0025) == pytest.approx(2.5)
+    assert cost("tendon_law.start_1", -0.3) == pytest.approx(2.5)
+    assert not any(QUANTITIES[name].given for name in priors)
 
 
 def test_a_sound_rig_has_no_law(tmp_path):

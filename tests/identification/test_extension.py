@@ -56,6 +56,7 @@ class Run:
     def __init__(self, name, drive="drive"):
         self.name, self.samples = name, {f"{name}_N": 1, "f_in_N": 2}
         self.simulation = SimpleNamespace(drive=drive)
+        self.run = SimpleNamespace(has_force=True)
 
     def residuals(self, rig):
         self.asked = rig

@@ -1,6 +1,7 @@
 """The least squares over runs, on problems whose answer is known without it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -57,6 +58,19 @@ def test_the_squares_are_least_where_the_normal_equations_say():
     assert not found.at_bound.any()
     expected = np.vstack(MATRICES) @ exact - np.concatenate(TARGETS)
     np.testing.assert_allclose(found.residual, expected, atol=1e-5)
+
+
+def test_priors_choose_among_values_that_the_data_do_not_tell_apart():
+    """Of a + b, which is 3, the one with the smaller prior takes most; they are no residuals."""
+    weights = np.array([2.0, 1.0])
+    both = [replace(u, prior=w) for u, w in zip(THREE[:2], weights, strict=True)]
+    matrix, target = np.ones((4, 2)), np.full(4, 3.0)
+    found = solve(both, 1, linear([matrix], [target]), tolerance=1e-12)
+    ridge = np.linalg.solve(matrix.T @ matrix + np.diag(weights**2), matrix.T @ target)
+    np.testing.assert_allclose(found.values, ridge, atol=1e-6)
+    assert found.values[1] == pytest.approx(4.0 * found.values[0], rel=1e-5)
+    np.testing.assert_allclose(found.residual, matrix @ ridge - target, atol=1e-6)
+    np.testing.assert_allclose(found.jacobian, matrix, atol=1e-6)
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(-10.0, -1.0), (1.5, 10.0)])

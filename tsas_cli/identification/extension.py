@@ -1,7 +1,7 @@
 """The calibrated runs with effects freed: every hypothesis is fitted in the same way."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -31,7 +31,8 @@ class Bench:
 
     `free` are the free parameters of the base fit, with its estimates as initial values, `rigs`
     those of its runs. The residuals of the runs, with the weights and samples of the base fit, are
-    `closed` by the solver that each rig needs, `meshed` and `coarse` by the slip chain.
+    `closed` by the solver that each rig needs, `meshed` and `coarse` by the slip chain. `priors`
+    are those of effects' parameters that have one (`Unknown.prior`).
     """
 
     base: FittedModel
@@ -41,6 +42,7 @@ class Bench:
     meshed: tuple[RunErrors, ...]
     coarse: tuple[RunErrors, ...]
     never_closed: bool
+    priors: Mapping[str, float] = field(default_factory=dict)
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
         """Return whether a hypothesis needs the slip chain."""
@@ -80,7 +82,7 @@ class Bench:
             value = known.get((name, None))
             if initial is not None and name in initial:
                 value = quantity.scaled(initial[name])
-            freed.append(unknown_of(name, value))
+            freed.append(replace(unknown_of(name, value), prior=self.priors.get(name, 0.0)))
         unknowns = (*base, *freed)
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)

@@ -6,7 +6,7 @@ Jacobian costs one simulation of that run.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,7 +29,11 @@ COLOUR = 10.0  # ratio of the standard errors for coloured and for white noise, 
 
 @dataclass(frozen=True)
 class Unknown:
-    """One unknown: scaled initial value, bounds and plausible change; its run, None if shared."""
+    """One unknown: scaled initial value, bounds and plausible change; its run, None if shared.
+
+    `prior` is the weight of its distance from 0 among the residuals, where a fit has to be kept
+    from values that the data hardly determine.
+    """
 
     name: str
     run: int | None
@@ -37,6 +41,7 @@ class Unknown:
     lower: float
     upper: float
     scale: float
+    prior: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -128,23 +133,26 @@ def solve(
 ) -> Solution:
     """Return the minimum of the squares of all runs' residuals within the bounds.
 
-    `tolerance` is the share of the squares below which a reduction ends the search; `at_once`
-    whether simulations are long enough to run on threads. `known` are slopes near the initial
-    values, shape (n, p), with NaN in the columns of other unknowns; with `values_only` the
-    Jacobian of the solution is as rough.
+    Priors of the unknowns count too, and are no rows of the solution. `tolerance` is the share of
+    the squares below which a reduction ends the search; `at_once` whether simulations are long
+    enough to run on threads. `known` are slopes near the initial values, shape (n, p), with NaN in
+    the columns of other unknowns; with `values_only` the Jacobian of the solution is as rough.
     """
+    prior = np.diag([u.prior for u in unknowns])[[u.prior > 0.0 for u in unknowns]]
 
     def errors(values: Floats) -> Floats:
-        return np.concatenate(each(lambda r: residuals(r, values), range(runs), at_once=at_once))
+        of_runs = each(lambda r: residuals(r, values), range(runs), at_once=at_once)
+        return np.concatenate([*of_runs, prior @ values])
 
     def slopes(values: Floats, known: Floats | None = None) -> Floats:
-        return jacobian(unknowns, runs, values, residuals, at_once=at_once, known=known)
+        J = jacobian(unknowns, runs, values, residuals, at_once=at_once, known=known)
+        return np.vstack((J, prior))
 
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])
     initial = np.array([u.initial for u in unknowns])
     start = np.clip(initial, lower, upper)
-    return least_squares(
+    found = least_squares(
         errors,
         slopes,
         start,
@@ -154,6 +162,8 @@ def solve(
         slopes=None if known is None else slopes(start, known),
         values_only=values_only,
     )
+    rows = found.residual.size - len(prior)
+    return replace(found, residual=found.residual[:rows], jacobian=found.jacobian[:rows])
 
 
 def with_errors(
