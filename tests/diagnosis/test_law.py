@@ -54,8 +54,7 @@ def bench_for(folder, sensors):
 def described(folder, sensors):
     """Return the law that describes the runs."""
     bench = bench_for(folder, sensors)
-    nominal = dict.fromkeys(bench.channels, 0.0)
-    return describe(bench, bench.fit(), bench_folds(bench), nominal)
+    return describe(bench, bench.fit(), bench_folds(bench))
 
 
 def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
@@ -124,15 +123,27 @@ def test_a_load_cell_that_feels_the_other_a_little_explains_what_lags_at_reversa
     assert remainder(bench, trial, folds, signals_at_residuals(bench, trial), tolerated).late == ()
 
 
-@pytest.mark.parametrize(("after", "nominal", "worse"), [(1.05, 1.0, True), (1.05, 2.0, False)])
-def test_a_law_may_take_back_a_small_part_of_what_the_causes_have_gained(after, nominal, worse):
-    """3 % of the error of the nominal model, which the named effects have brought to 1."""
-    errors = [
-        HeldOutFit({"f_in_N": 1.0}, {}, np.zeros(0), {(0, "f_in_N"): rms, (1, "f_in_N"): 0.5})
-        for rms in (1.0, after)
-    ]
-    assert _worse(*errors, {"f_in_N": nominal}) == worse
-    assert not _worse(errors[1], errors[0], {"f_in_N": 1.0})
+@pytest.mark.parametrize(
+    ("force", "length", "worse"),
+    [
+        ((0.9, 0.9), (1.04, 1.04), True),  # a channel over all runs
+        ((0.5, 1.0), (1.0, 1.07), True),  # a run over both channels
+        ((0.9, 0.9), (1.04, 1.0), False),  # a little of one channel for more of another
+    ],
+)
+def test_a_law_that_makes_a_run_or_a_channel_worse_is_refused(force, length, worse):
+    def errors(force, length):
+        by_run = {(k, "f_in_N"): 2.0 * f for k, f in enumerate(force)}
+        by_run |= {(k, "x_out_mm"): 0.01 * x for k, x in enumerate(length)}
+        rmse = {
+            name: np.sqrt(np.mean([v**2 for (_, n), v in by_run.items() if n == name]))
+            for name in ("f_in_N", "x_out_mm")
+        }
+        return HeldOutFit(rmse, {}, np.zeros(0), by_run)
+
+    plain = errors((1.0, 1.0), (1.0, 1.0))
+    assert _worse(plain, errors(force, length)) == worse
+    assert not _worse(plain, plain)
 
 
 def test_the_share_that_exceeds_the_noise_and_the_share_that_a_law_takes(tmp_path):

@@ -1,5 +1,7 @@
 """Calls side by side: as one after the other, and really at once."""
 
+import os
+import signal
 import threading
 import time
 
@@ -41,3 +43,14 @@ def test_after_an_error_no_other_call_begins(monkeypatch):
     with pytest.raises(ZeroDivisionError):
         each(call, range(50))
     assert len(begun) < 5
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no forks here")
+def test_a_fork_has_threads_of_its_own(monkeypatch):
+    monkeypatch.setenv(THREADS, "2")
+    assert each(abs, [1, -2]) == [1, 2]
+    child = os.fork()
+    if child == 0:
+        signal.alarm(20)  # where it waits for threads of its parent
+        os._exit(0 if each(abs, [1, -2]) == [1, 2] else 1)
+    assert os.waitpid(child, 0)[1] == 0

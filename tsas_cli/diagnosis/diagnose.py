@@ -209,9 +209,9 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         nominal = estimates_with_tolerances(judged, before, tolerated).estimates
         start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
     complete = after.complete and not any(cause.law_differs for cause in causes)
-    law, nominal_rmse = None, proven.held_out[frozenset()].rmse
+    law = None
     if not after.complete:
-        law = describe(bench, final, predicted_folds(final, folds), nominal_rmse, step)
+        law = describe(bench, final, predicted_folds(final, folds), step)
     if law is not None:  # one number of one name: before the law is after the causes
         law = replace(law, before=proven.held_out[named])
     verdict = verdict_of(
@@ -220,7 +220,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         complete=complete,
         described=law is not None,
     )
-    errors = nominal_rmse, proven.held_out[named].rmse
+    errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
     by_causes = channel_errors(bench, *errors, start, after)
     fault = wandering(after) if verdict == "unexplained" else None
     reason = reason_of(verdict, causes, stand_ins, by_causes, after, law)

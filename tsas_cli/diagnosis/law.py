@@ -3,7 +3,7 @@
 The laws (`effects/laws`) act at an end of the tendon, and are fitted together with the nominal
 parameters and the proven effects, each channel's residual over its RMS without a law. A law is
 taken where it predicts held-out runs: it lowers the squares significantly, by a good part of what
-exceeds the noise, and makes no channel of any run worse. Nothing of it is a cause.
+exceeds the noise, and makes no run and no channel worse. Nothing of it is a cause.
 """
 
 import math
@@ -49,7 +49,7 @@ SETS: tuple[tuple[str, ...], ...] = (
 LEAST_TAKEN = 1.0 / 3.0  # of what exceeds the noise, by a law: one that takes less describes little
 PRIOR = 0.1  # of a block's squares, the cost of a parameter that does as much as the residual
 PLAUSIBLE_FACTOR = 0.3  # of a law that changes the friction
-WORSE = 0.03  # relative rise of a channel's RMS on held-out runs that refuses a law
+WORSE = 0.03  # relative rise of the RMS of a held-out run, or of a channel, that refuses a law
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,15 +75,13 @@ def describe(
     bench: Bench,
     trial: HypothesisFit,
     folds: Folds,
-    nominal: Mapping[str, float],
     step: Steps = NO_PROGRESS,
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
 
     Laws are tried alone and together, since the nominal parameters trade with what a missing law
     leaves, until all channels are at the noise level. Of the sets that predict, the one that
-    reduces the squares most; one of fewer laws if that does as well. `nominal` is the RMS of each
-    channel on held-out data by the nominal model.
+    reduces the squares most; one of fewer laws if that does as well.
     """
     ranges = ranges_of([run.run for run in bench.closed])
     bench, start = in_channel_units(bench, trial, ranges), _without_slopes(trial)
@@ -112,7 +110,7 @@ def describe(
         after = refitted(bench, fitted, folds, scatter=scatter)
         reduction = gain(before.squares, after.squares)
         some = reduction.convincing and _taken(before, after) > enough
-        if some and not _worse(before, after, nominal):
+        if some and not _worse(before, after):
             found.append((names, fitted, after, reduction.part))
             if all(after.rmse[n] < AT_NOISE * noise[n] for n in after.rmse):
                 break
@@ -232,16 +230,20 @@ def _taken(before: HeldOutFit, after: HeldOutFit) -> float:
     return float(np.mean([1.0 - (after.rmse[n] / rms) ** 2 for n, rms in before.rmse.items()]))
 
 
-def _worse(before: HeldOutFit, after: HeldOutFit, nominal: Mapping[str, float]) -> bool:
-    """Return whether a channel of a held-out run is worse by more than a small part.
+def _worse(before: HeldOutFit, after: HeldOutFit) -> bool:
+    """Return whether a held-out run, or a channel over all of them, is worse by more than a part.
 
-    Small beside its own error, and beside that of the nominal model: where named effects have taken
-    most of it away, a few per cent of the rest are no loss.
+    Of a run all channels count together, each over its RMS: one may lose a little where another
+    gains much.
     """
-    return any(
-        after.by_run[key] > (1.0 + WORSE) * rms
-        and after.by_run[key] - rms > WORSE * max(before.rmse[key[1]], nominal[key[1]])
-        for key, rms in before.by_run.items()
+
+    def of_run(fit: HeldOutFit, k: int) -> float:
+        shares = [rms / before.rmse[name] for (run, name), rms in fit.by_run.items() if run == k]
+        return float(np.linalg.norm(shares))
+
+    runs = {k for k, _ in before.by_run}
+    return any(of_run(after, k) > (1.0 + WORSE) * of_run(before, k) for k in runs) or any(
+        after.rmse[n] > (1.0 + WORSE) * rms for n, rms in before.rmse.items()
     )
 
 

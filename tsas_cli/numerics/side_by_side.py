@@ -44,3 +44,7 @@ def threads() -> int:
 @cache
 def _pool(threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(threads)
+
+
+if hasattr(os, "register_at_fork"):  # threads stay with the process that started them
+    os.register_at_fork(after_in_child=_pool.cache_clear)
