@@ -190,7 +190,8 @@ def _weighted(
 
     The error of an end is propagated by a simulation with each of its strokes advanced by one
     standard deviation, so that reversals move too, at the samples beside them as well; that of a
-    small reversal removed as noise, by a simulation with it. The steps of the dynamic model are chosen at the same rig.
+    small reversal removed as noise, by a simulation with it. The steps of the dynamic model are
+    chosen at the same rig.
     """
     if simulation.dynamics == "lugre":
         simulation = with_steps_at(simulation, rig)
