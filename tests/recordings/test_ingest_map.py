@@ -81,7 +81,7 @@ def test_the_shipped_maps_are_maps(path):
 
 
 def test_the_page_shows_a_map_that_works_and_names_every_key(ask):
-    _, example = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
+    *_, example = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
     assert ask(example).columns["x_in_mm"].sign == -1
     for key in [*ReadOptions.model_fields, *ColumnMap.model_fields]:
         assert f"`{key}`" in PAGE

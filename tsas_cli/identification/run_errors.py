@@ -189,9 +189,8 @@ def _weighted(
     """Return residuals with each channel's standard deviation per sample: its noise and the ends'.
 
     The error of an end is propagated by a simulation with each of its strokes advanced by one
-    standard deviation, so that reversals move too, at the samples beside them as well; that of a
-    small reversal removed as noise, by a simulation with it. The steps of the dynamic model are
-    chosen at the same rig.
+    standard deviation, so that reversals move too; that of a small reversal removed as noise, by a
+    simulation with it. The steps of the dynamic model are chosen at the same rig.
     """
     if simulation.dynamics == "lugre":
         simulation = with_steps_at(simulation, rig)
@@ -213,7 +212,7 @@ def _weighted(
         hidden = predict_driven(simulation, rig, **{end: with_reversals_at_rest})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
-            values += _beside(change[name]) ** 2 + (disturbed[name] - plain[name]) ** 2
+            values += _or_next(change[name]) ** 2 + (disturbed[name] - plain[name]) ** 2
             values += _beside(hidden[name] - plain[name]) ** 2
     weights = {name: np.sqrt(values) for name, values in square.items()}
     reversals = run.conditioned[run.drive_column].reversals
@@ -262,6 +261,11 @@ def _reversed_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
     for first, end in pairwise(conditioned.reversals):
         back[first + 1 : end + 1] *= 1.0 if x[end] >= x[first] else -1.0
     return np.asarray(x - back)
+
+
+def _or_next(change: Floats) -> Floats:
+    """Return the larger change of every sample and the next: it may lie behind its reversal."""
+    return np.asarray(np.maximum(np.abs(change), np.append(np.abs(change[1:]), 0.0)))
 
 
 def _beside(change: Floats) -> Floats:

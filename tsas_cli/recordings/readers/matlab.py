@@ -85,7 +85,7 @@ def _columns(content: Raw, prefix: str = "") -> Iterator[Column]:
     for name, value in content.items():
         if isinstance(value, dict):
             yield from _columns(value, f"{prefix}{name}.")
-        elif isinstance(value, np.ndarray):
+        elif isinstance(value, np.ndarray) and value.size:
             yield from columns_in(f"{prefix}{name}", value)
 
 
