@@ -113,3 +113,12 @@ def test_a_held_out_run_has_a_plausible_friction_of_its_own(fitted):
     rate, offset = without(runs, 3)
     errors = runs[3].data - curve(rate + 0.04, offset, 3)
     assert found.by_run[3, "f_in_N"] == pytest.approx(np.sqrt(np.mean(errors**2)), rel=1e-3)
+
+
+def test_a_step_that_ends_where_no_slope_leads_back_is_not_the_start(fitted, monkeypatch):
+    """With a rate of e³ every run is flat from its third sample on."""
+    runs, bench, trial, folds = fitted
+    lost = np.array([3.0, *trial.solution.values[1:]])
+    monkeypatch.setattr(module, "held_out_values", lambda *_: lost)
+    rate, _ = without(runs, 1)
+    assert refitted_values(bench, trial, folds, 1)[0] == pytest.approx(rate, abs=1e-3)

@@ -107,7 +107,11 @@ def refitted_values(bench: Bench, trial: HypothesisFit, folds: Folds, fold: int)
 def _solved(
     bench: Bench, trial: HypothesisFit, values: Floats, free: Mask, kept: Sequence[Mask]
 ) -> Floats:
-    """Return the values with the free unknowns fitted to the kept residuals of each run."""
+    """Return the values with the free unknowns fitted to the kept residuals of each run.
+
+    Where those of the fit to all runs leave less, they are the start: a Gauss-Newton step may end
+    beside another minimum.
+    """
     runs = bench.errors_for(trial)
 
     def residuals(k: int, some: Floats) -> Floats:
@@ -118,11 +122,12 @@ def _solved(
         rig = rig_at(bench.rigs[k], k, trial.unknowns, at)
         return runs[k].residuals(rig)[kept[k]]
 
-    unknowns = [
-        replace(u, initial=float(v))
-        for u, v, is_free in zip(trial.unknowns, values, free, strict=True)
-        if is_free
-    ]
+    def squares(some: Floats) -> float:
+        return sum(float(np.sum(residuals(k, some) ** 2)) for k in range(len(runs)))
+
+    start = min(values[free], trial.solution.values[free], key=squares)
+    free_unknowns = [u for u, is_free in zip(trial.unknowns, free, strict=True) if is_free]
+    unknowns = [replace(u, initial=float(v)) for u, v in zip(free_unknowns, start, strict=True)]
     known = trial.solution.jacobian[np.concatenate(kept)][:, free]
     fitted = solve(
         unknowns, len(runs), residuals, tolerance=TOLERANCE, known=known, values_only=True
