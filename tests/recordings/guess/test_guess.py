@@ -120,6 +120,16 @@ def test_x_in_or_f_in_that_no_column_is_left_for_is_asked(path, channels, names,
     assert proposal.is_a_recording
 
 
+def test_a_reference_may_stand_for_a_drive_that_was_not_recorded(path):
+    channels = ("time_s", "x_in_mm", "x_out_mm", "f_in_N")
+    names = ("t [s]", "desired [mm]", "tip [mm]", "cell in [N]")
+    write_csv(path, [(name, run()[c]) for c, name in zip(channels, names, strict=True)])
+    (x_in,) = (c for c in propose([path]).channels if c.name == "x_in_mm")
+    assert x_in.certainty == "open"
+    assert x_in.candidates == ("desired [mm]",)
+    assert "its reference will do" in x_in.questions["source"]
+
+
 def bracketed(name):
     return "{} [{}]".format(*name.rsplit("_", 1))
 

@@ -43,6 +43,9 @@ def test_what_does_not_go_together_or_does_not_turn_tells_nothing():
     columns = run()
     assert leads(columns["x_in_mm"], columns["time_s"]) == 0
     assert leads(columns["x_in_mm"][:300], columns["f_in_N"][:300]) == 0
+    jumping = np.repeat([0.0, 9.0, 0.0, 9.0, 0.0], 40)  # no sample is between its ends
+    with warnings.catch_warnings(action="error"):
+        assert leads(jumping, jumping) == 0
     assert correlation(columns["x_in_mm"], np.ones_like(columns["x_in_mm"])) == 0.0
     assert correlation(columns["x_in_mm"], np.full_like(columns["x_in_mm"], np.nan)) == 0.0
     with warnings.catch_warnings(action="error"):  # squares that vanish

@@ -24,6 +24,7 @@ from tsas_cli.recordings.guess.words import kind_of, unit_behind, words_of
         ("Extension", "displacement", None, False),  # no tension
         ("Distance", None, None, False),  # not distal
         ("Force in and out", "force", None, False),
+        ("Tip orientation y", "angle", "out", False),
         ("A", None, None, False),
     ],
 )

@@ -29,7 +29,7 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     ends = assign(displacements, tensions)
     found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
     found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
-    found |= _unrecorded(found)
+    found |= _unrecorded(found, [c for c in moving if c.words.is_reference])
     return [found[name] for name in NAMES if name in found]
 
 
@@ -161,8 +161,13 @@ def _missing(
     return asked
 
 
-def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
-    """Return a question for x_in or f_in that no column is left for; a drive alone has no f_in."""
+def _unrecorded(
+    found: Mapping[str, Proposed], references: Sequence[FileColumn]
+) -> dict[str, Proposed]:
+    """Return a question for x_in or f_in that no column is left for; a drive alone has no f_in.
+
+    The reference of a drive's position may stand for it.
+    """
     of_drive = "f_out_N" not in found and any(name.startswith("motor_") for name in found)
     wanted = ("x_in_mm",) if of_drive else ("x_in_mm", "f_in_N")
     question = (
@@ -170,7 +175,13 @@ def _unrecorded(found: Mapping[str, Proposed]) -> dict[str, Proposed]:
         "delete this table."
     )
     why = ("no column is left that it could be",)
-    return {name: _open(name, why, question) for name in wanted if found and name not in found}
+    asked = {name: _open(name, why, question) for name in wanted if found and name not in found}
+    lengths = [c for c in references if c.quantity in (None, *LENGTHS) and c.end != "out"]
+    if "x_in_mm" in asked and lengths:
+        shown = ", ".join(c.shown for c in lengths)
+        follows = f"{question} Where the drive follows it closely, its reference will do: {shown}."
+        asked["x_in_mm"] = _open("x_in_mm", why, follows, lengths)
+    return asked
 
 
 def _open(

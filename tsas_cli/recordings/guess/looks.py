@@ -108,6 +108,8 @@ def _width(u: Floats, v: Floats, start: int, reversal: int, stop: int) -> float 
     width = max(min(reversal - start, stop - reversal) // 20, 1)
     speed = np.gradient(np.convolve(np.pad(u[rows], width, mode="edge"), np.ones(width), "same"))
     used = direction != 0.0
+    if np.count_nonzero(used) < _FEWEST // 4:
+        return None
     x, y = u[rows][used], v[rows][used]
     x = (x - x.mean()) / (np.std(x) or 1.0)
     terms = np.column_stack([np.ones_like(x), x, x**2, direction[used]])

@@ -24,7 +24,7 @@ _QUANTITIES: dict[NamedQuantity, str] = {
     "displacement": "x s displacement disp displ position pos travel stroke encoder enc lvdt "
     "crosshead extension verschiebung auslenkung hub weg pfad deplacement course excursion "
     "laser 位移 行程",
-    "angle": "angle winkel theta phi rotation turntable rotary drehwinkel 角度 转角",
+    "angle": "angle winkel theta phi orientation rotation turntable rotary drehwinkel 角度 转角",
     "force": "f force tension loadcell cell kraft zugkraft seilkraft effort dynamometer "
     "tendonforce 力 张力 拉力",
     "torque": "torque moment drehmoment tau couple 力矩 扭矩",
