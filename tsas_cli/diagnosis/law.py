@@ -9,6 +9,7 @@ exceeds the noise, and makes no run and no channel worse. Nothing of it is a cau
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,6 +72,16 @@ class Law:
     covariance: Floats
 
 
+class _Predicting(NamedTuple):
+    """Laws that predict held-out runs, and the part of the squares that they take."""
+
+    names: tuple[str, ...]
+    trial: HypothesisFit
+    before: HeldOutFit
+    after: HeldOutFit
+    part: float
+
+
 def describe(
     bench: Bench,
     trial: HypothesisFit,
@@ -91,7 +102,7 @@ def describe(
     step.ahead(len(sets))
     scatter = scatter_is_no_effect(trial, folds.run)
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
-    found: list[tuple[tuple[str, ...], HypothesisFit, HeldOutFit, float]] = []
+    found: list[_Predicting] = []
     for names in sets:
         step.doing(f"fits laws of unnamed origin: {' + '.join(names)}")
         mesh = trial.on_mesh or bench.on_mesh(names)
@@ -102,31 +113,38 @@ def describe(
         bench = replace(bench, priors=priors_of(bench, without, folds))
         fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
         step()
-        fewer = [f.mean_square * (1.0 - AS_WELL) for n, f, *_ in found if len(n) < len(names)]
+        fewer = [f.trial.mean_square for f in found if len(f.names) < len(names)]
         enough = LEAST_TAKEN * _excess(noise, before)
-        least = min([without.mean_square * (1.0 - enough), *fewer])
-        if fitted.mean_square > least:  # what fits no better predicts no better
+        least = [without.mean_square * (1.0 - enough), *((1.0 - AS_WELL) * f for f in fewer)]
+        if fitted.mean_square > min(least):  # what fits no better predicts no better
             continue
         after = refitted(bench, fitted, folds, scatter=scatter)
         reduction = gain(before.squares, after.squares)
         some = reduction.convincing and _taken(before, after) > enough
         if some and not _worse(before, after):
-            found.append((names, fitted, after, reduction.part))
+            found.append(_Predicting(names, fitted, before, after, reduction.part))
             if all(after.rmse[n] < AT_NOISE * noise[n] for n in after.rmse):
                 break
     if not found:
         return None
-    most = max(part for *_, part in found)
-    as_good = [f for f in found if 1.0 - f[3] <= (1.0 + AS_WELL) * (1.0 - most)]
-    names, fitted, after, _ = min(as_good, key=lambda f: (len(f[0]), -f[3]))
-    rivals = tuple("+".join(f[0]) for f in as_good if len(f[0]) == len(names) and f[0] != names)
-    estimates = tuple(_estimates(bench, fitted, folds, ranges, names))
-    before = held_out[fitted.on_mesh][1]
-    solution = fitted.solution
+    most = max(f.part for f in found)
+    as_good = [f for f in found if 1.0 - f.part <= (1.0 + AS_WELL) * (1.0 - most)]
+    best = min(as_good, key=lambda f: (len(f.names), -f.part))
+    rivals = [f for f in as_good if len(f.names) == len(best.names) and f is not best]
+    solution = best.trial.solution
     covariance, _ = jackknife(
         solution.jacobian * ~solution.at_bound, solution.residual, folds.block
     )
-    return Law(names, rivals, estimates, before, after, bench, fitted, covariance)
+    return Law(
+        best.names,
+        tuple("+".join(f.names) for f in rivals),
+        tuple(_estimates(bench, best.trial, folds, ranges, best.names)),
+        best.before,
+        best.after,
+        bench,
+        best.trial,
+        covariance,
+    )
 
 
 def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
