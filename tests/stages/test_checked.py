@@ -91,3 +91,15 @@ def test_an_error_that_runs_share_is_said_once(tmp_path):
     said = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
     (shared,) = (sentence for sentence in said if sentence.endswith("(`slow-channel`)."))
     assert shared.startswith("Despite an error in run a and run b: x_out_mm changes only every 20")
+
+
+def test_errors_of_one_kind_are_said_once_with_the_first(tmp_path):
+    good = recorded(RIG, 200.0)
+    held = {
+        name: good | {"x_out_mm": good["x_out_mm"][np.arange(good["x_out_mm"].size) // k * k]}
+        for name, k in (("a", 20), ("b", 40))
+    }
+    folder = dataset_of(RIG, tmp_path / "data", **held)
+    said = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
+    (both,) = (sentence for sentence in said if sentence.endswith("(`slow-channel`)."))
+    assert "in run a and run b (the first): x_out_mm changes only every 20" in both

@@ -142,12 +142,17 @@ class OfDataset(StageFile):
     despite: tuple[Finding, ...] = ()
 
     def accepted(self) -> list[str]:
-        """Return a sentence for each error in the recordings that was accepted."""
-        found: dict[str, list[str]] = {}
+        """Return a sentence for each kind of error in the recordings that was accepted."""
+        found: dict[tuple[str, str | None], list[Finding]] = {}
         for error in self.despite:
-            where = found.setdefault(f"{error.sentence} (`{error.code}`)", [])
-            where.append(f"run {error.run}" if error.run else "the manifest")
-        return [f"Despite an error in {listed(where)}: {what}." for what, where in found.items()]
+            found.setdefault((error.code, error.column), []).append(error)
+        said = []
+        for (code, _), errors in found.items():
+            where = listed([f"run {e.run}" if e.run else "the manifest" for e in errors])
+            alike = len({e.sentence for e in errors}) == 1
+            of_first = "" if alike else " (the first)"
+            said.append(f"Despite an error in {where}{of_first}: {errors[0].sentence} (`{code}`).")
+        return said
 
     def source(self) -> DatasetSource:
         """Return the recordings as a model file names them."""
