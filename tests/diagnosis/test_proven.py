@@ -8,6 +8,7 @@ import pytest
 
 from tsas_cli.diagnosis import proven as p
 from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.steps import NO_PROGRESS
 
@@ -50,7 +51,7 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
     def judged(search, fits, found):
         causes = [cause for cause in (fails, holds) if cause.effect in search.named]
         after = SimpleNamespace(complete=complete)
-        return p.Proven(search, fits, tuple(causes), found, (), {}, after)
+        return p.Proven(search, fits, tuple(causes), found, (), {}, after, after)
 
     monkeypatch.setattr(p, "_judged", judged)
     monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)
@@ -158,3 +159,21 @@ def test_what_an_effect_proves(monkeypatch, after, told, failed, law, negligible
         "zero": told["zero"],
         "reduction": pytest.approx(200.0 - after.sum()),
     }
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "reducible", "structure", "refused"),
+    [
+        (401.0, 40.0, 39.0, 1.0, False),  # a tenth of 400, less a little
+        (401.0, 42.0, 41.0, 1.0, True),
+        (401.0, 1.0, 0.0, 1.0, False),
+        (401.0, 42.0, 41.0, 0.0, False),
+    ],
+)
+def test_where_much_is_left_no_effect_is_proven(first, last, reducible, structure, refused):
+    """A lost motion at the drive passes for a gain of x_out that takes half of it."""
+    start = Remainder(first, {"x_out_mm": 1.0}, ())
+    after = Remainder(last, {"x_out_mm": structure}, (), reducible=reducible)
+    cause = FoundCause("position_sensor_gain", (), (), 50.0, (40.0, 60.0))
+    failed = p._beside_what_is_left(cause, start, after).failed
+    assert failed == (("leaves 10 % of what could be explained",) if refused else ())

@@ -14,10 +14,9 @@ from tsas_cli.diagnosis.law import Law, describe
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
-from tsas_cli.diagnosis.remainder import Remainder, remainder
+from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.diagnosis.rivals import find_effects
 from tsas_cli.diagnosis.search import Search, tried
-from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
@@ -202,12 +201,10 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     bench, folds, named = judged.bench, judged.folds, judged.named
     before = judged.trial(frozenset(), on_mesh=bench.on_mesh(named))
     final = judged.trial(named)
-    after = start = proven.after
+    start, after = proven.start, proven.after
     nominal = list(proven.estimates)
     if named:
-        tolerated = tolerances(bench, before)
-        nominal = estimates_with_tolerances(judged, before, tolerated).estimates
-        start = remainder(bench, before, folds, signals_at_residuals(bench, before), tolerated)
+        nominal = estimates_with_tolerances(judged, before, tolerances(bench, before)).estimates
     complete = after.complete and not any(cause.law_differs for cause in causes)
     law = None
     if not after.complete:
@@ -238,7 +235,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         stand_ins,
         channels,
         after,
-        _share_left(start, after),
+        share_left(start, after),
         proven.search,
         judged,
         before,
@@ -248,10 +245,3 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         law,
         fault,
     )
-
-
-def _share_left(start: Remainder, after: Remainder) -> float:
-    """Return the share of what could be explained at first that remains, 0 to 1."""
-    floor = after.mean_square - after.reducible
-    first = max(start.mean_square - floor, 0.0)
-    return min(after.reducible / first, 1.0) if first > 0.0 else 0.0

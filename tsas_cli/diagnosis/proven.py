@@ -22,7 +22,7 @@ from tsas_cli.diagnosis.proof import (
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
-from tsas_cli.diagnosis.remainder import Remainder, remainder
+from tsas_cli.diagnosis.remainder import Remainder, remainder, share_left
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
 from tsas_cli.identification.estimate import Estimate
@@ -30,6 +30,7 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
 
 SEED = 1  # of the resampling of blocks
+MOST_LEFT = 0.1  # of what could be explained, by all causes together
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +38,8 @@ class Proven:
     """The effects that prove to be causes, with their fits, and those that do not.
 
     `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
-    `after` what remains;
-    `with_stand_ins` are the estimates with all effects that gain.
+    `start` is what remains without them and `after` what remains with them; `with_stand_ins` are
+    the estimates with all effects that gain.
     """
 
     search: Hypotheses
@@ -47,6 +48,7 @@ class Proven:
     stand_ins: tuple[FoundCause, ...]
     estimates: tuple[Estimate, ...]
     held_out: Mapping[frozenset[str], HeldOutFit]
+    start: Remainder
     after: Remainder
     with_stand_ins: tuple[Estimate, ...] = ()
 
@@ -99,7 +101,15 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     last = _LastFit(judged, found, held_out, at_residuals.signals, after.structure, tolerated)
     causes = tuple(_cause(last, name) for name in judged.rivals)
     causes = tuple(_beside_another_law(cause, causes) for cause in causes)
-    return Proven(search, judged, causes, stand_ins, tuple(found.estimates), held_out, after)
+    start = after
+    if named:
+        before = judged.trial(frozenset(), on_mesh=mesh)
+        tolerated = tolerances(bench, before)
+        at_residuals = signals_at_residuals(bench, before)
+        start = remainder(bench, before, judged.folds, at_residuals, tolerated)
+    causes = tuple(_beside_what_is_left(cause, start, after) for cause in causes)
+    estimates = tuple(found.estimates)
+    return Proven(search, judged, causes, stand_ins, estimates, held_out, start, after)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +174,15 @@ def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> Foun
             said = f"acts where {title} does, whose law differs from the catalogue's"
             return replace(cause, failed=(*cause.failed, said))
     return cause
+
+
+def _beside_what_is_left(cause: FoundCause, start: Remainder, after: Remainder) -> FoundCause:
+    """Return a cause, refused where much is left: an effect that is alike may take the rest too."""
+    left = share_left(start, after)
+    if after.complete or left <= MOST_LEFT:
+        return cause
+    said = f"leaves {100.0 * left:.0f} % of what could be explained"
+    return replace(cause, failed=(*cause.failed, said))
 
 
 def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:

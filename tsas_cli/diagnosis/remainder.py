@@ -99,6 +99,13 @@ class Remainder:
         return name if slow.ratio**2 > MOST_SLOW and slow.time_s > JERK_S else None
 
 
+def share_left(start: Remainder, after: Remainder) -> float:
+    """Return the share of what could be explained at first that remains, 0 to 1."""
+    floor = after.mean_square - after.reducible
+    first = max(start.mean_square - floor, 0.0)
+    return min(after.reducible / first, 1.0) if first > 0.0 else 0.0
+
+
 def remainder(
     bench: Bench,
     trial: HypothesisFit,
