@@ -18,7 +18,6 @@ from tsas_cli.identification.run_errors import (
     RunErrors,
     _advanced,
     _beside,
-    _or_next,
     _reversal_shapes,
     _reversed_at_rest,
     run_errors,
@@ -185,10 +184,6 @@ def test_where_the_drive_rests_it_may_have_turned_back(sd, step, back):
     expected[9] = back  # the run ends: whether it moves on is unknown
     assert turned == pytest.approx(expected)
     assert _beside(turned) == pytest.approx(back * np.array([0, 0, 1, 1, 1, 1, 1, 0, 1, 1]))
-
-
-def test_only_the_sample_before_a_change_is_as_uncertain():
-    assert _or_next(np.array([0.0, 0.0, -3.0, 2.0, 1.0])).tolist() == [0.0, 3.0, 3.0, 2.0, 1.0]
 
 
 @pytest.mark.parametrize(("hunting_mm", "count_mm"), [(0.0005, 0.001), (0.002, 0.004)])

@@ -212,7 +212,7 @@ def _weighted(
         hidden = predict_driven(simulation, rig, **{end: with_reversals_at_rest})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
-            values += _or_next(change[name]) ** 2 + (disturbed[name] - plain[name]) ** 2
+            values += change[name] ** 2 + (disturbed[name] - plain[name]) ** 2
             values += _beside(hidden[name] - plain[name]) ** 2
     weights = {name: np.sqrt(values) for name, values in square.items()}
     reversals = run.conditioned[run.drive_column].reversals
@@ -261,11 +261,6 @@ def _reversed_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
     for first, end in pairwise(conditioned.reversals):
         back[first + 1 : end + 1] *= 1.0 if x[end] >= x[first] else -1.0
     return np.asarray(x - back)
-
-
-def _or_next(change: Floats) -> Floats:
-    """Return the larger change of every sample and the next: it may lie behind its reversal."""
-    return np.asarray(np.maximum(np.abs(change), np.append(np.abs(change[1:]), 0.0)))
 
 
 def _beside(change: Floats) -> Floats:

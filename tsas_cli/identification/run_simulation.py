@@ -53,7 +53,8 @@ def fitted_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
 
     They start where the prediction is independent of the history before the run and the drive has
     travelled as far again, as other parameters may need. Samples after the last motion beyond the
-    noise are left out. The channel's noise must be known.
+    noise are left out, and the sample of each reversal, which may lie before it or behind it. The
+    channel's noise must be known.
     """
     first = first_determined_sample(rig, run.drive)
     if first is None:
@@ -64,6 +65,7 @@ def fitted_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
     moving = np.flatnonzero(np.abs(drive.values - drive.values[-1]) > drive.smallest_reversal)
     if moving.size:
         usable[moving[-1] + 1 :] = False
+    usable[drive.reversals[1:-1]] = False
     used = {
         name: np.flatnonzero(usable & np.isfinite(measured))
         for name, measured in run.measured.items()

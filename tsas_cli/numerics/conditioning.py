@@ -30,6 +30,7 @@ METHOD = (
 SHORTEST_BESIDE_CORNER = 4  # samples; to a line of fewer every acceleration is a corner
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
 STILL = 6.0  # standard deviations by which what rests moves in a window, at most
+SMOOTH = 0.5  # of a reversal's second difference, by those beside it at least
 REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
 REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
 
@@ -69,7 +70,7 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     smooth, sd, window_s = smooth_out(time_s, values, noise, memory)
     threshold = smallest_reversal(sd, noise)
     reversals = turning_points(smooth, threshold)
-    clean = monotone_between(smooth, reversals)
+    clean = with_turning_points(monotone_between(smooth, reversals), reversals)
     step = quantisation_step(values)
     return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold, step)
 
@@ -208,4 +209,20 @@ def monotone_between(values: Floats, reversals: Indices) -> Floats:
         rising = bool(values[last] >= values[first])
         stroke = isotonic_regression(out[first : last + 1], increasing=rising)
         out[first : last + 1] = stroke.x
+    return out
+
+
+def with_turning_points(values: Floats, reversals: Indices) -> Floats:
+    """Return the values with those of smooth reversals at the vertex of the parabola through three.
+
+    The motion turns between two samples, beyond both. A reversal is smooth where the second
+    differences beside it are half of its own or more: not at a corner or the end of a rest.
+    """
+    out = values.copy()
+    at = reversals[(reversals > 1) & (reversals < values.size - 2)]
+    bow = np.diff(values, 2)  # of sample k + 1
+    turn = bow[at - 1]
+    smooth = np.minimum(bow[at - 2] * turn, bow[at] * turn) > SMOOTH * turn**2
+    at, turn = at[smooth], turn[smooth]
+    out[at] -= (values[at + 1] - values[at - 1]) ** 2 / (8.0 * turn)
     return out

@@ -18,6 +18,8 @@ RISK_POINTS = 2000  # samples at which the risk is estimated, evenly spread
 RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
 UNDERSMOOTH = 0.75  # of the window of least risk: a hysteretic model tolerates noise, not bias
 CORNER = 6.0  # standard deviations of the difference of two slopes
+KINK = 4.0  # the same beside a curvature that changes, as that of a smooth turn does within
+COARSE = 16  # samples and fewer
 
 
 def best_half_windows(
@@ -200,7 +202,8 @@ def corners(time_s: Floats, values: Floats, half: int, noise: float) -> Indices:
                 jump[j] = slope_jump(time_s, values, j, half)
                 if jump[j] > jump[best]:
                     best = j
-            found.append(best)
+            if half > COARSE or kink(time_s, values, best, half) > KINK * noise:
+                found.append(best)
             i = best + half
         i += 1
     found.append(n)
@@ -213,6 +216,27 @@ def slope_jump(time_s: Floats, values: Floats, i: int, half: int) -> float:
     _, past, _, past_variance = quadratic_fit(time_s, values, i, i - half, i)
     _, future, _, future_variance = quadratic_fit(time_s, values, i, i, i + half)
     return abs(future - past) / math.sqrt(past_variance + future_variance)
+
+
+@kernel
+def kink(time_s: Floats, values: Floats, i: int, half: int) -> float:
+    """Return the jump of the slope at sample i beside a quartic, over its standard deviation.
+
+    Where samples are few the curvature of a smooth turn changes within a window, which parabolas to
+    both sides take for a jump.
+    """
+    unit = 0.5 * (time_s[i + half] - time_s[i - half])
+    A, b = np.zeros((6, 6)), np.zeros(6)
+    row = np.empty(6)
+    for j in range(i - half, i + half + 1):
+        t = (time_s[j] - time_s[i]) / unit
+        row[0], row[1], row[2], row[3], row[4], row[5] = 1.0, t, t**2, t**3, t**4, abs(t)
+        for k in range(6):
+            b[k] += row[k] * (values[j] - values[i])
+            for m in range(6):
+                A[k, m] += row[k] * row[m]
+    inverse = np.linalg.inv(A)
+    return abs(float(np.sum(inverse[5] * b))) / math.sqrt(inverse[5, 5])
 
 
 @kernel
