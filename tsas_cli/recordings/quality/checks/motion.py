@@ -134,8 +134,8 @@ def interference(trial: RunSignals) -> Remarks:
     In the dead band after a reversal of the drive the load rests, so nothing there can jump with
     it. What does is an interference that follows the direction of the motor: its current in the
     cable of a sensor, or a correction by the sign of the speed. Beside it f_in may jump too; that
-    looks like friction of the drive. A load with a mass jumps too, against the direction, where it
-    stops braking.
+    looks like friction of the drive. What is late jumps too, against the direction, and so does the
+    force of a load with a mass, where it stops braking.
     """
     even = trial.increases and trial.batches is None
     if not trial.on_spring or not even or len(trial.strokes) <= _FEWEST_REVERSALS:
@@ -150,13 +150,12 @@ def interference(trial: RunSignals) -> Remarks:
         mean, error = float(jumps.mean()), float(jumps.std(ddof=1)) / math.sqrt(jumps.size)
         if abs(mean) > max(_VISIBLE * trial.sizes[name].noise, _CRITICAL * error):
             unit = name.rsplit("_", 1)[1]
-            brakes = name == "f_out_N" and mean < 0.0
+            lags = "a delay, " if name == "x_out_mm" else "mass of the load, a delay, "
             yield Remark(
-                "warning" if brakes else "error",
+                "warning" if mean < 0.0 else "error",
                 f"{name} jumps by {abs(mean):.2g} {unit} when the drive reverses, "
-                "where the load still rests: "
-                + ("mass of the load, or " if brakes else "")
-                + "interference that follows the motor's direction",
+                f"where the load still rests: {lags + 'or ' if mean < 0.0 else ''}"
+                "interference that follows the motor's direction",
                 "shield the sensor's cable from the motor's, and look for corrections by the sign "
                 "of the speed",
                 name,
@@ -164,8 +163,12 @@ def interference(trial: RunSignals) -> Remarks:
 
 
 def _jumps(trial: RunSignals, values: Floats, noise: float) -> Floats:
-    """Return the jump of a channel at each reversal after which it rests, with the drive."""
+    """Return the jump of a channel at each reversal after which it rests, with the drive.
+
+    Until then it follows the drive, however that brakes.
+    """
     found = []
+    x = trial.channels["x_in_mm"]
     for old, new in zip(trial.strokes, trial.strokes[1:], strict=False):
         if old.stop != new.start or old.direction == new.direction:
             continue
@@ -176,7 +179,7 @@ def _jumps(trial: RunSignals, values: Floats, noise: float) -> Floats:
         if min(after.sum(), before.sum()) < _FEWEST_ROWS:
             continue
         slope, level = _polynomial(t[after], values[after], 1)
-        jump = level - _polynomial(t[before], values[before], 2)[-1]
+        jump = level - _polynomial(x[before] - x[old.stop], values[before], 2)[-1]
         if abs(slope) < max(_RESTS * noise, _PART * abs(jump)):
             found.append(new.direction * jump)
     return np.array(found)
