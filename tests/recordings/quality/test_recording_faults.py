@@ -138,6 +138,16 @@ def test_an_interference_that_follows_the_motor(column, size, severity):
     assert ("mass of the load" in remark.sentence) == (column == "f_out_N" and size < 0.0)
 
 
+def test_a_reversal_among_the_samples_that_are_lost():
+    """No slope is left on both sides, that would tell how many."""
+    x_in = GOOD["x_in_mm"]
+    turn = 400 + int(np.argmax(x_in[400:1400]))
+    kept = np.delete(np.arange(N), range(turn - 20, turn + 250))
+    remark = told(rows_of(kept), "lost-samples")
+    assert "a reversal among them" in remark.sentence
+    assert remark.first_s == pytest.approx(TIME[turn - 21], abs=0.02)
+
+
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_a_radius_taken_for_a_diameter(factor):
     both = {name: factor * GOOD[name] for name in ("x_in_mm", "x_out_mm")}

@@ -1,6 +1,7 @@
 """The checks for rows that are lost, or repeated."""
 
 import math
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -21,6 +22,7 @@ _FAR, _SEEN = 8.0, 5.0  # standard deviations, of x_in and of another channel
 _SUDDEN, _STEPS = 8.0, 3.0  # noise levels, and steps, that x_in changes by from row to row
 _EVEN, _MOSTLY, _GAP = 0.2, 0.98, 1.5  # intervals that are even, most of them, and a gap
 _SAME_SLOPE, _SAME_TIME = 0.4, 0.3  # relative
+_OTHERS, _TORN, _WITH_IT = 20, 10.0, 3.0  # changes from row to row, and times the least of them
 
 
 class _Jumps(NamedTuple):
@@ -41,7 +43,8 @@ def lost_samples(trial: RunSignals) -> Remarks:
     time, and goes on with that slope. A corner of the motion changes the slope, a slipped encoder
     moves one channel alone, and a tendon that slips moves no drive. Reported where x_in and another
     channel jump by the same time from one row to the next, far beyond the noise. A drive that
-    sticks and slips takes several rows.
+    sticks and slips takes several rows. A reversal among the lost samples leaves no such slope:
+    there both change by many times what they do anywhere else.
     """
     if not trial.increases or not trial.strokes:
         yield CannotTell("time does not increase, or the drive does not move")
@@ -76,6 +79,29 @@ def lost_samples(trial: RunSignals) -> Remarks:
             None,
             float(trial.time_s[at]),
         )
+    rows_of_places = {place + rows - 1 for place, _ in places}
+    for at in _torn(trial, moving):
+        if all(abs(at - row) > rows for row in rows_of_places):
+            yield Remark(
+                "warning",
+                f"x_in_mm and other channels jump from one row to the next at "
+                f"{trial.time_s[at]:.5g} s, as if samples were lost there, a reversal among them",
+                "write down the time of each sample, and end the run before that time",
+                None,
+                float(trial.time_s[at]),
+            )
+
+
+def _torn(trial: RunSignals, moving: Mapping[str, Floats]) -> list[int]:
+    """Return the rows after which x_in and another channel change as nowhere else in the run."""
+    even = (np.diff(trial.time_s) < _GAP * trial.step_s) & ~trial.repeats[:-1]
+    far = {}
+    for name, values in moving.items():
+        steps = np.abs(np.diff(values)) * even
+        usual = max(float(np.sort(steps)[-_OTHERS:][0]), trial.sizes[name].step)
+        far[name] = steps > (_TORN if name == "x_in_mm" else _WITH_IT) * usual
+    drive = far.pop("x_in_mm")
+    return [int(row) for row in np.flatnonzero(drive & np.any(list(far.values()), axis=0))]
 
 
 def _places(jumps: dict[str, _Jumps], rows: int, possible: Mask) -> list[tuple[int, float]]:
