@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import proven as p
+from tsas_cli.diagnosis.constancy import Split
+from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.estimate import Estimate
@@ -177,3 +179,10 @@ def test_where_much_is_left_no_effect_is_proven(first, last, reducible, structur
     cause = FoundCause("position_sensor_gain", (), (), 50.0, (40.0, 60.0))
     failed = p._beside_what_is_left(cause, start, after).failed
     assert failed == (("leaves 10 % of what could be explained",) if refused else ())
+
+
+@pytest.mark.parametrize(("values", "within"), [((0.09, 0.11), True), ((0.09, 0.13), False)])
+def test_parts_within_the_interval_of_the_whole_do_not_differ(values, within):
+    parts = tuple(zip(("low", "high"), values, strict=True))
+    split = Split("backlash.play_mm", "speed", Reduction(0.1, 3.0, 2.0, convincing=True), parts)
+    assert p._within_interval(split, [CLEAR]) == within

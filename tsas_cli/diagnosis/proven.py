@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.diagnosis.constancy import absorbed_by, beside_tolerances, worst_split
+from tsas_cli.diagnosis.constancy import Split, absorbed_by, beside_tolerances, worst_split
 from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain, gain_percent
 from tsas_cli.diagnosis.friction_scatter import scatter_is_no_effect, within_scatter
 from tsas_cli.diagnosis.held_out import predicted_folds
@@ -144,10 +144,10 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         zero=zero,
     )
     failed = (*failed, *_of_another_law(last, name))
-    law = "" if split is None else split_in_words(split)
+    law = "" if split is None or _within_interval(split, own) else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
     if split is not None and last.structure > ANOTHER_LAW * excess:
-        failed, law = (f"is not constant {law}", *failed), ""
+        failed, law = (f"is not constant {split_in_words(split)}", *failed), ""
     interval = gains[1], gains[2]
     negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
@@ -160,6 +160,15 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         convincing=again.convincing,
         negligible=negligible,
     )
+
+
+def _within_interval(split: Split, estimates: Sequence[Estimate]) -> bool:
+    """Return whether the values of all parts lie in the parameter's interval: none differs."""
+    (whole,) = (e for e in estimates if e.name == split.parameter)
+    if whole.interval_low is None or whole.interval_high is None:
+        return False
+    low, high = whole.interval_low, whole.interval_high
+    return all(low <= value <= high for _, value in split.values)
 
 
 def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:

@@ -134,7 +134,7 @@ class DiagnosisResult(Result):
         """Return the verdict, what to measure next, and what the recordings do not say."""
         slow = self.record.remainder.slow_noise
         return [
-            self.reason,
+            f"Verdict: {self.verdict}. {self.reason}",
             *(law.sentence for law in self.record.laws),
             *(noise.text(name) for name, noise in slow.items()),
             f"Next: {self.next_experiment}",
