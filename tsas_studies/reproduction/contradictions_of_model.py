@@ -8,7 +8,6 @@ from scipy.optimize import brentq
 from tsas_cli.effects import Effects
 from tsas_cli.effects.free_tendon import FreeTendon
 from tsas_cli.paper import Paper
-from tsas_cli.physics.closed_form.capstan import slip_stiffness
 from tsas_cli.physics.lugre.stability import Sliding, growth_rate
 from tsas_cli.physics.response import simulate
 from tsas_studies.reproduction.fig_7 import bands_of
@@ -18,6 +17,7 @@ from tsas_studies.reproduction.rig import (
     dynamic_rig,
     motion,
     quasi_static_rig,
+    stiffness_in_slip,
     tendon_stiffness,
     wrap_of,
 )
@@ -150,14 +150,8 @@ def ill_posed(paper: Paper) -> list[Row]:
 def _contraction(paper: Paper, speed: float) -> Sliding:
     """Return full slip towards the drive at `F_OUT_N`, the load's spring winding up."""
     rig = quasi_static_rig(paper)
-    km = slip_stiffness(
-        wrap_of(rig),
-        1.0,
-        rig.load_stiffness_N_per_mm,
-        rig.sheath_length_mm,
-        rig.tendon_stiffness_N,
-    )
-    return Sliding(F_OUT_N * math.exp(wrap_of(rig)), km * speed, speed, whole=True)
+    rate = stiffness_in_slip(rig, 1.0) * speed
+    return Sliding(F_OUT_N * math.exp(wrap_of(rig)), rate, speed, whole=True)
 
 
 def speed_limit(paper: Paper, group: str) -> float | None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsas_cli.paper import Paper
+from tsas_cli.support.arrays import Floats
 from tsas_studies.reproduction.fig_4_runs import (
     AT_P_RAD,
     Runs,
@@ -186,37 +187,26 @@ def _figures(runs: Runs) -> list[Figure]:
     angle = 2.0 * np.pi * (time_s / runs.period_s - 1.5)
     around = second & (angle > AROUND_P_RAD[0]) & (angle < AROUND_P_RAD[1])
 
-    def lines(channel: str, models: list[str]) -> tuple[Line, ...]:
+    def line(model: str, x: Floats, y: Floats) -> Line:
+        label, role = MODELS[model]
+        return Line(label, x, y, role, dashed=model == "printed")
+
+    def lines(channel: str) -> tuple[Line, ...]:
+        found = {model: runs.models[model] for model in ("static", "slip", "dynamic")}
         return tuple(
-            Line(
-                MODELS[model][0],
-                runs.models[model].x_in_mm[second],
-                getattr(runs.models[model], channel)[second],
-                MODELS[model][1],
-                dashed=model == "printed",
-            )
-            for model in models
+            line(model, it.x_in_mm[second], getattr(it, channel)[second])
+            for model, it in found.items()
         )
 
-    at_p = np.array([time_s[runs.sample_at_p] - 1.5 * runs.period_s])
-    near_P = tuple(
-        Line(
-            MODELS[model][0],
-            time_s[around] - 1.5 * runs.period_s,
-            runs.models[model].f_in_N[around],
-            MODELS[model][1],
-            dashed=model == "printed",
-        )
-        for model in shown
-    )
-    value = np.array([runs.f_in_at_p("dynamic")])
-    quasi = ["static", "slip", "dynamic"]
+    since_s = time_s - 1.5 * runs.period_s
+    near_P = (line(n, since_s[around], runs.models[n].f_in_N[around]) for n in shown)
+    at_p, value = since_s[[runs.sample_at_p]], np.array([runs.f_in_at_p("dynamic")])
     return [
         Figure(
             f"{name}-f-in",
             "Tension at the drive, second period.",
             ("x_in [mm]", "f_in [N]"),
-            lines("f_in_N", quasi),
+            lines("f_in_N"),
             part,
         ),
         Figure(
@@ -230,14 +220,14 @@ def _figures(runs: Runs) -> list[Figure]:
             f"{name}-x-out",
             "Displacement of the load; the three models lie on each other.",
             ("x_in [mm]", "x_out [mm]"),
-            lines("x_out_mm", quasi),
+            lines("x_out_mm"),
             part,
         ),
         Figure(
             f"{name}-lost",
             "Displacement that the load lacks.",
             ("x_in [mm]", "x_in − x_out [mm]"),
-            tuple(replace(line, y=line.x - line.y) for line in lines("x_out_mm", quasi)),
+            tuple(replace(one, y=one.x - one.y) for one in lines("x_out_mm")),
             part,
         ),
     ]

@@ -9,13 +9,12 @@ import numpy as np
 from tsas_cli.effects import Effects
 from tsas_cli.effects.free_tendon import FreeTendon
 from tsas_cli.paper import Paper, Printed
-from tsas_cli.physics.closed_form.capstan import slip_stiffness
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 from tsas_studies.reproduction.dead_band import DeadBand, dead_band
 from tsas_studies.reproduction.group import Figure, Group, Line, Row
 from tsas_studies.reproduction.recording import Fitted, Noise, fitted_stiffness
-from tsas_studies.reproduction.rig import bench_rig
+from tsas_studies.reproduction.rig import bench_rig, stiffness_in_slip
 from tsas_studies.reproduction.table_3 import lumped_stiffness
 from tsas_studies.reproduction.verdicts import holds, signed, within
 
@@ -148,10 +147,10 @@ def _rig_with_both(paper: Paper) -> tuple[float, float]:
     wanted = np.array([_measured(paper, "b_c").value, _measured(paper, "e_f").value])
 
     def off(unknown: Floats) -> Floats:
-        a, kL = unknown[0] * rig.total_bend_rad, unknown[1]
-        sizes = (kL, rig.sheath_length_mm, rig.tendon_stiffness_N)
-        slopes: Floats = np.array([slip_stiffness(a, side, *sizes) for side in (1.0, -1.0)])
-        missing: Floats = slopes - wanted
+        mu, kL = unknown
+        tried = rig._replace(friction_coefficient=mu, load_stiffness_N_per_mm=kL)
+        missing: Floats = np.array([stiffness_in_slip(tried, side) for side in (1.0, -1.0)])
+        missing -= wanted
         return missing
 
     start = [rig.friction_coefficient, rig.load_stiffness_N_per_mm]

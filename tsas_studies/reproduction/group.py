@@ -46,18 +46,9 @@ class Row:
 
     def as_json(self) -> dict[str, Any]:
         """Return the row as it is written."""
-        return {
-            "what": self.what,
-            "source": self.source,
-            "paper": self.paper,
-            "ours": self.ours,
-            "unit": self.unit,
-            "ratio": self.ratio,
-            "verdict": self.verdict,
-            "criterion": self.criterion,
-            "because": self.because,
-            "evidence": self.evidence,
-        }
+        numbers = ("what", "source", "paper", "ours", "unit", "ratio")
+        judged = ("verdict", "criterion", "because", "evidence")
+        return {name: getattr(self, name) for name in numbers + judged}
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,16 @@
 
 from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from tsas_cli.paper import Paper
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Fact, Glance, Picture, Section, rendered, table_of
 from tsas_cli.reporting.content import Group as Fold
-from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.drawing import kept_samples, legend, picture
 from tsas_cli.reporting.numbers import ABSENT, as_printed, plain, spanned
-from tsas_studies.reproduction.curves import draw_curves
 from tsas_studies.reproduction.group import Figure, Group, Line, Row
 from tsas_studies.reproduction.summary import counted, sentence, verdict_table
 
@@ -108,8 +109,19 @@ def _in_words(line: Line) -> str:
 def _picture(figure: Figure) -> Picture:
     said = "; ".join(map(_in_words, figure.lines))
     return picture(
-        partial(draw_curves, figure=figure),
+        partial(_draw, lines=figure.lines, axes=figure.axes),
         key=figure.key,
         alt=f"{figure.caption} {figure.axes[1]} over {figure.axes[0]}. {said}.",
         caption=figure.caption,
     )
+
+
+def _draw(drawing: Any, lines: Sequence[Line], axes: tuple[str, str]) -> None:
+    """Draw the later lines over the earlier ones."""
+    plot = drawing.add_subplot(xlabel=axes[0], ylabel=axes[1])
+    for line in lines:
+        kept = kept_samples(line.x, line.y)
+        style = "none" if line.mark else (0, (5, 3)) if line.dashed else "-"
+        look = {"color": STAND_IN[line.role], "linestyle": style, "marker": line.mark or None}
+        plot.plot(line.x[kept], line.y[kept], label=line.label, **look)
+    legend(drawing, handlelength=1.8)

@@ -10,7 +10,7 @@ from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.effects.viscous_friction import ViscousFriction
 from tsas_cli.paper import Paper
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
+from tsas_cli.physics.closed_form.capstan import slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
@@ -53,6 +53,12 @@ def bench_rig(paper: Paper) -> Rig:
 def wrap_of(rig: Rig) -> float:
     """Return a = μθ."""
     return rig.friction_coefficient * rig.total_bend_rad
+
+
+def stiffness_in_slip(rig: Rig, direction: float) -> float:
+    """Return km of full slip towards the drive (1) or from it (−1) [N/mm], Eqs. (30), (32)."""
+    sizes = rig.load_stiffness_N_per_mm, rig.sheath_length_mm, rig.tendon_stiffness_N
+    return slip_stiffness(wrap_of(rig), direction, *sizes)
 
 
 def dynamic_rig(paper: Paper, group: str, *, as_printed: bool) -> Rig:

@@ -3,9 +3,9 @@
 import math
 
 from tsas_cli.paper import Paper
-from tsas_cli.physics.closed_form.capstan import dead_band_stiffness, slip_stiffness
+from tsas_cli.physics.closed_form.capstan import dead_band_stiffness
 from tsas_studies.reproduction.group import Group, Row
-from tsas_studies.reproduction.rig import bench_rig, kr_per_km, wrap_of
+from tsas_studies.reproduction.rig import bench_rig, kr_per_km, stiffness_in_slip, wrap_of
 from tsas_studies.reproduction.verdicts import holds, signed, to_the_digit
 
 PHASES = ("contraction", "dead_band", "loosening")
@@ -89,16 +89,9 @@ def _kr_rows(paper: Paper, km: dict[str, float]) -> list[Row]:
 
 def _elastic_rows(paper: Paper, km: dict[str, float]) -> list[Row]:
     """Judge the statement that the stretch of the tendon may be left out of Eqs. (30) and (32)."""
-    rig = bench_rig(paper)
     rows = []
     for phase, direction in (("contraction", 1.0), ("loosening", -1.0)):
-        kept = slip_stiffness(
-            wrap_of(rig),
-            direction,
-            rig.load_stiffness_N_per_mm,
-            rig.sheath_length_mm,
-            rig.tendon_stiffness_N,
-        )
+        kept = stiffness_in_slip(bench_rig(paper), direction)
         off = 100.0 * (km[phase] / kept - 1.0)
         rows.append(
             holds(

@@ -3,50 +3,39 @@
 `because` is the cause where the numbers do not agree, and is dropped where they do.
 """
 
+from collections.abc import Mapping
+
 from tsas_cli.paper import Printed
 from tsas_studies.reproduction.group import Row, Verdict
 
 NOT_KNOWN = "of a cause that is not known here"
 
 
-def to_the_digit(
-    what: str, printed: Printed, ours: float, *, because: str = "", evidence: str = ""
-) -> Row:
-    """Compare with a printed number as far as its digits go."""
+def to_the_digit(what: str, printed: Printed, ours: float, **said: str) -> Row:
+    """Compare with a printed number as far as its digits go; `said`: `because`, `evidence`."""
     half = f"{printed.half_a_digit:.12f}".rstrip("0").rstrip(".")
-    return holds(
-        what,
-        printed.source,
-        true=abs(ours - printed.value) <= printed.half_a_digit * (1.0 + 1e-9),
-        criterion=f"to the last digit printed, ± {half}",
-        unit=printed.unit,
-        paper=printed.value,
-        ours=ours,
-        because=because,
-        evidence=evidence,
-    )
+    near = abs(ours - printed.value) <= printed.half_a_digit * (1.0 + 1e-9)
+    return _beside(what, printed, ours, near, f"to the last digit printed, ± {half}", said)
 
 
-def within(
-    what: str,
-    printed: Printed,
-    ours: float,
-    *,
-    percent: float,
-    because: str = "",
-    evidence: str = "",
+def within(what: str, printed: Printed, ours: float, *, percent: float, **said: str) -> Row:
+    """Compare with a printed number, to some percent of it; `said`: `because`, `evidence`."""
+    near = abs(ours - printed.value) <= 1e-2 * percent * abs(printed.value)
+    return _beside(what, printed, ours, near, f"within {percent:g} %", said)
+
+
+def _beside(
+    what: str, printed: Printed, ours: float, near: bool, criterion: str, said: Mapping[str, str]
 ) -> Row:
-    """Compare with a printed number, to some percent of it."""
     return holds(
         what,
         printed.source,
-        true=abs(ours - printed.value) <= 1e-2 * percent * abs(printed.value),
-        criterion=f"within {percent:g} %",
+        true=near,
+        criterion=criterion,
         unit=printed.unit,
         paper=printed.value,
         ours=ours,
-        because=because,
-        evidence=evidence,
+        **said,
     )
 
 
