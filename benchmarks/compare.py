@@ -79,10 +79,7 @@ class Comparison:
 def compare(old: Path, new: Path) -> Comparison:
     """Compare what two calls of `make bench` have written.
 
-    Raises
-    ------
-    InputError
-        One is no such file, or has another format or yardstick.
+    InputError: one is no such file, or has another format or yardstick.
     """
     before, after = _read(old), _read(new)
     if before["yardstick"] != after["yardstick"]:

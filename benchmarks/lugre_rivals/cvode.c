@@ -217,7 +217,7 @@ static int set(void *cvode, const Problem *problem, const Settings *settings, N_
 
 /* Solve from `start`, which is overwritten; return 0, or what CVODE returned. */
 int solve(const Problem *problem, const Settings *settings, double *start, long count,
-          const double *time_s, double *seen, long *steps) {
+          const double *time_s, double *seen) {
   const long size = 3 * problem->lumps + 1;
   SUNContext context;
   int failed = SUNContext_Create(NULL, &context);
@@ -235,9 +235,9 @@ int solve(const Problem *problem, const Settings *settings, double *start, long 
   if (!failed) failed = set(cvode, problem, settings, tolerance);
   seen[0] = start[0], seen[count] = start[1], seen[2 * count] = start[size - 1];
   long done = 1;
-  for (*steps = 0; done < count && !failed; (*steps)++) {
-    failed = *steps < MOST_STEPS ? CVode(cvode, time_s[count - 1], state, &now, CV_ONE_STEP)
-                                 : CV_TOO_MUCH_WORK;
+  for (long steps = 0; done < count && !failed; steps++) {
+    failed = steps < MOST_STEPS ? CVode(cvode, time_s[count - 1], state, &now, CV_ONE_STEP)
+                                : CV_TOO_MUCH_WORK;
     long to = done;
     while (to < count && time_s[to] <= now) to++;
     if (!failed && to > done)

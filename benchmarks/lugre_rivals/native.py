@@ -3,7 +3,6 @@
 import ctypes
 import subprocess
 import tempfile
-import time
 from ctypes import POINTER, c_double, c_int, c_long
 from functools import cache
 from pathlib import Path
@@ -12,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.lugre_rivals.drives import Floats
-from benchmarks.lugre_rivals.ode import Problem, output
-from benchmarks.lugre_rivals.solution import NotAvailableError, Solution, Tolerance
+from benchmarks.lugre_rivals.ode import Output, Problem, output
+from benchmarks.lugre_rivals.solution import NotAvailableError, Tolerance
 
 # As -ffast-math, but for its start-up code, which would change the arithmetic of the whole process.
 FLAGS = "-O3 -march=native -fno-math-errno -fno-trapping-math -fno-signed-zeros -fassociative-math"
@@ -51,13 +50,8 @@ class Settings(NamedTuple):
     after_newton_failure: float = 0.1
 
 
-TUNED = Settings()
-
-
-def cvode_in_c(problem: Problem, tolerance: Tolerance, settings: Settings = TUNED) -> Solution:
+def cvode_in_c(problem: Problem, tolerance: Tolerance) -> Output:
     """CVODE in C: right hand side, Jacobian, banded matrix, norm and output."""
-    solve = _built().solve
-    begin = time.perf_counter()
     constants, (sines, pieces) = np.array(problem.model.constants()), problem.drive.tables()
     time_s = np.ascontiguousarray(problem.time_s)
     given = _Problem(
@@ -68,20 +62,19 @@ def cvode_in_c(problem: Problem, tolerance: Tolerance, settings: Settings = TUNE
         len(pieces),
         _pointer(pieces),
     )
-    options = np.array([tolerance.relative, *tolerance[:3], *settings])
-    state, seen, steps = problem.start(), np.empty((3, time_s.size)), c_long()
-    failed = solve(
+    options = np.array([tolerance.relative, *tolerance[:3], *Settings()])
+    state, seen = problem.start(), np.empty((3, time_s.size))
+    failed = _built().solve(
         ctypes.byref(given),
         _pointer(options),
         _pointer(state),
         c_long(time_s.size),
         _pointer(time_s),
         _pointer(seen),
-        ctypes.byref(steps),
     )
     if failed:
         raise RuntimeError(f"CVODE returned {failed}")
-    return Solution(output(problem, *seen), time.perf_counter() - begin, steps.value)
+    return output(problem, *seen)
 
 
 class _Problem(ctypes.Structure):

@@ -1,4 +1,4 @@
-"""What every solver is asked for, and what it gives."""
+"""What every solver is asked for, and what is seen of what it gives."""
 
 from typing import NamedTuple
 
@@ -24,14 +24,6 @@ class Tolerance(NamedTuple):
     def absolute(self, lumps: int) -> Floats:
         """Return the absolute tolerances of a whole state."""
         return np.append(np.tile([self.y_mm, self.w_mm_s, self.z_mm], lumps), self.y_mm)
-
-
-class Solution(NamedTuple):
-    """What is seen at both ends at the problem's times, and what it took."""
-
-    output: Output
-    seconds: float
-    steps: int
 
 
 def at_times(problem: Problem, states: Floats) -> Output:

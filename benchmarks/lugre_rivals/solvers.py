@@ -5,7 +5,6 @@ is banded, and where a solver's own output costs more than its steps, the steps 
 cubics whose slopes are known.
 """
 
-import time
 from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple, TypeAlias
@@ -18,10 +17,9 @@ from benchmarks.lugre_rivals import ode
 from benchmarks.lugre_rivals.compiled import BANDS, LOWER, UPPER, jacobian, rate, spread
 from benchmarks.lugre_rivals.drives import Floats, Samples
 from benchmarks.lugre_rivals.native import cvode_in_c
-from benchmarks.lugre_rivals.ode import Problem
+from benchmarks.lugre_rivals.ode import Output, Problem
 from benchmarks.lugre_rivals.solution import (
     NotAvailableError,
-    Solution,
     Tolerance,
     at_times,
     joined,
@@ -40,7 +38,7 @@ def sundae(
     max_order: int = 2,
     max_newton: int = 2,
     steps_only: bool = True,
-) -> Solution:
+) -> Output:
     """CVODE through scikit-sundae, banded; its Newton coefficient cannot be set.
 
     Parameters
@@ -50,15 +48,13 @@ def sundae(
     max_order, max_newton
         Highest order of the BDF formulas; most Newton iterations of a step.
     steps_only
-        Ask for the steps, and join them by cubics; otherwise for the state at each time, which are
-        then counted as the steps.
+        Ask for the steps, and join them by cubics; otherwise for the state at each time.
     """
     try:
         from sksundae.cvode import CVODE
     except ImportError as error:
         raise NotAvailableError("scikit-sundae is not installed") from error
 
-    begin = time.perf_counter()
     given, size = _tables(problem), problem.start().size
     columns = np.zeros((size, BANDS))
 
@@ -82,15 +78,13 @@ def sundae(
     found = solver.solve(wanted, problem.start())
     if not found.success:
         raise RuntimeError(found.message)
-    seen = joined(problem, found.t, found.y) if steps_only else at_times(problem, found.y)
-    return Solution(seen, time.perf_counter() - begin, found.t.size - 1)
+    return joined(problem, found.t, found.y) if steps_only else at_times(problem, found.y)
 
 
 def lsoda(
     problem: Problem, tolerance: Tolerance, *, max_order: int = 2, join: bool = True
-) -> Solution:
+) -> Output:
     """LSODA through `odeint`, banded; where the drive is smooth, its outputs may be joined."""
-    begin = time.perf_counter()
     given = _tables(problem)
     out = np.empty(problem.start().size)
     columns = np.zeros((out.size, BANDS))
@@ -107,7 +101,7 @@ def lsoda(
     if join and not isinstance(problem.drive, Samples):
         every = max(1, int(LONGEST_JOINT_S / (problem.time_s[1] - problem.time_s[0])))
     wanted = np.append(problem.time_s[:-1:every], problem.time_s[-1])
-    states, record = odeint(
+    states = odeint(
         rate_of,
         problem.start(),
         wanted,
@@ -120,59 +114,51 @@ def lsoda(
         atol=tolerance.absolute(problem.model.lumps),
         mxords=max_order,
         mxstep=MOST_STEPS,
-        full_output=True,
     )
-    seen = at_times(problem, states) if every == 1 else joined(problem, wanted, states)
-    return Solution(seen, time.perf_counter() - begin, int(record["nst"][-1]))
+    return at_times(problem, states) if every == 1 else joined(problem, wanted, states)
 
 
-def bdf(problem: Problem, tolerance: Tolerance) -> Solution:
+def bdf(problem: Problem, tolerance: Tolerance) -> Output:
     """Solve by scipy's BDF with banded linear algebra, its steps joined by cubics."""
-    begin = time.perf_counter()
     solver = _banded(BDF, problem, tolerance, _compiled_rate(problem))
     times, states = [solver.t], [solver.y]
     while solver.status == "running":
         _step(solver)
         times.append(solver.t)
         states.append(solver.y)
-    seen = joined(problem, np.array(times), np.array(states))
-    return Solution(seen, time.perf_counter() - begin, len(times) - 1)
+    return joined(problem, np.array(times), np.array(states))
 
 
-def radau(problem: Problem, tolerance: Tolerance, *, max_step_s: float = 0.16) -> Solution:
+def radau(problem: Problem, tolerance: Tolerance, *, max_step_s: float = 0.16) -> Output:
     """Solve by scipy's Radau with banded linear algebra and its own polynomials between steps.
 
     Newton starts from the state before the step, since the last step's polynomial leads it astray
     at a reversal. `max_step_s` keeps a step from going far beyond one.
     """
-    begin = time.perf_counter()
     solver = _banded(Radau, problem, tolerance, _compiled_rate(problem), max_step=max_step_s)
     at = np.empty((problem.time_s.size, solver.n))
-    at[0], done, steps = solver.y, 1, 0
+    at[0], done = solver.y, 1
     while solver.status == "running":
         solver.sol = None
         _step(solver)
-        steps += 1
         to = int(np.searchsorted(problem.time_s, solver.t, side="right"))
         if to > done:
             at[done:to] = solver.dense_output()(problem.time_s[done:to]).T
             done = to
-    return Solution(at_times(problem, at), time.perf_counter() - begin, steps)
+    return at_times(problem, at)
 
 
-def radau_in_numpy(problem: Problem, tolerance: Tolerance) -> Solution:
+def radau_in_numpy(problem: Problem, tolerance: Tolerance) -> Output:
     """Solve by scipy's Radau with the equations in numpy and a step's end at each time: slow."""
-    begin = time.perf_counter()
     solver = _banded(Radau, problem, tolerance, partial(ode.rate, problem=problem))
-    at, steps = [solver.y], 0
+    at = [solver.y]
     for wanted in problem.time_s[1:]:
         solver.t_bound, solver.status = wanted, "running"
         while solver.status == "running":
             solver.sol = None
             _step(solver)
-            steps += 1
         at.append(solver.y)
-    return Solution(at_times(problem, np.array(at)), time.perf_counter() - begin, steps)
+    return at_times(problem, np.array(at))
 
 
 def _banded(
@@ -246,7 +232,7 @@ class Rival(NamedTuple):
     """
 
     name: str
-    solve: Callable[[Problem, Tolerance], Solution]
+    solve: Callable[[Problem, Tolerance], Output]
     tolerance: Tolerance
 
 

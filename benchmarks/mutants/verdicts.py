@@ -1,10 +1,11 @@
 """The table of what became of the mutants, and those that live."""
 
-import math
 import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
+
+from scipy.stats import binomtest
 
 from tsas_cli.support.text_table import table_text
 
@@ -17,17 +18,6 @@ def equivalents() -> dict[tuple[str, str, str], str]:
     """Return the mutants that nobody can tell from the program, by file and line, and why."""
     entries = tomllib.loads(EQUIVALENT.read_text())["mutant"]
     return {(entry["path"], entry["before"], entry["after"]): entry["why"] for entry in entries}
-
-
-def interval(successes: int, trials: int) -> tuple[float, float]:
-    """Return the 95 % interval of a share (Wilson's: it holds for few trials too)."""
-    if not trials:
-        return 0.0, 1.0
-    z, share = 1.959964, successes / trials
-    middle = share + z * z / (2 * trials)
-    half = z * math.sqrt(share * (1 - share) / trials + (z / (2 * trials)) ** 2)
-    scale = 1 + z * z / trials
-    return (middle - half) / scale, (middle + half) / scale
 
 
 def lines(verdicts: Sequence[Verdict]) -> Iterator[str]:
@@ -61,7 +51,9 @@ def _row(name: str, verdicts: Sequence[Verdict]) -> tuple[str, ...]:
     outcomes = [verdict["outcome"] for verdict in verdicts]
     counts = [outcomes.count(o) for o in ("killed", "timed out", "survived", "equivalent")]
     noticed, judged = counts[0] + counts[1], sum(counts[:3])
-    low, high = interval(noticed, judged)
-    score = f"{100 * noticed / judged:.0f}" if judged else "-"
-    within = f"{100 * low:.0f} to {100 * high:.0f}" if judged else "-"
+    score = within = "-"
+    if judged:  # Wilson's interval: it holds for few mutants too
+        ends = binomtest(noticed, judged).proportion_ci(method="wilson")
+        score = f"{100 * noticed / judged:.0f}"
+        within = f"{100 * ends.low:.0f} to {100 * ends.high:.0f}"
     return (name.removeprefix("tsas_cli/"), str(len(outcomes)), *map(str, counts), score, within)

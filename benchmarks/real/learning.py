@@ -29,10 +29,7 @@ class Learned:
 def learn(split: Split, data: Path, out: Path) -> Learned:
     """Run the stages on the clones in `data`; what they write goes below `out`.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read, or the checks find an error in it.
+    InputError: a file cannot be read, or the checks find an error in it.
     """
     learned = _ingested(split, split.learned, data, out / "learned")
     if split.said.get("drive"):

@@ -90,7 +90,7 @@ def spoiled(nuisance: Nuisance, run: str, rig: Rig, sensors: Sensors) -> tuple[R
     rig = replace(
         rig,
         friction_coefficient=rig.friction_coefficient * n.friction.get(run, 1.0),
-        friction=replace(rig.friction, slope_along=n.along),
+        friction=rig.friction._replace(slope_along=n.along),
     )
     f_in, f_out, x_out = sensors.f_in_N, sensors.f_out_N, sensors.x_out_mm
     f_in = replace(f_in, curvature=n.f_in_per_N, slow_noise=n.slow_N, slow_time_s=SLOW_S)

@@ -48,11 +48,8 @@ def read_entry(
 ) -> Entry:
     """Read what a tool says about the given cases; `sums` are those of their recordings, by case.
 
-    Raises
-    ------
-    InputError
-        The folder is missing, a diagnosis in it is malformed or of other recordings, or it answers
-        a case that is not in the set.
+    InputError: the folder is missing, a diagnosis in it is malformed or of other recordings, or it
+    answers a case that is not in the set.
     """
     cases, sums = list(cases), sums or {}
     if not folder.is_dir():

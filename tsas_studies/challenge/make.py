@@ -37,10 +37,7 @@ def make(
     a checksum of salt and answer (`sums.sealed_id`), and the folders' order is theirs, so that
     neither tells a case's place in the list. `step` is called after each case.
 
-    Raises
-    ------
-    ValueError
-        There are no cases.
+    ValueError: there are no cases.
     """
     seeds = sorted({case.seed for case in cases})
     if not seeds:

@@ -1,10 +1,9 @@
 """A share of cases, with the interval that so few cases leave open."""
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-_QUANTILE = 1.959964  # of the normal distribution, 95 % two-sided
+from scipy.stats import binomtest
 
 
 @dataclass(frozen=True)
@@ -26,11 +25,8 @@ class Rate:
         """
         if not self.cases:
             return None
-        n, share, square = self.cases, self.hits / self.cases, _QUANTILE**2
-        centre = (share + square / (2 * n)) / (1 + square / n)
-        half = _QUANTILE * math.sqrt(share * (1 - share) / n + square / (4 * n**2))
-        half /= 1 + square / n
-        return max(0.0, centre - half), min(1.0, centre + half)
+        found = binomtest(self.hits, self.cases).proportion_ci(method="wilson")
+        return float(found.low), float(found.high)
 
 
 def rate(hits: Iterable[bool]) -> Rate:

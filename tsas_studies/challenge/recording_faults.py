@@ -45,19 +45,15 @@ def _one_of(rng: np.random.Generator, names: tuple[Any, ...]) -> Any:
     return names[int(rng.integers(len(names)))]
 
 
-def _channels(names: tuple[str, ...]) -> Callable[[np.random.Generator], tuple[str, ...]]:
-    return lambda rng: (_one_of(rng, names),)
-
-
 def _cut_off(size: float, rng: np.random.Generator) -> float:
     return float(rng.uniform(6.0, 10.0) if size == min(RECORDING_SIZES) else rng.uniform(3.0, 6.0))
 
 
-def _filtering(
-    function: str, channels: Callable[[np.random.Generator], tuple[str, ...]]
-) -> RecordingFault:
+def _filtering(function: str, *, of_all: bool = False) -> RecordingFault:
+    """Return a filter of one channel, or one of all."""
+
     def values(size: float, rng: np.random.Generator) -> dict[str, Any]:
-        found: dict[str, Any] = {"channels": channels(rng)}
+        found: dict[str, Any] = {"channels": ALL if of_all else (_one_of(rng, ALL),)}
         if function == "median":
             return found | {"window_s": 1.0 / _cut_off(size, rng)}
         if function == "low_pass":
@@ -112,9 +108,8 @@ def _saturated(size: float, rng: np.random.Generator) -> dict[str, Any]:
 
 def _missed(size: float, rng: np.random.Generator) -> dict[str, Any]:
     lost_mm = 0.02 * size
-    return {"run": _one_of(rng, RUNS), "channel": _one_of(rng, POSITIONS), "lost_mm": lost_mm} | {
-        "times": int(rng.integers(2, 5))
-    }
+    where = {"run": _one_of(rng, RUNS), "channel": _one_of(rng, POSITIONS)}
+    return where | {"lost_mm": lost_mm, "times": int(rng.integers(2, 5))}
 
 
 def _units(
@@ -166,19 +161,19 @@ def _each(names: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
 
 
 RECORDING_FAULTS: Mapping[str, RecordingFault] = {
-    "zero_phase_low_pass": _filtering("zero_phase_low_pass", _channels(ALL)),
-    "zero_phase_low_pass_of_all": _filtering("zero_phase_low_pass", lambda _rng: ALL),
-    "causal_low_pass": _filtering("low_pass", _channels(ALL)),
-    "causal_low_pass_of_all": _filtering("low_pass", lambda _rng: ALL),
-    "median_filter": _filtering("median", _channels(ALL)),
+    "zero_phase_low_pass": _filtering("zero_phase_low_pass"),
+    "zero_phase_low_pass_of_all": _filtering("zero_phase_low_pass", of_all=True),
+    "causal_low_pass": _filtering("low_pass"),
+    "causal_low_pass_of_all": _filtering("low_pass", of_all=True),
+    "median_filter": _filtering("median"),
     "ac_coupled_amplifier": RecordingFault(
         "ac_coupled",
-        lambda size, rng: {"channels": _channels(FORCES)(rng), "time_s": 300.0 / size},
+        lambda size, rng: {"channels": (_one_of(rng, FORCES),), "time_s": 300.0 / size},
         ("ac-coupled",),
     ),
     "held_at_20_Hz": RecordingFault(
         "held",
-        lambda _size, rng: {"channels": _channels(ALL)(rng), "rate_Hz": 20.0},
+        lambda _size, rng: {"channels": (_one_of(rng, ALL),), "rate_Hz": 20.0},
         SLOW,
         RECORDING_SIZES[1:],
     ),

@@ -60,10 +60,7 @@ TOOLS: dict[str, Diagnose] = {
 def case_folders(sealed: Path) -> list[Path]:
     """Return the folders of the cases in a sealed set.
 
-    Raises
-    ------
-    InputError
-        There is none, or one is a link.
+    InputError: there is none, or one is a link.
     """
     folders = sorted(path.parent for path in sealed.glob(f"{CASES}/*/{DATASET}"))
     for folder in folders:
@@ -99,10 +96,7 @@ def run_cases(
     `diagnose(dataset, out)` has to be importable by its name: it runs in new processes. What it
     raises, or that its process died, is the reason why a case has no answer.
 
-    Raises
-    ------
-    InputError
-        The set has no cases, or `out` exists and `force` is not set.
+    InputError: the set has no cases, or `out` exists and `force` is not set.
     """
     folders = case_folders(sealed)
     reasons: dict[str, str] = {}

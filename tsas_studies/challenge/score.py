@@ -23,11 +23,8 @@ CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
 def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
     """Return what `score.json` holds: the scores of several entries on one sealed set.
 
-    Raises
-    ------
-    InputError
-        The answers or a diagnosis are malformed, an entry is given twice, or the answers or
-        recordings of a case are not those that were sealed.
+    InputError: the answers or a diagnosis are malformed, an entry is given twice, or the answers or
+    recordings of a case are not those that were sealed.
     """
     answers = read_truth(sealed)
     check_answers(sealed)

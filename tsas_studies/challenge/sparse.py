@@ -28,10 +28,7 @@ OWN = 0.01  # part of a term that the nominal parameters must not be able to imi
 def strongest_effect(bench: Bench, trial: HypothesisFit, folds: Folds) -> str | None:
     """Return the effect of the term that explains most of a trial's residual, if one is kept.
 
-    Raises
-    ------
-    InputError
-        PySINDy is not installed.
+    InputError: PySINDy is not installed.
     """
     effects, columns = _columns(bench, trial)
     size = np.linalg.norm(columns, axis=0)
@@ -69,10 +66,7 @@ def _seen(run: RunErrors, rig: Rig, term: Term) -> Floats:
 def regression(columns: Floats, residual: Floats, folds: Folds) -> Floats:
     """Return the coefficient of each column of unit length, zero for those that are left out.
 
-    Raises
-    ------
-    InputError
-        PySINDy is not installed.
+    InputError: PySINDy is not installed.
     """
     highest = max(float(np.abs(columns.T @ residual).max()), 2.0 * LEAST)
     thresholds = np.geomspace(LEAST, highest, THRESHOLDS)

@@ -78,10 +78,7 @@ def make_set(
     small set has each effect once at full size, and a few of what is none; with `kind` or
     `conditions` only such cases are made. `step` is called once for each.
 
-    Raises
-    ------
-    InputError
-        No case is left, the salt is no number, or `out` exists and `force` is not set.
+    InputError: no case is left, the salt is no number, or `out` exists and `force` is not set.
     """
     first, count = at_least(0, seed, "seed"), at_least(1, seeds, "seeds", most=SEEDS)
     grain = secrets.randbits(128) if salt is None else _grain(salt)
@@ -134,10 +131,8 @@ def run_set(
     Written are `out/ID/diagnosis.json` for each case, by this program or by a baseline. Each of the
     workers does one case at a time, in a process of its own.
 
-    Raises
-    ------
-    InputError
-        The set has no cases, the tool is unknown, nobody works, or `out` exists without `force`.
+    InputError: the set has no cases, the tool is unknown, nobody works, or `out` exists without
+    `force`.
     """
     path, folder, many = Path(sealed), Path(out), at_least(1, workers, "workers")
     taken = TOOLS[one_of(tuple(TOOLS), tool, "tool")]
@@ -153,10 +148,7 @@ def score_set(
 
     The entries are folders with `ID/diagnosis.json`; `out` gets `score.json`.
 
-    Raises
-    ------
-    InputError
-        The set or an answer cannot be read, or `out` exists and `force` is not set.
+    InputError: the set or an answer cannot be read, or `out` exists and `force` is not set.
     """
     folder, inputs = path_of(out), [Path(sealed), *map(Path, entries)]
     with folder_if(folder, stage="challenge score", inputs=inputs, force=force) as written:

@@ -72,7 +72,7 @@ class TrueCase(Record):
         if self.kind == "recording" and self.unknown in RECORDING_FAULTS:
             return frozenset(RECORDING_FAULTS[self.unknown].right)
         parts = self.unknown_parameters if self.unknown == MIXED else (self.unknown,)
-        return frozenset().union(*(RIGHT_KIND.get(part, frozenset((part,))) for part in parts))
+        return frozenset(name for part in parts for name in (part, *RIGHT_KIND.get(part, ())))
 
     @model_validator(mode="after")
     def _kind_fits(self) -> "TrueCase":
@@ -103,10 +103,7 @@ class Truth(Record):
 def read_truth(folder: Path) -> Truth:
     """Read and check `answers.json` in the folder of a sealed set.
 
-    Raises
-    ------
-    InputError
-        It is missing, is not JSON, or says something that its format does not allow.
+    InputError: it is missing, is not JSON, or says something that its format does not allow.
     """
     path = folder / FILE
     if not path.is_file():

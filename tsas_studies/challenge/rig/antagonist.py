@@ -43,10 +43,9 @@ class Antagonist:
 
 
 class Net(NamedTuple):
-    """What holds the load: preload [N] at each sample, stiffness [N/mm], and all else."""
+    """What holds the load: preload [N] at each sample, and the load."""
 
     preload: Floats
-    stiffness: float
     load: Load
 
 
@@ -165,7 +164,8 @@ def _balance(
 def _net_pull(pair: Pair, net: Net, held: float, load: LoadState, y: float, h: float) -> float:
     """Return by how much the tendons pull the load more than it is held [N]."""
     force, _ = extra_force(net.load, load, y, h)
-    return float(pair.at_load - pair.at_load_2 - held - net.stiffness * y - force)
+    spring = net.load.spring.stiffness_N_per_mm * y
+    return float(pair.at_load - pair.at_load_2 - held - spring - force)
 
 
 @compiled

@@ -15,6 +15,7 @@ import numpy as np
 from tsas_studies.challenge.rig.bouc_wen import bouc_wen, bouc_wen_slope
 from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
+from tsas_studies.challenge.rig.friction import Friction
 from tsas_studies.challenge.rig.give import Path, given
 from tsas_studies.challenge.rig.load_end import AT_REST, Load, LoadState, extra_force, moved
 from tsas_studies.challenge.rig.motions import Floats
@@ -32,10 +33,9 @@ class Tendon(NamedTuple):
 
     bend: bend angle of each node [rad]; k: stiffness of each cell [N/mm]; c_in: compliance
     between the drive and the sheath [mm/N]; p, r: the distal end, p T_out = q + r u_end + what
-    the load adds; c_out: compliance between the sheath and the load; asymmetry, excess, velocity,
-    exponent, shift: see `Friction`; viscous: of each node [N s/mm]; surface: what friction depends
-    on at each place; round: presliding follows Bouc and Wen, not Dahl; stiffening: a cell's
-    stiffness grows by this share per newton [1/N].
+    the load adds; c_out: compliance between the sheath and the load; viscous: friction of each
+    node [N s/mm]; surface: what friction depends on at each place; stiffening: a cell's stiffness
+    grows by this share per newton [1/N].
     """
 
     bend: Floats
@@ -47,15 +47,10 @@ class Tendon(NamedTuple):
     delta: float
     c_out: float
     load: Load
-    asymmetry: float
-    excess: float
-    velocity: float
-    exponent: float
+    friction: Friction
     viscous: Floats
     surface: Surface
-    round: bool
     stiffening: float
-    shift: float
 
 
 class Ends(NamedTuple):
@@ -127,7 +122,7 @@ def run(
         if min(t_in[i], t_out[i]) <= 0.0:
             return t_in, t_out, u_end, guide, i
         path = given(path, t_in[i], tendon.preload, h)
-        bent = 1.0 + tendon.shift * (t_in[i] - tendon.preload)
+        bent = 1.0 + tendon.friction.shift_per_N * (t_in[i] - tendon.preload)
     return t_in, t_out, u_end, guide, m
 
 
@@ -197,36 +192,39 @@ def keep(state: State, du: Floats, tendon: Tendon, h: float) -> None:
 @compiled
 def _rise(speed: float, tendon: Tendon) -> float:
     """Return by what factor friction is larger at this speed [mm/s] than at a high one."""
-    if tendon.excess == 0.0:
+    excess = tendon.friction.stribeck_excess
+    if excess == 0.0:
         return 1.0
-    return float(1.0 + tendon.excess * np.exp(-((speed / tendon.velocity) ** 2)))
+    share = speed / tendon.friction.stribeck_velocity_mm_per_s
+    return float(1.0 + excess * np.exp(-(share**2)))
 
 
 @compiled
 def _turned(du: float, i: int, state: State, tendon: Tendon) -> float:
     """Return the friction state of node i after a displacement du [mm]."""
     rise = _rise(state.speed[i], tendon)
-    if tendon.round:
+    if tendon.friction.round_mm > 0.0:
         return bouc_wen(du, state.phi[i], tendon.delta, rise)
-    return dahl(du, state.phi[i], tendon.delta, tendon.asymmetry, rise)
+    return dahl(du, state.phi[i], tendon.delta, tendon.friction.asymmetry, rise)
 
 
 @compiled
 def _turned_slope(du: float, i: int, state: State, tendon: Tendon) -> float:
     """Return by how much that changes per displacement [1/mm]."""
     rise = _rise(state.speed[i], tendon)
-    if tendon.round:
+    if tendon.friction.round_mm > 0.0:
         return bouc_wen_slope(du, state.phi[i], tendon.delta, rise)
-    return dahl_slope(du, state.phi[i], tendon.delta, tendon.asymmetry, rise)
+    return dahl_slope(du, state.phi[i], tendon.delta, tendon.friction.asymmetry, rise)
 
 
 @compiled
 def _load_factor(i: int, tension: Floats, tendon: Tendon) -> float:
     """Return (T/F0)^n of node i."""
-    if tendon.exponent == 0.0:
+    exponent = tendon.friction.load_exponent
+    if exponent == 0.0:
         return 1.0
     mean = 0.5 * (tension[max(i - 1, 0)] + tension[min(i, tension.size - 1)])
-    return float(max(mean / tendon.preload, LEAST_RATIO) ** tendon.exponent)
+    return float(max(mean / tendon.preload, LEAST_RATIO) ** exponent)
 
 
 @compiled
@@ -313,7 +311,7 @@ def _newton_change(
         slope = _turned_slope(du[i], i, state, tendon)
         slope *= 0.5 * mu * tendon.bend[i] * _load_factor(i, tension, tendon) * state.rough[i]
         lag = tendon.viscous[i] / h
-        by_load = e[i] * tendon.exponent
+        by_load = e[i] * tendon.friction.load_exponent
         if i == 0:
             below = 0.0
             above = -tendon.c_in * k[0] * (1.0 + e[0]) / (1.0 - e[0])
@@ -350,7 +348,7 @@ def _solve(
     iteration is monotone. Otherwise a step is cut where the nodes would be pulled back, but for
     the gentle law of Bouc and Wen, which whole steps solve.
     """
-    cuts = 1 if tendon.round else MAX_CUTS
+    cuts = 1 if tendon.friction.round_mm > 0.0 else MAX_CUTS
     du = np.zeros(state.u.size)
     tension, k, e = _stretched(state, du, tendon, ends.mu)
     pull, slope = _unbalanced(state, load, du, tension, e, tendon, ends, h)

@@ -1,6 +1,6 @@
 """What the friction in the sheath depends on, beyond Coulomb's law."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,8 +8,7 @@ from tsas_studies.challenge.rig.courses import settled
 from tsas_studies.challenge.rig.motions import Floats
 
 
-@dataclass(frozen=True)
-class Friction:
+class Friction(NamedTuple):
     """How friction differs by direction, speed, tension and time; all zeros are Coulomb's law.
 
     Attributes

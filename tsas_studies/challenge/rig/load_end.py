@@ -5,15 +5,15 @@ then side by side the mass, the spring and a stop. The linear part of the spring
 of the tendon's last node; what is here adds to it.
 """
 
-from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
 
 from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
 from tsas_studies.challenge.rig.restraint import (
-    RestraintLaw,
+    Restraint,
     RestraintState,
+    Spring,
     held,
     restrained,
 )
@@ -25,8 +25,7 @@ BETA, GAMMA = 0.3025, 0.6
 LOOSE_S = 0.015  # in which a loose part of the mass takes up the load's speed
 
 
-@dataclass(frozen=True)
-class LoadEnd:
+class LoadEnd(NamedTuple):
     """What the load is made of beside its linear spring; all zeros are none of it.
 
     Attributes
@@ -58,16 +57,11 @@ class LoadEnd:
 
 
 class Load(NamedTuple):
-    """The load in units of the solver: N, mm, tonne."""
+    """The load in the solver."""
 
-    quadratic: float
-    cubic: float
-    friction: float
-    mass: float
-    loose: float
-    stop_at: float
-    stop: float
-    restraint: RestraintLaw
+    end: LoadEnd
+    restraint: Restraint
+    spring: Spring
 
 
 class LoadState(NamedTuple):
@@ -87,20 +81,6 @@ class LoadState(NamedTuple):
 AT_REST = LoadState(0.0, 0.0, 0.0, 0.0, 0.0, RestraintState(0.0, 0.0, 0.0))
 
 
-def load(end: LoadEnd, stiffness_N_per_mm: float, restraint: RestraintLaw) -> Load:
-    """Return the load for the solver."""
-    return Load(
-        quadratic=stiffness_N_per_mm * end.quadratic_per_mm,
-        cubic=stiffness_N_per_mm * end.cubic_per_mm2,
-        friction=end.friction_after_N + end.friction_before_N,
-        mass=end.mass_kg * TONNE_PER_KG * (1.0 - end.loose_share),
-        loose=end.mass_kg * TONNE_PER_KG * end.loose_share,
-        stop_at=end.stop_at_mm,
-        stop=end.stop_N_per_mm,
-        restraint=restraint,
-    )
-
-
 @compiled
 def moved(load: Load, before: LoadState, y: float, h: float) -> LoadState:
     """Return the state after the load has gone to y within h seconds."""
@@ -108,25 +88,29 @@ def moved(load: Load, before: LoadState, y: float, h: float) -> LoadState:
     v_loose = before.v_loose + _taken_up(before, v, h) * h
     dy = y - before.y
     guide = dahl(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
-    state = held(load.restraint, before.restraint, y, dy, h)
+    state = held(load.restraint, load.spring, before.restraint, y, dy, h)
     return LoadState(y, v, a, v_loose, guide, state)
 
 
 @compiled
 def extra_force(load: Load, before: LoadState, y: float, h: float) -> tuple[float, float]:
     """Return the force beside the linear spring's [N] at y, and its slope [N/mm]."""
-    dy = y - before.y
-    force = (load.quadratic + load.cubic * y) * y * y
-    slope = (2.0 * load.quadratic + 3.0 * load.cubic * y) * y
-    force += load.friction * dahl(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
-    slope += load.friction * dahl_slope(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
+    end, k, dy = load.end, load.spring.stiffness_N_per_mm, y - before.y
+    quadratic, cubic = k * end.quadratic_per_mm, k * end.cubic_per_mm2
+    force = (quadratic + cubic * y) * y * y
+    slope = (2.0 * quadratic + 3.0 * cubic * y) * y
+    friction = end.friction_after_N + end.friction_before_N
+    force += friction * dahl(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
+    slope += friction * dahl_slope(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
     a, v = _newmark(before, y, h)
-    force += load.mass * a + load.loose * _taken_up(before, v, h)
-    slope += load.mass / (BETA * h * h) + load.loose * GAMMA / (BETA * h * (LOOSE_S + h))
-    if y > load.stop_at:
-        force += load.stop * (y - load.stop_at)
-        slope += load.stop
-    more, steeper = restrained(load.restraint, before.restraint, y, dy, h)
+    mass = end.mass_kg * TONNE_PER_KG * (1.0 - end.loose_share)
+    loose = end.mass_kg * TONNE_PER_KG * end.loose_share
+    force += mass * a + loose * _taken_up(before, v, h)
+    slope += mass / (BETA * h * h) + loose * GAMMA / (BETA * h * (LOOSE_S + h))
+    if y > end.stop_at_mm:
+        force += end.stop_N_per_mm * (y - end.stop_at_mm)
+        slope += end.stop_N_per_mm
+    more, steeper = restrained(load.restraint, load.spring, before.restraint, y, dy, h)
     return force + more, slope + steeper
 
 

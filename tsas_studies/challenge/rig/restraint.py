@@ -3,7 +3,6 @@
 All of it is a force on the load and is felt by the force sensor f_out.
 """
 
-from dataclasses import dataclass
 from math import exp, inf
 from typing import NamedTuple
 
@@ -13,8 +12,7 @@ from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
 
 
-@dataclass(frozen=True)
-class Restraint:
+class Restraint(NamedTuple):
     """What holds the load back; all zeros are none of it.
 
     Attributes
@@ -49,21 +47,11 @@ class Restraint:
     clamp_down_N: float = -inf
 
 
-class RestraintLaw(NamedTuple):
-    """`Restraint` in the solver; up and down are displacements of the spring [mm]."""
+class Spring(NamedTuple):
+    """The spring of the load."""
 
-    stiffness: float
-    damping: float
-    hysteresis: float
-    travel: float
-    relaxing: float
-    time: float
-    sine: float
-    cosine: float
-    period: float
-    play: float
-    up: float
-    down: float
+    stiffness_N_per_mm: float
+    preload_N: float
 
 
 class RestraintState(NamedTuple):
@@ -74,55 +62,38 @@ class RestraintState(NamedTuple):
     anchor: float
 
 
-def restraint(of: Restraint, stiffness_N_per_mm: float, preload_N: float) -> RestraintLaw:
-    """Return the restraint of a load spring for the solver."""
-    return RestraintLaw(
-        stiffness_N_per_mm,
-        of.damping_N_s_per_mm,
-        of.hysteresis_N,
-        of.hysteresis_mm,
-        of.relaxing_share * stiffness_N_per_mm,
-        of.relaxing_s,
-        of.ripple_sine_mm,
-        of.ripple_cosine_mm,
-        of.ripple_period_mm,
-        of.clamp_play_mm,
-        (of.clamp_up_N - preload_N) / stiffness_N_per_mm,
-        (of.clamp_down_N - preload_N) / stiffness_N_per_mm,
-    )
-
-
 @compiled
 def restrained(
-    law: RestraintLaw, before: RestraintState, y: float, dy: float, h: float
+    of: Restraint, spring: Spring, before: RestraintState, y: float, dy: float, h: float
 ) -> tuple[float, float]:
     """Return the force [N] at y after a displacement dy within h seconds, and its slope [N/mm]."""
-    force, slope = law.damping * dy / h, law.damping / h
-    force += law.hysteresis * dahl(dy, before.bristle, law.travel, 0.0, 1.0)
-    slope += law.hysteresis * dahl_slope(dy, before.bristle, law.travel, 0.0, 1.0)
-    kept = _kept(h, law.time)
-    force += law.relaxing * (before.relaxing * exp(-h / law.time) + dy * kept)
-    slope += law.relaxing * kept
-    turn = 2.0 * np.pi / law.period
-    wave = law.sine * np.sin(turn * y) + law.cosine * (np.cos(turn * y) - 1.0)
-    force += law.stiffness * wave
-    slope += law.stiffness * turn * (law.sine * np.cos(turn * y) - law.cosine * np.sin(turn * y))
-    anchor = _anchor(law, before.anchor, y)
-    force -= law.stiffness * anchor
-    if anchor != before.anchor and 0.0 < anchor < law.play:
-        slope -= law.stiffness
+    k = spring.stiffness_N_per_mm
+    force, slope = of.damping_N_s_per_mm * dy / h, of.damping_N_s_per_mm / h
+    force += of.hysteresis_N * dahl(dy, before.bristle, of.hysteresis_mm, 0.0, 1.0)
+    slope += of.hysteresis_N * dahl_slope(dy, before.bristle, of.hysteresis_mm, 0.0, 1.0)
+    relaxing, kept = of.relaxing_share * k, _kept(h, of.relaxing_s)
+    force += relaxing * (before.relaxing * exp(-h / of.relaxing_s) + dy * kept)
+    slope += relaxing * kept
+    turn = 2.0 * np.pi / of.ripple_period_mm
+    sine, cosine = of.ripple_sine_mm, of.ripple_cosine_mm
+    force += k * (sine * np.sin(turn * y) + cosine * (np.cos(turn * y) - 1.0))
+    slope += k * turn * (sine * np.cos(turn * y) - cosine * np.sin(turn * y))
+    anchor = _anchor(of, spring, before.anchor, y)
+    force -= k * anchor
+    if anchor != before.anchor and 0.0 < anchor < of.clamp_play_mm:
+        slope -= k
     return force, slope
 
 
 @compiled
 def held(
-    law: RestraintLaw, before: RestraintState, y: float, dy: float, h: float
+    of: Restraint, spring: Spring, before: RestraintState, y: float, dy: float, h: float
 ) -> RestraintState:
     """Return the state after the load has gone to y by dy within h seconds."""
     return RestraintState(
-        dahl(dy, before.bristle, law.travel, 0.0, 1.0),
-        before.relaxing * exp(-h / law.time) + dy * _kept(h, law.time),
-        _anchor(law, before.anchor, y),
+        dahl(dy, before.bristle, of.hysteresis_mm, 0.0, 1.0),
+        before.relaxing * exp(-h / of.relaxing_s) + dy * _kept(h, of.relaxing_s),
+        _anchor(of, spring, before.anchor, y),
     )
 
 
@@ -133,6 +104,8 @@ def _kept(h: float, time: float) -> float:
 
 
 @compiled
-def _anchor(law: RestraintLaw, before: float, y: float) -> float:
+def _anchor(of: Restraint, spring: Spring, before: float, y: float) -> float:
     """Return where the anchor is in its slot [mm] once the load is at y."""
-    return min(max(before, min(y - law.up, law.play)), max(y - law.down, 0.0))
+    up = (of.clamp_up_N - spring.preload_N) / spring.stiffness_N_per_mm
+    down = (of.clamp_down_N - spring.preload_N) / spring.stiffness_N_per_mm
+    return min(max(before, min(y - up, of.clamp_play_mm)), max(y - down, 0.0))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.signal import lfilter
 
 from tsas_studies.challenge.rig.courses import settled
 from tsas_studies.challenge.rig.motions import Floats
@@ -126,19 +127,15 @@ def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, Floats
 
 def _sensed(clean: CleanRun, sensors: Sensors) -> dict[str, Floats]:
     """Return what the sensors make of a clean run before they are sampled."""
-    columns = dict(clean.columns)
-    if sensors.f_in_of_f_out:
-        columns["f_in_N"] = columns["f_in_N"] + sensors.f_in_of_f_out * clean.columns["f_out_N"]
-    if sensors.f_out_of_f_in:
-        columns["f_out_N"] = columns["f_out_N"] + sensors.f_out_of_f_in * clean.columns["f_in_N"]
-    if sensors.f_in_tilt_per_mm:
-        columns["f_in_N"] = columns["f_in_N"] * (
-            1.0 + sensors.f_in_tilt_per_mm * clean.columns["x_in_mm"]
-        )
-    if sensors.f_out_tilt_per_mm:
-        columns["f_out_N"] = columns["f_out_N"] * (
-            1.0 + sensors.f_out_tilt_per_mm * clean.columns["x_out_mm"]
-        )
+    true, columns = clean.columns, dict(clean.columns)
+    for force, other, share, place, tilt_per_mm in (
+        ("f_in_N", "f_out_N", sensors.f_in_of_f_out, "x_in_mm", sensors.f_in_tilt_per_mm),
+        ("f_out_N", "f_in_N", sensors.f_out_of_f_in, "x_out_mm", sensors.f_out_tilt_per_mm),
+    ):
+        if share:
+            columns[force] = columns[force] + share * true[other]
+        if tilt_per_mm:
+            columns[force] = columns[force] * (1.0 + tilt_per_mm * true[place])
     for name, transducer in (
         ("x_in_mm", sensors.x_in_transducer),
         ("x_out_mm", sensors.x_out_transducer),
@@ -176,12 +173,7 @@ def _coloured(size: int, samples: float, rng: np.random.Generator) -> Floats:
     keep = np.exp(-1.0 / samples)
     kicks = np.sqrt(1.0 - keep**2) * rng.standard_normal(size)
     kicks[0] = rng.standard_normal()
-    values = np.empty(size)
-    last = 0.0
-    for i, kick in enumerate(kicks):
-        last = keep * last + kick
-        values[i] = last
-    return values
+    return np.asarray(lfilter([1.0], [1.0, -keep], kicks))
 
 
 def quantised(values: Floats, step: float) -> Floats:

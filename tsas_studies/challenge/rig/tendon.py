@@ -16,9 +16,9 @@ from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
 from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
 from tsas_studies.challenge.rig.friction import Friction, over_time, over_travel
 from tsas_studies.challenge.rig.give import Give, Path
-from tsas_studies.challenge.rig.load_end import LoadEnd, load
+from tsas_studies.challenge.rig.load_end import Load, LoadEnd
 from tsas_studies.challenge.rig.motions import Floats, Motion
-from tsas_studies.challenge.rig.restraint import Restraint, restraint
+from tsas_studies.challenge.rig.restraint import Restraint, Spring
 from tsas_studies.challenge.rig.surface import Surface
 
 
@@ -161,10 +161,10 @@ def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> 
     between = replace(rig, load="displacement", load_end=LoadEnd(), restraint=Restraint())
     first = _tendon(replace(between, preload_N=F0 + other.preload_N))
     second = _tendon(replace(between, preload_N=other.preload_N))
-    kL, end = rig.load_stiffness_N_per_mm, rig.load_end
+    end = rig.load_end
     lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
-    held = load(end, kL, restraint(rig.restraint, kL, F0))
-    net = Net(F0 * course(rig.preload_course, t) - lost, kL, held)
+    held = Load(end, rig.restraint, Spring(rig.load_stiffness_N_per_mm, F0))
+    net = Net(F0 * course(rig.preload_course, t) - lost, held)
     signals, solved = run_pair(first, second, net, t, position, mu, other.friction_ratio)
     t_in, t_out, t_in_2, t_out_2, guide, y = signals
     _refuse_failed(t, t_in, solved)
@@ -202,16 +202,11 @@ def _tendon(rig: Rig) -> continuum.Tendon:
         preload=rig.preload_N,
         delta=rig.presliding_length_mm + f.presliding_mm + f.round_mm,
         c_out=c_out,
-        load=load(rig.load_end, kL, restraint(rig.restraint, kL, rig.preload_N)),
-        asymmetry=f.asymmetry,
-        excess=f.stribeck_excess,
-        velocity=f.stribeck_velocity_mm_per_s,
-        exponent=f.load_exponent,
+        load=Load(rig.load_end, rig.restraint, Spring(kL, rig.preload_N)),
+        friction=f,
         viscous=f.viscous_N_s_per_mm * np.diff(_edges(s)) / rig.sheath_length_mm,
         surface=rig.surface,
-        round=f.round_mm > 0.0,
         stiffening=rig.stiffening_per_N,
-        shift=f.shift_per_N,
     )
 
 

@@ -18,34 +18,16 @@ from tsas_studies.challenge.rig.recording import (
 from tsas_studies.challenge.rig.recording.recorded import STEPS, RecordedRun, Runs
 from tsas_studies.challenge.rig.sensors import quantised
 
-FAULTS: Mapping[str, Callable[..., Runs]] = {
-    "low_pass": filtered.low_pass,
-    "zero_phase_low_pass": filtered.zero_phase_low_pass,
-    "median": filtered.median,
-    "ac_coupled": filtered.ac_coupled,
-    "held": filtered.held,
-    "run_gain": one_run.run_gain,
-    "run_offset": one_run.run_offset,
-    "run_clock": one_run.run_clock,
-    "missed_counts": one_run.missed_counts,
-    "lost_samples": timing.lost_samples,
-    "repeated_buffers": timing.repeated_buffers,
-    "jittered_stamps": timing.jittered_stamps,
-    "unsteady_sampling": timing.unsteady_sampling,
-    "rounded_stamps": timing.rounded_stamps,
-    "scaled": wrong_numbers.scaled,
-    "wrong_condition": wrong_numbers.wrong_condition,
-    "soft_saturation": converter.soft_saturation,
-    "noisy_clipping": converter.noisy_clipping,
-    "sensor_hysteresis": converter.sensor_hysteresis,
-    "sensor_creep": converter.sensor_creep,
-    "crosstalk": converter.crosstalk,
-    "random_walk": pickup.random_walk,
-    "hum": pickup.hum,
-    "sign_interference": pickup.sign_interference,
-    "outliers": pickup.outliers,
-    "bursts": pickup.bursts,
-}
+_FUNCTIONS: tuple[Callable[..., Runs], ...] = (
+    filtered.low_pass, filtered.zero_phase_low_pass, filtered.median, filtered.ac_coupled,
+    filtered.held, one_run.run_gain, one_run.run_offset, one_run.run_clock, one_run.missed_counts,
+    timing.lost_samples, timing.repeated_buffers, timing.jittered_stamps, timing.unsteady_sampling,
+    timing.rounded_stamps, wrong_numbers.scaled, wrong_numbers.wrong_condition,
+    converter.soft_saturation, converter.noisy_clipping, converter.sensor_hysteresis,
+    converter.sensor_creep, converter.crosstalk, pickup.random_walk, pickup.hum,
+    pickup.sign_interference, pickup.outliers, pickup.bursts,
+)  # fmt: skip
+FAULTS: Mapping[str, Callable[..., Runs]] = {one.__name__: one for one in _FUNCTIONS}
 
 
 def recorded_with(
