@@ -1,7 +1,7 @@
 """How long repeats of one piece of work take, for every benchmark that times a function."""
 
 import statistics
-import time
+import timeit
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -31,12 +31,7 @@ class Times:
 def times(solve: Callable[[], object], repeats: int) -> Times:
     """Return the times of repeats; the first call compiles and does not count."""
     solve()
-    seconds = []
-    for _ in range(repeats):
-        start = time.perf_counter_ns()
-        solve()
-        seconds.append(1e-9 * (time.perf_counter_ns() - start))
-    return Times(tuple(seconds))
+    return Times(tuple(timeit.repeat(solve, number=1, repeat=repeats)))
 
 
 def best(solve: Callable[[], object], repeats: int) -> float:

@@ -100,8 +100,8 @@ def test_each_model_has_a_mark_at_its_error_in_its_own_colour_and_form(folder):
         assert [label.get_text() for label in axes.get_yticklabels()] == list(by_hand.CASES)
         marks = {line.get_label(): line for line in axes.lines if line.get_marker() != "None"}
         assert len({line.get_marker() for line in marks.values()}) == len(MODELS)
-        for place, (role, look) in enumerate(MODELS.items()):
-            line = marks[look.label]
+        for place, (role, (label, _, _)) in enumerate(MODELS.items()):
+            line = marks[label]
             assert to_hex(line.get_color()) == STAND_IN[role]
             expected = [case[3][name][place] for case in by_hand.CASES.values()]
             assert list(line.get_xdata()) == expected
@@ -109,7 +109,7 @@ def test_each_model_has_a_mark_at_its_error_in_its_own_colour_and_form(folder):
 
 
 def test_the_models_are_those_that_the_stage_tracks_with(whole):
-    assert tuple(look.label for look in MODELS.values()) == closing.MODELS
+    assert tuple(name for name, _, _ in MODELS.values()) == closing.MODELS
     assert tuple(MODELS) == colours.MODELS
     for role in MODELS:
         assert f"stroke: var(--{role})" in whole

@@ -108,7 +108,7 @@ def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
 
 def test_errors_before_and_after_stand_in_their_columns(sections, dataset):
     found = rows(sections["named"])
-    noise = read_inputs([dataset]).noise("f_in_N")
+    noise = read_inputs([dataset]).noise["f_in_N"]
     over = [plain(rms / noise, 3) for rms in (0.91, 0.11)]
     header = ["channel", "nominal model", "extended model", "attainable", "noise level", "unit"]
     assert [*header, "nominal, normalised", "extended, normalised"] in found

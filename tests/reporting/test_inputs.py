@@ -29,9 +29,9 @@ def test_simulations_are_named_by_their_folders_by_their_paths_where_two_share_o
 def test_a_channel_has_one_noise_level_over_all_runs(dataset):
     inputs = read_inputs([dataset])
     levels = [noise_of(recording.get("f_in_N")) for recording in inputs.recordings]
-    assert inputs.noise("f_in_N") == pytest.approx(np.sqrt(np.mean(np.square(levels))))
-    assert inputs.noise("f_in_N") == pytest.approx(NOISE, rel=0.05)
-    assert inputs.noise("x_out_mm") is None
+    assert inputs.noise["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(levels))))
+    assert inputs.noise["f_in_N"] == pytest.approx(NOISE, rel=0.05)
+    assert "x_out_mm" not in inputs.noise
 
 
 def test_a_parameter_concerns_the_page_unless_its_channel_was_not_recorded(dataset):

@@ -209,12 +209,12 @@ def best_fits(inputs: Inputs) -> tuple[ShownFit, ShownFit | None] | None:
 def _fits(inputs: Inputs, recording: Recording) -> Iterator[ShownFit]:
     models = diagnosed_models(inputs)
     x = recording.get(X_IN)
-    driven = models[0].driven(inputs, recording) if models else None
+    driven = models[0].driven(recording) if models else None
     if x is None or driven is None:
         return
     for channel in CHANNELS:
-        measured, noise = recording.get(channel), inputs.noise(channel)
-        simulated = (model.predicted(inputs, recording, channel) for model in models)
+        measured, noise = recording.get(channel), inputs.noise.get(channel)
+        simulated = (model.predicted(recording, channel) for model in models)
         predicted = [values for values in simulated if values is not None]
         if measured is None or noise is None or len(predicted) < len(models):
             continue

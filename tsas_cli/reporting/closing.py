@@ -1,7 +1,6 @@
 """What a diagnosis is worth in tracking: hidden differences, named, and the RMSE by model."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from statistics import median
 from typing import Any
@@ -32,20 +31,11 @@ NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference
 _PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"
 
 
-@dataclass(frozen=True)
-class Marker:
-    """How a model is called, and the form of its mark, so that colour alone tells nothing."""
-
-    label: str
-    marker: str
-    size: float = 6.0
-
-
-MODELS = {  # by role
-    "data-sheet": Marker("data sheet", "s"),
-    "calibrated": Marker("calibrated", "D", 5.5),
-    "extended": Marker("extended", "o"),
-    "true": Marker("true", "|", 13.0),
+MODELS = {  # by role: name, and form and size of the mark, so that colour alone tells nothing
+    "data-sheet": ("data sheet", "s", 6.0),
+    "calibrated": ("calibrated", "D", 5.5),
+    "extended": ("extended", "o", 6.0),
+    "true": ("true", "|", 13.0),
 }
 _ROW_IN = 0.21
 _PANEL_IN = 0.34  # its title
@@ -63,7 +53,7 @@ def table(closing: ClosingFile) -> Table:
         for case in closing.cases
         for row in case.controllers
     )
-    header = ("case", "controller", *(it.label for it in MODELS.values()), "extended / true")
+    header = ("case", "controller", *(name for name, _, _ in MODELS.values()), "extended / true")
     return table_of(f"RMSE of the force [N] by model{over_seeds(*closing.seeds)}", header, rows)
 
 
@@ -153,17 +143,17 @@ def _draw_panel(axes: Any, rows: Mapping[str, Row]) -> None:
         means = [rmse.mean for rmse in row.by_model.values()]
         ends = [min(means), max(means)]
         axes.plot(ends, [place, place], color=STAND_IN["line"], linewidth=3.0, zorder=1)
-    for role, look in MODELS.items():
+    for role, (name, marker, size) in MODELS.items():
         axes.plot(
             [row.by_model[role].mean for row in rows.values()],
             places,
             linestyle="none",
-            marker=look.marker,
-            markersize=look.size,
+            marker=marker,
+            markersize=size,
             markeredgewidth=1.6,
             markerfacecolor=STAND_IN[role] if role == "extended" else "none",
             color=STAND_IN[role],
-            label=look.label,
+            label=name,
             zorder=2 if role == "true" else 3,
         )
     axes.set_yticks(places, list(rows))

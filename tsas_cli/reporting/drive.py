@@ -19,7 +19,7 @@ from tsas_cli.reporting.drawing import (
     legend,
     picture,
 )
-from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.inputs import Inputs, series_of
 from tsas_cli.reporting.numbers import RAISED, plain, spanned
 
 
@@ -161,7 +161,7 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
         if run is None or x_in is None or run.noise is None:
             continue
         nominal, fitted = (
-            x_in - inputs.series(recording.run.id, x_in.size, column, DriveFile)
+            x_in - series_of(inputs.folders[DriveFile], recording.run.id, x_in.size, column)
             for column in ("x_in_nominal_mm", "x_in_mm")
         )
         label = f"{recording.run.id} [mm]"

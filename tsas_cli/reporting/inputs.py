@@ -1,7 +1,7 @@
 """What the page is made from: the dataset, and what the stages wrote about it."""
 
 import math
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -84,21 +84,18 @@ class Inputs:
         """Return what a stage wrote, or None where it was not given."""
         return next((stage for stage, _ in self.given if isinstance(stage, kind)), None)
 
-    def noise(self, column: str) -> float | None:
-        """Return the noise level of a channel over all runs, in its unit, None where unknown."""
-        return self._noise.get(column)
-
     @property
     def held_out(self) -> dict[str, HeldOut]:
         """The residuals of the diagnosis's channels, over the noise level of the whole page."""
         diagnosis = self.get(DiagnosisFile)
         return {
-            name: held.model_copy(update={"noise_floor": self.noise(name) or held.noise_floor})
+            name: held.model_copy(update={"noise_floor": self.noise.get(name) or held.noise_floor})
             for name, held in (diagnosis.channels if diagnosis else {}).items()
         }
 
     @cached_property
-    def _noise(self) -> dict[str, float]:
+    def noise(self) -> dict[str, float]:
+        """The noise level of each channel over all runs, in its unit, where it is known."""
         squares: dict[str, list[tuple[float, int]]] = {}
         for recording in self.recordings:
             for name in CHANNELS:
@@ -121,23 +118,25 @@ class Inputs:
     def _columns(self) -> frozenset[str]:
         return frozenset(name for one in self.recordings for name in one.columns)
 
-    def series(self, run: str, rows: int, column: str, stage: type[StageFile] | Path) -> Floats:
-        """Return a column of a run of so many samples, NaN for gaps, by a stage or from its folder.
 
-        InputError: the file cannot be read, or does not belong to this recording.
-        """
-        path = result_file(stage if isinstance(stage, Path) else self.folders[stage], run)
-        values = columns_of(path, (column,))[column]
-        check_rows(path, len(values), rows)
-        return values
+def series_of(folder: Path, run: str, rows: int, column: str) -> Floats:
+    """Return a column of a run of so many samples from a stage's folder, NaN for gaps.
 
-    def written_columns(self, run: str, stage: type[StageFile] | Path) -> frozenset[str]:
-        """Return the columns that a stage, or its folder, has of a run, none without the run.
+    InputError: the file cannot be read, or does not belong to this recording.
+    """
+    path = result_file(folder, run)
+    values = columns_of(path, (column,))[column]
+    check_rows(path, len(values), rows)
+    return values
 
-        InputError: the file cannot be read.
-        """
-        path = result_file(stage if isinstance(stage, Path) else self.folders[stage], run)
-        return frozenset(names_of(path) if path.is_file() else ())
+
+def written_in(folder: Path, run: str) -> frozenset[str]:
+    """Return the columns that a stage's folder has of a run, none without the run.
+
+    InputError: the file cannot be read.
+    """
+    path = result_file(folder, run)
+    return frozenset(names_of(path) if path.is_file() else ())
 
 
 def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs:
@@ -148,7 +147,7 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     InputError: a folder is of no known kind, a kind is a duplicate, no dataset can be found, a
     stage has read other recordings than the dataset holds, or tracked runs are not in it.
     """
-    by_file = _by_file(folders, {SimulationFile.FILE} if several else set())
+    by_file = _by_file(folders, several=several)
     given = tuple(
         (read_stage(kind, folder), folder)
         for kind in STAGES
@@ -196,7 +195,7 @@ def _visible(content: Any) -> Any:
     return content
 
 
-def _by_file(folders: Sequence[Location], several: Set[str]) -> dict[str, list[Location]]:
+def _by_file(folders: Sequence[Location], *, several: bool) -> dict[str, list[Location]]:
     known = (MANIFEST_FILE, *(kind.FILE for kind in STAGES))
     found: dict[str, list[Location]] = {}
     for folder in folders:
@@ -211,12 +210,13 @@ def _by_file(folders: Sequence[Location], several: Set[str]) -> dict[str, list[L
             )
         for file in files:
             before = found.setdefault(file, [])
-            if before and (file not in several or folder in before):
+            again = several and file == SimulationFile.FILE and folder not in before
+            if before and not again:
                 raise InputError(
                     f"a second folder with {file}, after {before[0]}",
                     where=folder,
                     expected="one folder of each kind"
-                    + "".join(f", and several with {name}" for name in several),
+                    + (f", and several with {SimulationFile.FILE}" if several else ""),
                     remedy="write a page for each",
                 )
             before.append(folder)

@@ -76,7 +76,7 @@ def _pictures(
     inputs: Inputs, recording: Recording, models: Sequence[Simulated], number: int, points: int
 ) -> Iterator[Picture]:
     """Yield the loop of each tension over x_in, and under it what each model leaves."""
-    x = models[0].driven(inputs, recording) if models else None
+    x = models[0].driven(recording) if models else None
     for it in channels_of(inputs, recording, models):
         if it.channel not in _SHOWN or x is None or not np.isfinite(x + it.measured).any():
             continue

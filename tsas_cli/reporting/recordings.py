@@ -100,7 +100,7 @@ def loops_section(inputs: Inputs) -> Section | None:
     if calibration is None:
         intro = "Without a folder written by `tsas calibrate`, the phases are unknown."
     segments = calibration.segments if calibration else {}
-    runs = 0 if inputs.dataset is None else len(inputs.dataset.runs)
+    runs = len(inputs.dataset.runs)
     points = shared_points(len(_TENSIONS) * min(runs, _MOST_RUNS), _POINTS)
     groups = tuple(
         Group(f"Run {one.run.id}", pictures)

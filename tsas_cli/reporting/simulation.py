@@ -27,7 +27,7 @@ from tsas_cli.reporting.content import (
     table_of,
 )
 from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, shared_points
-from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.inputs import Inputs, series_of, written_in
 from tsas_cli.reporting.names import at_axis, in_words
 from tsas_cli.reporting.numbers import over, plain, spanned
 from tsas_cli.support.arrays import Floats
@@ -54,22 +54,21 @@ class Simulated:
     folder: Path
     named: Callable[[str], str] = str
 
-    def driven(self, inputs: Inputs, recording: Recording) -> Floats | None:
+    def driven(self, recording: Recording) -> Floats | None:
         """Return x_in of a run as it drives the model [mm], shape (n,), None where it is not."""
-        return self._written(inputs, recording, X_IN)
+        return self._written(recording, X_IN)
 
-    def predicted(self, inputs: Inputs, recording: Recording, column: str) -> Floats | None:
+    def predicted(self, recording: Recording, column: str) -> Floats | None:
         """Return a channel of a run as predicted, shape (n,), None where it is not.
 
         InputError: the file cannot be read, or does not belong to this recording.
         """
-        return self._written(inputs, recording, self.named(column))
+        return self._written(recording, self.named(column))
 
-    def _written(self, inputs: Inputs, recording: Recording, name: str) -> Floats | None:
+    def _written(self, recording: Recording, name: str) -> Floats | None:
         run = recording.run.id
-        if name not in inputs.written_columns(run, self.folder):
-            return None
-        return inputs.series(run, recording.time_s.size, name, self.folder)
+        there = name in written_in(self.folder, run)
+        return series_of(self.folder, run, recording.time_s.size, name) if there else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,14 +142,14 @@ def channels_of(
         measured = recording.get(channel)
         if measured is None:
             continue
-        predicted = {model: model.predicted(inputs, recording, channel) for model in models}
+        predicted = {model: model.predicted(recording, channel) for model in models}
         there = {
             model: values
             for model, values in predicted.items()
             if values is not None and np.isfinite(measured - values).any()
         }
         if there:
-            noise = inputs.noise(channel)
+            noise = inputs.noise.get(channel)
             yield ShownChannel(recording.run.id, channel, noise, recording.time_s, measured, there)
 
 

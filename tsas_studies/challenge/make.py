@@ -8,14 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn_bench, recorded
+from tsas_studies.challenge.bench import (
+    RUNS,
+    SENSORS,
+    Bench,
+    data_sheet,
+    drawn_bench,
+    recorded,
+    rig_of,
+)
 from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.conditions import drawn_nuisance
 from tsas_studies.challenge.near import MIXED
 from tsas_studies.challenge.recording_faults import RECORDING_FAULTS
 from tsas_studies.challenge.rig.recording import recorded_with
-from tsas_studies.challenge.rig.recording.recorded import RecordedRun
-from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
+from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, conditions, write_dataset
 from tsas_studies.challenge.sums import CASES, DATASET, sealed_id, sums_of
 from tsas_studies.challenge.truth import BEYOND, FILE
 
@@ -78,25 +85,18 @@ def _write(
 ) -> None:
     of_recording = case.kind == "recording"
     runs = {}
-    for run, (_, _, radius, bend) in RUNS.items():
+    for run in RUNS:
         seed = int(rng.integers(2**32))
         hidden = () if of_recording else case.hidden
         columns = recorded(bench, hidden, run, rate_Hz=rate_Hz, seed=seed)
-        conditions = {
-            "started": bench.started[run],
-            "sheath_length_mm": radius * bend,
-            "total_bend_rad": bend,
-            "preload_N": data_sheet()["preload_N"],
-            "load": "spring",
-        }
-        runs[run] = RecordedRun(columns, conditions)
+        stated = conditions(rig_of(bench, run)) | {"preload_N": data_sheet()["preload_N"]}
+        runs[run] = Run(run, columns, {"started": bench.started[run]} | stated)
     for fault in case.hidden if of_recording else ():
         function = RECORDING_FAULTS[fault.cause].function
         runs = dict(recorded_with(runs, function, fault.parameters, rng))
-    written = [Run(name, run.columns, run.conditions) for name, run in runs.items()]
     write_dataset(
         folder,
-        written,
+        list(runs.values()),
         name="case",
         description=DESCRIPTION,
         data_sheet=DATA_SHEET,

@@ -7,6 +7,7 @@ one, the extended one, and the plant's own, which is the limit.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import pyarrow as pa
@@ -29,7 +30,6 @@ from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Known, Plant, over_seeds, plan, run_loop
 from tsas_studies.closing.drive import known_drives, record_drive
-from tsas_studies.closing.hidden import HiddenCase
 
 STEPS = 7  # pieces of work of a case
 MODELS = ("data sheet", "calibrated", "extended", "true")
@@ -40,6 +40,32 @@ MOTIONS = {  # shape, mean [N], amplitude [N], angular frequency [rad/s]; 25 s e
     "middle": ("sine", 38.0, 12.0, 1.0),
     "fast": ("two-frequency", 46.0, 14.0, 1.5),
 }
+
+
+@dataclass(frozen=True)
+class HiddenCase:
+    """A hidden difference of the plant: its name for the table, and the quantities it changes.
+
+    The drive's case changes none: its plant is as ever, and what is known of it is less.
+    """
+
+    name: str
+    title: str
+    hidden: dict[str, float]
+
+
+CASES = (
+    HiddenCase(
+        "free_tendon",
+        "tendon outside the sheath",
+        {"free_tendon.proximal_length_mm": 150.0, "free_tendon.distal_length_mm": 60.0},
+    ),
+    HiddenCase("friction_drift", "wear during the run", {"friction_drift.rate_per_s": 0.01}),
+    HiddenCase("load_friction", "a guide that rubs", {"load_friction.after_sensor_N": 1.0}),
+    HiddenCase("backlash", "backlash", {"backlash.play_mm": 0.15}),
+    HiddenCase("bend", "a bend that changed after calibration", {"total_bend_rad": 4.0}),
+    HiddenCase("drive", "a gear that winds up", {}),
+)
 
 
 def close(

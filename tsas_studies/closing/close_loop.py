@@ -13,8 +13,7 @@ from tsas_cli.support.limits import SEEDS
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import read_settings
-from tsas_studies.closing.cases import MODELS, STEPS, close
-from tsas_studies.closing.hidden import CASES, HiddenCase
+from tsas_studies.closing.cases import CASES, MODELS, STEPS, HiddenCase, close
 
 
 @dataclass(frozen=True, repr=False, eq=False)

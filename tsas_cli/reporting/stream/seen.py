@@ -15,7 +15,7 @@ from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
-from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.inputs import Inputs, series_of, written_in
 from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
 from tsas_cli.support.arrays import Floats
 
@@ -123,18 +123,22 @@ class SeenRun:
 
     def predicted(self, column: str, source: Source) -> Floats:
         """Return what a stage says of a column, shape (n,), NaN for gaps."""
-        return self.inputs.series(self.id, self.file.rows, source.named(column), source.stage)
+        return self.written(source.named(column), source.stage)
+
+    def written(self, column: str, stage: type[StageFile]) -> Floats:
+        """Return a column that a stage has written, shape (n,), NaN for gaps."""
+        return series_of(self.inputs.folders[stage], self.id, self.file.rows, column)
 
 
 def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     """Yield the runs in the order of the manifest, none without a dataset."""
     if inputs.dataset is None:
         return
-    given, tracking = tuple(_sources(inputs)), inputs.get(TrackingFile)
+    given, tracking, folders = tuple(_sources(inputs)), inputs.get(TrackingFile), inputs.folders
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
-        written = {source.stage: inputs.written_columns(run.id, source.stage) for source in given}
+        written = {stage: written_in(folders[stage], run.id) for stage in {s.stage for s in given}}
         channels = tuple(
             Channel(
                 name,
@@ -178,11 +182,8 @@ def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
 
 
 def _segments(inputs: Inputs, run: str) -> Sequence[PhaseSegment]:
-    for stage in (
-        inputs.get(CalibrationFile),
-        inputs.get(DiagnosisFile),
-        inputs.get(SimulationFile),
-    ):
+    stages = inputs.get(CalibrationFile), inputs.get(DiagnosisFile), inputs.get(SimulationFile)
+    for stage in stages:
         if stage is not None and run in stage.segments:
             return stage.segments[run]
     return ()

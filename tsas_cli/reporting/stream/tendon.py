@@ -27,6 +27,7 @@ from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.colours import dark
+from tsas_cli.reporting.inputs import written_in
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times, path_of
 from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, TENSIONS, SeenRun, Source
 from tsas_cli.support.arrays import Floats, Indices
@@ -63,8 +64,9 @@ def models_of(run: SeenRun) -> TendonModels | None:
     elif simulation is None or simulation.dynamics == "static":
         return None
     stage = next(iter(files)).stage
-    paths = {source: run.inputs.folders[stage] / file for source, file in files.items()}
-    written = run.inputs.written_columns(run.id, stage)
+    folder = run.inputs.folders[stage]
+    paths = {source: folder / file for source, file in files.items()}
+    written = written_in(folder, run.id)
     if not written or not all(path.is_file() for path in paths.values()):
         return None
     models = {source: read_model(path) for source, path in paths.items()}
@@ -80,11 +82,8 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
         return
     dataset, entry = cast("Dataset", run.inputs.dataset), run.file.run
     drive = prepare(read_recording(dataset.folder, entry), dataset.manifest.session_start).drive
-    there = run.inputs.written_columns(run.id, given.stage)
-    at = moments(
-        run.time_s,
-        [run.inputs.series(run.id, run.file.rows, n, given.stage) for n in TENSIONS if n in there],
-    )
+    there = written_in(run.inputs.folders[given.stage], run.id)
+    at = moments(run.time_s, [run.written(n, given.stage) for n in TENSIONS if n in there])
     followed: dict[Source, tuple[Rig, Frames]] = {}
     for source, model in given.models.items():
         rig = model.rig(entry)

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,15 @@ class Run:
     id: str
     columns: Mapping[str, Floats]
     conditions: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def time_s(self) -> Floats:
+        """The times that are written down [s], shape (n,)."""
+        return self.columns["time_s"]
+
+    def having(self, **columns: Floats) -> "Run":
+        """Return the run with other columns."""
+        return replace(self, columns={**self.columns, **columns})
 
 
 def record(

@@ -35,11 +35,8 @@ class Rig:
         Tendon outside the sheath at the drive and at the load, in series with it.
     bend_profile
         Relative curvature over the fraction of the sheath's length; only its shape counts.
-    friction_course, bend_course
-        Factors on the friction and on the bend over time [s].
-    preload_course
-        Factor on the preload of the load spring over time [s] (its anchor gives way); the
-        tendon's length at rest stays that of the first preload.
+    friction_course
+        Factor on the friction over time [s].
     load
         "spring", or "force" and "displacement": what is prescribed at the distal end.
     presliding_length_mm
@@ -66,8 +63,6 @@ class Rig:
     distal_length_mm: float = 0.0
     bend_profile: Course = ONE
     friction_course: Course = ONE
-    bend_course: Course = ONE
-    preload_course: Course = ONE
     presliding_length_mm: float = 5e-6
     sheath_compliance_ratio: float = 0.0
     stiffening_per_N: float = 0.0
@@ -134,7 +129,7 @@ def simulate(
     t, x_in = motion.time_s, motion.x_in_mm
     tendon = _tendon(rig)
     q = _distal_end(rig, t, tendon.c_out, distal)
-    mu = rig.friction_coefficient * course(rig.friction_course, t) * course(rig.bend_course, t)
+    mu = rig.friction_coefficient * course(rig.friction_course, t)
     mu = mu * over_time(rig.friction, rig.total_bend_rad, t, session_s)
     mu = mu * over_travel(rig.friction, x_in)
     position = tendon_end(rig.drive_end, x_in)
@@ -164,7 +159,7 @@ def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> 
     end = rig.load_end
     lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
     held = Load(end, rig.restraint, Spring(rig.load_stiffness_N_per_mm, F0))
-    net = Net(F0 * course(rig.preload_course, t) - lost, held)
+    net = Net(F0 - lost, held)
     signals, solved = run_pair(first, second, net, t, position, mu, other.friction_ratio)
     t_in, t_out, t_in_2, t_out_2, guide, y = signals
     _refuse_failed(t, t_in, solved)
@@ -215,7 +210,7 @@ def _distal_end(rig: Rig, t: Floats, c_out: float, distal: Floats | None) -> Flo
     F0, kL, end = rig.preload_N, rig.load_stiffness_N_per_mm, rig.load_end
     if distal is None:
         lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
-        return F0 * (course(rig.preload_course, t) + kL * c_out) - lost
+        return F0 * (1.0 + kL * c_out) - lost
     distal = np.asarray(distal, dtype=float)
     return distal if rig.load == "force" else c_out * F0 - distal
 

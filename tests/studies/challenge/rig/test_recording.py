@@ -9,11 +9,13 @@ from tsas_studies.challenge.recording_faults import (
     drawn_recording,
 )
 from tsas_studies.challenge.rig.recording import FAULTS, recorded_with
-from tsas_studies.challenge.rig.recording.recorded import CHANNELS, RecordedRun
+from tsas_studies.challenge.rig.recording.recorded import CHANNELS
+from tsas_studies.challenge.rig.recordings import Run
 
 TIME = np.arange(2001) * 0.01
 RUNS = {
-    name: RecordedRun(
+    name: Run(
+        name,
         {
             "time_s": TIME,
             "x_in_mm": 10.0 - 10.0 * np.cos(k * TIME),

@@ -15,7 +15,8 @@ from tsas_studies.challenge.rig.recording import (
     timing,
     wrong_numbers,
 )
-from tsas_studies.challenge.rig.recording.recorded import STEPS, RecordedRun, Runs
+from tsas_studies.challenge.rig.recording.recorded import STEPS, Runs
+from tsas_studies.challenge.rig.recordings import Run
 from tsas_studies.challenge.rig.sensors import quantised
 
 _FUNCTIONS: tuple[Callable[..., Runs], ...] = (
@@ -37,5 +38,5 @@ def recorded_with(
     return {name: _in_steps(run) for name, run in FAULTS[fault](runs, rng, **parameters).items()}
 
 
-def _in_steps(run: RecordedRun) -> RecordedRun:
+def _in_steps(run: Run) -> Run:
     return run.having(**{c: quantised(run.columns[c], step) for c, step in STEPS.items()})

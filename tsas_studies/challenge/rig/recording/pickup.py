@@ -3,7 +3,8 @@
 import numpy as np
 
 from tsas_studies.challenge.rig.motions import Floats
-from tsas_studies.challenge.rig.recording.recorded import RecordedRun, Runs, changed
+from tsas_studies.challenge.rig.recording.recorded import Runs, changed
+from tsas_studies.challenge.rig.recordings import Run
 
 
 def random_walk(
@@ -40,7 +41,7 @@ def sign_interference(
 ) -> Runs:
     """Return channels that take up the direction in which the motor turns."""
 
-    def taken_up(old: RecordedRun) -> RecordedRun:
+    def taken_up(old: Run) -> Run:
         x = old.columns["x_in_mm"]
         rows = max(round(0.1 / (old.time_s[1] - old.time_s[0])), 3)
         smooth = np.convolve(np.pad(x, rows, mode="edge"), np.ones(rows) / rows, mode="same")

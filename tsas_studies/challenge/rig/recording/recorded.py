@@ -1,34 +1,14 @@
 """The runs of a case as they were recorded, and how a fault changes some channels of some runs."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Any
 
 from tsas_studies.challenge.rig.motions import Floats
+from tsas_studies.challenge.rig.recordings import Run
 
 STEPS = {"x_in_mm": 0.002, "x_out_mm": 0.002, "f_in_N": 0.01, "f_out_N": 0.01}
 CHANNELS = tuple(STEPS)
 FORCES = ("f_in_N", "f_out_N")
-
-
-@dataclass(frozen=True, eq=False)
-class RecordedRun:
-    """The columns of one run, shape (n,) each, and what the manifest says of it."""
-
-    columns: Mapping[str, Floats]
-    conditions: Mapping[str, Any]
-
-    @property
-    def time_s(self) -> Floats:
-        """The times that are written down [s], shape (n,)."""
-        return self.columns["time_s"]
-
-    def having(self, **columns: Floats) -> "RecordedRun":
-        """Return the run with other columns."""
-        return replace(self, columns={**self.columns, **columns})
-
-
-Runs = Mapping[str, RecordedRun]
+Runs = Mapping[str, Run]
 
 
 def changed(

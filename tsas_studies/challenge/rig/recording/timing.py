@@ -3,7 +3,8 @@
 import numpy as np
 
 from tsas_studies.challenge.rig.motions import Floats
-from tsas_studies.challenge.rig.recording.recorded import CHANNELS, RecordedRun, Runs
+from tsas_studies.challenge.rig.recording.recorded import CHANNELS, Runs
+from tsas_studies.challenge.rig.recordings import Run
 
 
 def lost_samples(
@@ -11,7 +12,7 @@ def lost_samples(
 ) -> Runs:
     """Return runs in which rows are missing, the times running on as if none were."""
 
-    def gone(old: RecordedRun) -> RecordedRun:
+    def gone(old: Run) -> Run:
         rows = np.arange(old.time_s.size)
         kept = np.ones(rows.size, dtype=bool)
         count = max(round(lost_s / (old.time_s[1] - old.time_s[0])), 1)
@@ -25,7 +26,7 @@ def lost_samples(
 def repeated_buffers(runs: Runs, rng: np.random.Generator, *, buffer_s: float, times: int) -> Runs:
     """Return runs in which a buffer is written twice, the times running on."""
 
-    def twice(old: RecordedRun) -> RecordedRun:
+    def twice(old: Run) -> Run:
         rows = np.arange(old.time_s.size)
         count = max(round(buffer_s / (old.time_s[1] - old.time_s[0])), 2)
         for share in np.sort(rng.uniform(0.1, 0.9, times))[::-1]:
@@ -39,7 +40,7 @@ def repeated_buffers(runs: Runs, rng: np.random.Generator, *, buffer_s: float, t
 def jittered_stamps(runs: Runs, rng: np.random.Generator, *, jitter_s: float) -> Runs:
     """Return runs whose times are those at which a busy computer looked at its clock."""
 
-    def late(old: RecordedRun) -> RecordedRun:
+    def late(old: Run) -> Run:
         step = float(old.time_s[1] - old.time_s[0])
         stamps = old.time_s + jitter_s * np.abs(rng.standard_normal(old.time_s.size))
         stamps = np.maximum.accumulate(stamps) + 1e-3 * step * np.arange(stamps.size)
@@ -51,7 +52,7 @@ def jittered_stamps(runs: Runs, rng: np.random.Generator, *, jitter_s: float) ->
 def unsteady_sampling(runs: Runs, rng: np.random.Generator, *, jitter_s: float) -> Runs:
     """Return runs that were sampled at other times than the even ones that are written down."""
 
-    def otherwise(old: RecordedRun) -> RecordedRun:
+    def otherwise(old: Run) -> Run:
         at = old.time_s + jitter_s * rng.standard_normal(old.time_s.size)
         return old.having(**{c: np.interp(at, old.time_s, old.columns[c]) for c in CHANNELS})
 
@@ -66,7 +67,7 @@ def rounded_stamps(runs: Runs, _rng: np.random.Generator, *, step_s: float) -> R
     }
 
 
-def _rows(old: RecordedRun, rows: np.ndarray[tuple[int], np.dtype[np.int64]]) -> RecordedRun:
+def _rows(old: Run, rows: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Run:
     """Return these rows, at even times from the first on."""
     step = float(old.time_s[1] - old.time_s[0])
     columns: dict[str, Floats] = {c: old.columns[c][rows] for c in CHANNELS}
