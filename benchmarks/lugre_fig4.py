@@ -11,13 +11,8 @@ from tsas_cli.effects import Effects
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
+from tsas_studies.challenge.rig.make_datasets import GROUPS
 
-GROUPS = {  # speed [rad/s], radius [mm], bend [rad] of Table 2
-    "a": (1.0, 250.0, math.pi),
-    "b": (2.0, 250.0, math.pi),
-    "c": (1.0, 200.0, math.pi),
-    "d": (1.0, 200.0, math.pi / 2.0),
-}
 PRINTED = Bristles(damping_N_s_per_mm=50 * 0.31622)
 AT_P_RAD = 0.12  # after the upper reversal
 

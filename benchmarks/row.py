@@ -13,28 +13,20 @@ RATES = ("MB/s", "GB/s", "rows/s", "1/s")
 
 @dataclass(frozen=True)
 class Row:
-    """A measured value with its unit, and the limits that are agreed for it, where there are.
-
-    Attributes
-    ----------
-    at_most, at_least
-        The limits.
-    kind
-        How two runs are compared. A `time` and a `rate` count in units of the yardstick of their
-        run. A `cost` (less is better) and a `gain` (more is better) are ratios within one run
-        already, such as over a peer. A `figure` is no speed: a size, a share, a count. Where it is
-        not said, the unit tells, and the limit of a number without one.
-    spread
-        The least, the median and the largest of the repeats, in the row's unit; None where it was
-        measured once.
-    """
+    """A measured value with its unit, and the limits that are agreed for it, where there are."""
 
     name: str
     value: float
     unit: str
     at_most: float | None = None
     at_least: float | None = None
+    # How two runs are compared. A `time` and a `rate` count in units of the yardstick of their run.
+    # A `cost` (less is better) and a `gain` (more is better) are ratios within one run already,
+    # such as over a peer. A `figure` is no speed: a size, a share, a count. Where it is not said,
+    # the unit tells, and the limit of a number without one.
     kind: Kind | None = None
+    # The least, the median and the largest of the repeats, in the row's unit; None where it was
+    # measured once.
     spread: tuple[float, float, float] | None = None
 
     @classmethod

@@ -14,18 +14,11 @@ NO_SINES, NO_PIECES = np.empty((0, 3)), np.empty((0, 5))
 
 
 class Tables(NamedTuple):
-    """A drive for compiled code, row after row in memory; one of the two tables is empty.
+    """A drive for compiled code, row after row in memory; one of the two tables is empty."""
 
-    Attributes
-    ----------
-    sines
-        Rows of amplitude [mm], angular frequency [rad/s] and phase [rad].
-    pieces
-        Rows of start [s] and the coefficients of a cubic from there, the highest power first, of
-        equal duration.
-    """
-
-    sines: Floats
+    sines: Floats  # rows of amplitude [mm], angular frequency [rad/s] and phase [rad]
+    # Rows of start [s] and the coefficients of a cubic from there, the highest power first, of
+    # equal duration.
     pieces: Floats
 
 

@@ -22,32 +22,19 @@ LIBRARIES = (
 
 
 class Settings(NamedTuple):
-    """Options of CVODE beside the tolerance; `cvode.c` has the same order.
+    """Options of CVODE beside the tolerance; `cvode.c` has the same order."""
 
-    Attributes
-    ----------
-    newton_coefficient
-        What Newton may leave, of the error that a step may have; 0.1 is inaccurate.
-    gamma_change
-        Relative change of step and order by which the matrix is factorised again.
-    max_order, max_newton
-        Highest order of the formulas; most Newton iterations of a step.
-    steps_per_setup, steps_per_jacobian
-        After how many steps the matrix is factorised, and the Jacobian computed, in any case.
-    least_growth
-        Growth of the step below which it is kept.
-    after_newton_failure
-        What is left of the step where Newton fails.
-    """
-
+    # What Newton may leave, of the error that a step may have; 0.1 is inaccurate.
     newton_coefficient: float = 0.0084
+    # Relative change of step and order by which the matrix is factorised again.
     gamma_change: float = 0.05
-    max_order: float = 2
-    max_newton: float = 3
+    max_order: float = 2  # of the formulas
+    max_newton: float = 3  # iterations of a step
+    # After how many steps the matrix is factorised, and the Jacobian computed, in any case.
     steps_per_setup: float = 28
     steps_per_jacobian: float = 3
-    least_growth: float = 1.56
-    after_newton_failure: float = 0.1
+    least_growth: float = 1.56  # of the step, below which it is kept
+    after_newton_failure: float = 0.1  # what is left of the step where Newton fails
 
 
 def cvode_in_c(problem: Problem, tolerance: Tolerance) -> Output:

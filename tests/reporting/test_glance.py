@@ -29,9 +29,9 @@ def facts(it):
 def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp_path):
     folder = by_hand.make_diagnosis(dataset, tmp_path / "d", "named")
     it, noise = of(folder), read_inputs([folder]).noise
-    assert noise("f_in_N") == pytest.approx(by_hand.NOISE, rel=0.2)
+    assert noise["f_in_N"] == pytest.approx(by_hand.NOISE, rel=0.2)
     f_in, f_out = (
-        f"{before / noise(name):.2g} → {after / noise(name):.2g} × noise level"
+        f"{before / noise[name]:.2g} → {after / noise[name]:.2g} × noise level"
         for name, before, after in (("f_in_N", 0.91, 0.11), ("f_out_N", 0.104, 0.096))
     )
     assert it.kind == "Cause found: normalised residual on held-out data 48.2 % lower"

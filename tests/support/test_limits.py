@@ -1,6 +1,5 @@
 import os
 import re
-import sys
 from io import StringIO
 from pathlib import Path
 
@@ -53,7 +52,6 @@ def test_a_file_is_read_up_to_its_limit_without_its_mark(tmp_path):
         limits.text_of(tmp_path / "b.toml", 5)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes have no place in folders there")
 def test_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     assert "is a pipe or a device" in refusal(limits.text_of, tmp_path / "pipe", 5)

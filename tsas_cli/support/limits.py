@@ -8,7 +8,6 @@ import math
 import os
 import re
 import stat
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -52,9 +51,7 @@ def text_of(path: Path, most: int) -> str:
     OSError, UnicodeDecodeError: the file cannot be read, or is not UTF-8.
     """
     # Without O_NONBLOCK, opening a pipe without a writer would block.
-    descriptor = os.open(
-        path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    )
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
     with os.fdopen(descriptor, "rb") as stream:
         regular(path, os.fstat(descriptor))
         return decoded(stream.read(most + 1), path, most)
@@ -255,8 +252,6 @@ def available() -> int:
 
 def _most_addresses() -> float:
     """Return the limit of this process's addresses [bytes], infinite without one."""
-    if sys.platform == "win32":
-        return math.inf
     import resource
 
     most, _ = resource.getrlimit(resource.RLIMIT_AS)

@@ -11,8 +11,7 @@ from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 from typing import Any
 
-NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that closes
-SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # Ctrl-C, `kill`, a terminal that closes
 EXIT_CODE = 130  # of a command that was stopped, as typer has it
 CLEANUP_S = 3.0  # in which further signals are ignored
 AGAIN_S = 0.01  # after which a stop is raised that could not be, or was swallowed
@@ -66,8 +65,6 @@ def _raise_again(lost: "sys.UnraisableHookArgs") -> None:
 
 
 def _raise_later(kind: type[BaseException]) -> None:
-    if sys.platform == "win32":  # without a timer that signals
-        raise kind
     signal.signal(signal.SIGALRM, lambda _, frame: _raise(kind, frame))
     signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
 
@@ -83,8 +80,7 @@ def _raise(kind: type[BaseException], frame: FrameType | None) -> None:
 
 
 def _ignore() -> None:
-    if sys.platform != "win32":
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 

@@ -29,29 +29,16 @@ CURVATURE_PER_N = 0.003 / 60.0  # bends a scale by 0.3 % at the largest force
 
 @dataclass(frozen=True)
 class Nuisance:
-    """What a case's rig has beside what is hidden; the defaults are nothing.
+    """What a case's rig has beside what is hidden; the defaults are nothing."""
 
-    Attributes
-    ----------
-    friction
-        Factor on the friction coefficient by run.
-    along
-        Friction at the load's end of the sheath less that at the drive's, relative to the mean.
-    f_in_of_f_out, f_out_of_f_in
-        Crosstalk of the force sensors.
-    f_in_per_N, f_out_per_N
-        Curvature of their scales.
-    slow_N, slow_mm
-        Slow noise of the forces and of x_out.
-    """
-
-    friction: Mapping[str, float] = field(default_factory=dict)
+    friction: Mapping[str, float] = field(default_factory=dict)  # factor on μ by run
+    # Friction at the load's end of the sheath less that at the drive's, relative to the mean.
     along: float = 0.0
-    f_in_of_f_out: float = 0.0
+    f_in_of_f_out: float = 0.0  # crosstalk of the force sensors
     f_out_of_f_in: float = 0.0
-    f_in_per_N: float = 0.0
+    f_in_per_N: float = 0.0  # curvature of their scales
     f_out_per_N: float = 0.0
-    slow_N: float = 0.0
+    slow_N: float = 0.0  # slow noise of the forces and of x_out
     slow_mm: float = 0.0
 
 

@@ -62,7 +62,8 @@ def read_entry(
                 remedy="give the set that the entry answers",
             )
     there = [case for case in cases if (folder / case / FILE).is_file()]
-    reasons = _reasons(folder / LOG)
+    log = folder / LOG
+    reasons = parse(Log, read_json(log), log).no_answer if log.is_file() else {}
     return Entry(
         {case: _read_diagnosis(folder / case / FILE, sums.get(case, {})) for case in there},
         {case: reasons.get(case, f"no {FILE}") for case in cases if case not in there},
@@ -73,7 +74,3 @@ def _read_diagnosis(path: Path, sums: Mapping[str, str]) -> SubmittedDiagnosis:
     content = read_json(path)
     check_said(content, sums, path)
     return parse(SubmittedDiagnosis, content, path)
-
-
-def _reasons(path: Path) -> Mapping[str, str]:
-    return parse(Log, read_json(path), path).no_answer if path.is_file() else {}

@@ -28,7 +28,6 @@ def test_where_nothing_can_be_remembered_it_is_said_each_time(state):
         ("linux", "DISPLAY", True),
         ("linux", "WAYLAND_DISPLAY", True),
         ("darwin", None, True),
-        ("win32", None, True),
     ],
 )
 def test_a_screen_is_what_the_system_says(monkeypatch, system, named, expected):

@@ -26,7 +26,7 @@ LAST = 65535
 START_S = 30.0  # a program of 300 MB, read from a slow disk
 END_S = 3.0
 LOOK_S = 0.05
-NAMES = {"win32": "rerun.exe", "darwin": "Rerun.app/Contents/MacOS/Rerun"}
+NAMES = {"darwin": "Rerun.app/Contents/MacOS/Rerun"}
 # Linux ends a child whose parent dies, where the child asks for it before it becomes the viewer.
 ASK = (
     "import ctypes, os, signal, sys\n"
@@ -130,14 +130,11 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     """Ask the viewer and whatever it has started to end; end them where they do not."""
     if process.poll() is not None:
         return
-    if sys.platform == "win32":
-        process.terminate()
-    else:
-        os.killpg(process.pid, signal.SIGTERM)
+    os.killpg(process.pid, signal.SIGTERM)
     try:
         process.wait(END_S)
     except subprocess.TimeoutExpired:
-        process.kill() if sys.platform == "win32" else os.killpg(process.pid, signal.SIGKILL)
+        os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 
 

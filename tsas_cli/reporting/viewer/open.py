@@ -58,8 +58,8 @@ def opened(
 
 
 def has_screen() -> bool:
-    """Return whether this session has a screen; macOS and Windows always have one."""
-    return sys.platform in {"darwin", "win32"} or any(os.environ.get(name) for name in SCREENS)
+    """Return whether this session has a screen; macOS always has one."""
+    return sys.platform == "darwin" or any(os.environ.get(name) for name in SCREENS)
 
 
 def note_once() -> str:

@@ -25,20 +25,12 @@ FASTER = 4.0  # times the step before, as long as the balance is not bracketed
 
 @dataclass(frozen=True)
 class Antagonist:
-    """The second tendon; without tension at rest there is none.
+    """The second tendon; without tension at rest there is none."""
 
-    Attributes
-    ----------
-    preload_N
-        Its tension at rest. That of the first tendon at rest is so much higher than the load's.
-    friction_ratio
-        Its coefficient of friction over the first one's.
-    f_in_share
-        1 where f_in is the torque of the drive, 0 where it is a load cell in the first tendon.
-    """
-
+    # Tension at rest; that of the first tendon at rest is so much higher than the load's.
     preload_N: float = 0.0
-    friction_ratio: float = 1.0
+    friction_ratio: float = 1.0  # its coefficient of friction over the first one's
+    # 1 where f_in is the torque of the drive, 0 where it is a load cell in the first tendon.
     f_in_share: float = 1.0
 
 

@@ -72,23 +72,14 @@ def run_drive(drive: Drive, time_s: Floats, motor_speed_rpm: Floats) -> CleanRun
 
 @dataclass(frozen=True)
 class Gear:
-    """What is not perfect between the asked speed and the drive's spring; all zeros are.
+    """What is not perfect between the asked speed and the drive's spring; all zeros are."""
 
-    Attributes
-    ----------
-    delay_s
-        How much later the motor hears of the asked speed.
-    ripple_sine_mm, ripple_cosine_mm
-        sine · sin(2φ) + cosine · (cos(2φ) − 1) is added to x_m, φ the motor's angle: two waves for
-        each turn of the wave generator.
-    play_mm
-        Of the gear, which starts in its middle.
-    """
-
-    delay_s: float = 0.0
+    delay_s: float = 0.0  # how much later the motor hears of the asked speed
+    # sine · sin(2φ) + cosine · (cos(2φ) − 1) is added to x_m, φ the motor's angle: two waves for
+    # each turn of the wave generator.
     ripple_sine_mm: float = 0.0
     ripple_cosine_mm: float = 0.0
-    play_mm: float = 0.0
+    play_mm: float = 0.0  # of the gear, which starts in its middle
 
 
 def run_geared(

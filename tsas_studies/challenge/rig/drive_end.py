@@ -19,41 +19,25 @@ TONNE_PER_KG = 1e-3
 
 @dataclass(frozen=True)
 class DriveEnd:
-    """What the drive's end is made of; all zeros are a perfect one.
+    """What the drive's end is made of; all zeros are a perfect one."""
 
-    Attributes
-    ----------
-    play_mm
-        Backlash between the position sensor and the tendon, which starts in its middle.
-    ripple_sine_mm, ripple_cosine_mm, ripple_period_mm
-        The gear turns unevenly: sine · sin(2πx/period) + cosine · (cos(2πx/period) − 1) is added.
-    compliance_mm_per_N
-        Between the force sensor and the free tendon, in series.
-    spring_N_per_mm
-        Stiffness of a spring from the tendon's end to ground.
-    friction_N
-        Friction of the drive, felt by the force sensor.
-    rough_N, rough_at_mm, rough_width_mm
-        More such friction around one place of the stroke: a bell of this height and width.
-    pulley_share
-        Friction of a pulley's bearing behind the force sensor, by so much of the tension.
-    mass_kg, damping_N_s_per_mm
-        What moves with the tendon's end behind the force sensor, and a damper from it to ground.
-    """
-
+    # Backlash between the position sensor and the tendon, which starts in its middle.
     play_mm: float = 0.0
+    # The gear turns unevenly: sine · sin(2πx/period) + cosine · (cos(2πx/period) − 1) is added.
     ripple_sine_mm: float = 0.0
     ripple_cosine_mm: float = 0.0
     ripple_period_mm: float = 0.7095
-    compliance_mm_per_N: float = 0.0
-    spring_N_per_mm: float = 0.0
-    friction_N: float = 0.0
+    compliance_mm_per_N: float = 0.0  # between the force sensor and the free tendon, in series
+    spring_N_per_mm: float = 0.0  # stiffness of a spring from the tendon's end to ground
+    friction_N: float = 0.0  # of the drive, felt by the force sensor
+    # More such friction around one place of the stroke: a bell of this height and width.
     rough_N: float = 0.0
     rough_at_mm: float = 10.0
     rough_width_mm: float = 1.0
+    # Friction of a pulley's bearing behind the force sensor, by so much of the tension.
     pulley_share: float = 0.0
-    mass_kg: float = 0.0
-    damping_N_s_per_mm: float = 0.0
+    mass_kg: float = 0.0  # what moves with the tendon's end behind the force sensor
+    damping_N_s_per_mm: float = 0.0  # of a damper from it to ground
 
 
 def tendon_end(end: DriveEnd, x_in: Floats) -> Floats:

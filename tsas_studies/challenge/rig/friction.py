@@ -9,58 +9,38 @@ from tsas_studies.challenge.rig.motions import Floats
 
 
 class Friction(NamedTuple):
-    """How friction differs by direction, speed, tension and time; all zeros are Coulomb's law.
+    """How friction differs by direction, speed, tension and time; all zeros are Coulomb's law."""
 
-    Attributes
-    ----------
-    asymmetry
-        Friction is μ (1 ± asymmetry) where the tendon slides towards (+) or from the drive (−).
-    stribeck_excess, stribeck_velocity_mm_per_s
-        It is μ (1 + excess · exp(−(v/velocity)²)) where the tendon slides at v; each place has
-        its own speed and forgets the one before within `continuum.MEMORY_S`.
-    load_exponent
-        It is μ (T/F0)^exponent at each place.
-    viscous_N_s_per_mm
-        Force per speed of the tendon as a whole; each place has its own speed.
-    presliding_mm
-        Displacement over which friction reverses, beyond the rig's own; the work lost until it
-        has turned is that of a friction that changes by its limit per such displacement.
-    rate_per_s, settling_per_s, session_rate_per_s
-        μ grows over a run, relative to its first value, and over the session.
-    bend_rate_rad_per_s, bend_settling_per_s
-        The total bend grows over a run.
-    slope_per_mm
-        μ grows by so much per displacement of the drive, relative to that at x_in = 0.
-    slope_along
-        μ at the load's end of the sheath less that at the drive's, relative to their mean.
-    cycle_share, cycle_s, cycle_phase_rad
-        μ goes up and down with a temperature, 1 + share · sin(2πt/period + phase).
-    wear_per_mm
-        μ grows by so much per travel of the drive.
-    round_mm
-        Presliding of Bouc and Wen in place of Dahl's, with this length beside the rig's own.
-    shift_per_N
-        The sheath shifts under load: its bend grows by so much per newton of tension at the drive.
-    """
-
+    # Friction is μ (1 ± asymmetry) where the tendon slides towards (+) or from the drive (−).
     asymmetry: float = 0.0
+    # It is μ (1 + excess · exp(−(v/velocity)²)) where the tendon slides at v; each place has its
+    # own speed and forgets the one before within `continuum.MEMORY_S`.
     stribeck_excess: float = 0.0
     stribeck_velocity_mm_per_s: float = 5.0
-    load_exponent: float = 0.0
+    load_exponent: float = 0.0  # it is μ (T/F0)^exponent at each place
+    # Force per speed of the tendon as a whole; each place has its own speed.
     viscous_N_s_per_mm: float = 0.0
+    # Displacement over which friction reverses, beyond the rig's own; the work lost until it has
+    # turned is that of a friction that changes by its limit per such displacement.
     presliding_mm: float = 0.0
+    # μ grows over a run, relative to its first value, and over the session.
     rate_per_s: float = 0.0
     settling_per_s: float = 0.0
     session_rate_per_s: float = 0.0
-    bend_rate_rad_per_s: float = 0.0
+    bend_rate_rad_per_s: float = 0.0  # at which the total bend grows over a run
     bend_settling_per_s: float = 0.0
+    # μ grows by so much per displacement of the drive, relative to that at x_in = 0.
     slope_per_mm: float = 0.0
+    # μ at the load's end of the sheath less that at the drive's, relative to their mean.
     slope_along: float = 0.0
+    # μ goes up and down with a temperature, 1 + share · sin(2πt/period + phase).
     cycle_share: float = 0.0
     cycle_s: float = 5.0
     cycle_phase_rad: float = 0.0
-    wear_per_mm: float = 0.0
+    wear_per_mm: float = 0.0  # μ grows by so much per travel of the drive
+    # Presliding of Bouc and Wen in place of Dahl's, with this length beside the rig's own.
     round_mm: float = 0.0
+    # The sheath shifts under load: its bend grows by so much per newton of tension at the drive.
     shift_per_N: float = 0.0
 
 

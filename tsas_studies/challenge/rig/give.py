@@ -11,20 +11,14 @@ from tsas_studies.challenge.rig.compiled import compiled
 
 
 class Give(NamedTuple):
-    """How the path gives way; zeros are a firm one.
+    """How the path gives way; zeros are a firm one."""
 
-    Attributes
-    ----------
-    clamp_step_mm, clamp_up_N, clamp_down_N
-        A loose clamp: the sheath jumps to a stop so far away when the tension at the drive
-        exceeds clamp_up_N, and back when it falls below clamp_down_N.
-    creep_mm_per_N, creep_time_s
-        The tendon stretches further by so much per change of the tension, so slowly.
-    """
-
+    # A loose clamp: the sheath jumps to a stop so far away when the tension at the drive exceeds
+    # clamp_up_N, and back when it falls below clamp_down_N.
     clamp_step_mm: float = 0.0
     clamp_up_N: float = inf
     clamp_down_N: float = -inf
+    # The tendon stretches further by so much per change of the tension, so slowly.
     creep_mm_per_N: float = 0.0
     creep_time_s: float = 1.0
 

@@ -26,32 +26,20 @@ LOOSE_S = 0.015  # in which a loose part of the mass takes up the load's speed
 
 
 class LoadEnd(NamedTuple):
-    """What the load is made of beside its linear spring; all zeros are none of it.
+    """What the load is made of beside its linear spring; all zeros are none of it."""
 
-    Attributes
-    ----------
-    quadratic_per_mm, cubic_per_mm2
-        The spring's force is F0 + kL x (1 + quadratic x + cubic x²).
-    friction_after_N, friction_before_N
-        Coulomb friction of the guide on the load's and on the tendon's side of the sensor.
-    mass_kg
-        What moves with the load.
-    loose_share
-        The share of it that a damper carries along: without one a load on a tendon swings long.
-    stop_at_mm, stop_N_per_mm
-        A stop with a stiffness, met when x_out exceeds its place.
-    anchor_rate_N_per_s, anchor_settling_per_s
-        The spring's anchor gives way: so fast its force falls, and how fast that settles.
-    """
-
+    # The spring's force is F0 + kL x (1 + quadratic x + cubic x²).
     quadratic_per_mm: float = 0.0
     cubic_per_mm2: float = 0.0
+    # Coulomb friction of the guide on the load's and on the tendon's side of the sensor.
     friction_after_N: float = 0.0
     friction_before_N: float = 0.0
-    mass_kg: float = 0.0
+    mass_kg: float = 0.0  # what moves with the load
+    # The share of it that a damper carries along: without one a load on a tendon swings long.
     loose_share: float = 0.0
-    stop_at_mm: float = inf
-    stop_N_per_mm: float = 0.0
+    stop_at_mm: float = inf  # place of a stop, met when x_out exceeds it
+    stop_N_per_mm: float = 0.0  # its stiffness
+    # The spring's anchor gives way: so fast its force falls, and how fast that settles.
     anchor_rate_N_per_s: float = 0.0
     anchor_settling_per_s: float = 0.0
 

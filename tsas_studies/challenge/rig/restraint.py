@@ -13,35 +13,25 @@ from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
 
 
 class Restraint(NamedTuple):
-    """What holds the load back; all zeros are none of it.
+    """What holds the load back; all zeros are none of it."""
 
-    Attributes
-    ----------
-    damping_N_s_per_mm
-        A damper to ground.
-    hysteresis_N, hysteresis_mm
-        An elastoplastic element beside the spring: its largest force, and the displacement over
-        which it turns. It follows Dahl's law, with the lost work of a straight one that gains
-        hysteresis_N per hysteresis_mm.
-    relaxing_share, relaxing_s
-        A spring and damper in series beside the spring (standard linear solid): so much of the
-        spring's stiffness, which relaxes in this time.
-    ripple_sine_mm, ripple_cosine_mm, ripple_period_mm
-        An eccentric pulley: the spring is stretched by x + sine · sin(2πx/period) + cosine ·
-        (cos(2πx/period) − 1).
-    clamp_play_mm, clamp_up_N, clamp_down_N
-        The spring's anchor sits in a slot of this length: it slides where the spring's force
-        exceeds clamp_up_N, and back where it falls below clamp_down_N.
-    """
-
-    damping_N_s_per_mm: float = 0.0
+    damping_N_s_per_mm: float = 0.0  # of a damper to ground
+    # An elastoplastic element beside the spring: its largest force, and the displacement over which
+    # it turns. It follows Dahl's law, with the lost work of a straight one that gains hysteresis_N
+    # per hysteresis_mm.
     hysteresis_N: float = 0.0
     hysteresis_mm: float = 1.0
+    # A spring and damper in series beside the spring (standard linear solid): so much of the
+    # spring's stiffness, which relaxes in this time.
     relaxing_share: float = 0.0
     relaxing_s: float = 1.0
+    # An eccentric pulley: the spring is stretched by x + sine · sin(2πx/period) + cosine ·
+    # (cos(2πx/period) − 1).
     ripple_sine_mm: float = 0.0
     ripple_cosine_mm: float = 0.0
     ripple_period_mm: float = 10.0
+    # The spring's anchor sits in a slot of this length: it slides where the spring's force exceeds
+    # clamp_up_N, and back where it falls below clamp_down_N.
     clamp_play_mm: float = 0.0
     clamp_up_N: float = inf
     clamp_down_N: float = -inf

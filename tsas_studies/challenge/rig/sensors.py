@@ -13,51 +13,26 @@ from tsas_studies.challenge.rig.transducers import Transducer, transduced
 
 @dataclass(frozen=True)
 class Sensor:
-    """One channel's errors, in the channel's unit.
+    """One channel's errors, in the channel's unit."""
 
-    Attributes
-    ----------
-    noise
-        Standard deviation of white noise.
-    step
-        Quantisation step; 0 for none.
-    slow_noise, slow_time_s
-        Standard deviation and correlation time of an added first-order coloured noise.
-    delay_s
-        How much later than the clock says the channel shows a value.
-    gain, offset
-        The reading is gain × value + offset.
-    gain_rate_per_s
-        The gain grows at this rate.
-    curvature
-        A scale that is bent: curvature × value² is added.
-    wave, wave_period, wave_phase_rad
-        An eccentric scale: wave × sin(2π value / period + phase) is added.
-    wave_cosine
-        The same, with a cosine that is zero at the origin and no phase.
-    rate_per_s, settling_per_s
-        An offset that grows at first at this rate, and how fast that settles.
-    hum, hum_Hz, hum_phase_rad
-        A sine that is picked up: its amplitude, frequency and phase at the start.
-    jumps
-        Moments [s] and what the reading is off by from then on; 0 before the first.
-    """
-
-    noise: float = 0.0
-    step: float = 0.0
-    slow_noise: float = 0.0
-    slow_time_s: float = 1.0
-    delay_s: float = 0.0
-    gain: float = 1.0
+    noise: float = 0.0  # standard deviation of white noise
+    step: float = 0.0  # of quantisation; 0 for none
+    slow_noise: float = 0.0  # standard deviation of an added first-order coloured noise
+    slow_time_s: float = 1.0  # its correlation time
+    delay_s: float = 0.0  # how much later than the clock says the channel shows a value
+    gain: float = 1.0  # the reading is gain × value + offset
     offset: float = 0.0
-    rate_per_s: float = 0.0
-    settling_per_s: float = 0.0
-    hum: float = 0.0
+    rate_per_s: float = 0.0  # of an offset that grows at first at this rate
+    settling_per_s: float = 0.0  # how fast that settles
+    hum: float = 0.0  # amplitude of a sine that is picked up
     hum_Hz: float = 3.0
-    hum_phase_rad: float = 0.0
+    hum_phase_rad: float = 0.0  # at the start
+    # Moments [s] and what the reading is off by from then on; 0 before the first.
     jumps: tuple[tuple[float, float], ...] = ()
-    gain_rate_per_s: float = 0.0
-    curvature: float = 0.0
+    gain_rate_per_s: float = 0.0  # at which the gain grows
+    curvature: float = 0.0  # a scale that is bent: curvature × value² is added
+    # An eccentric scale: wave × sin(2π value / period + phase) is added, and a cosine that is zero
+    # at the origin and has no phase.
     wave: float = 0.0
     wave_period: float = 5.0
     wave_phase_rad: float = 0.0

@@ -15,36 +15,26 @@ RESTS_MM_S = 0.05  # below which a place counts as resting
 
 
 class Surface(NamedTuple):
-    """Laws of friction by place beside those of `Friction`; all shares and excesses 0 are none.
+    """Laws of friction by place beside those of `Friction`; all shares and excesses 0 are none."""
 
-    Attributes
-    ----------
-    rational_excess, rational_velocity_mm_per_s, rational_power
-        Stribeck friction with a long tail, 1 + excess / (1 + (v/velocity)^power).
-    root_excess, root_velocity_mm_per_s
-        Stribeck friction with a sharp peak, 1 + excess · exp(−(v/velocity)^½).
-    log_share, log_velocity_mm_per_s
-        Friction that grows with the logarithm of the speed, 1 + share · ln(1 + v/velocity).
-    ageing_share, ageing_s, ageing_mm
-        Contacts age, 1 + share · ln(1 + θ/time) with dθ/dt = 1 − vθ/length (Dieterich 1979).
-    breakaway_excess, breakaway_mm
-        A place that has rested sticks, 1 + excess · exp(−s/length) after sliding by s.
-    roll_share, roll_mm, roll_phase_rad
-        Strands roll over the liner, 1 + share · sin(2πu/period + phase), u the displacement.
-    """
-
+    # Stribeck friction with a long tail, 1 + excess / (1 + (v/velocity)^power).
     rational_excess: float = 0.0
     rational_velocity_mm_per_s: float = 5.0
     rational_power: float = 1.0
+    # Stribeck friction with a sharp peak, 1 + excess · exp(−(v/velocity)^½).
     root_excess: float = 0.0
     root_velocity_mm_per_s: float = 5.0
+    # Friction that grows with the logarithm of the speed, 1 + share · ln(1 + v/velocity).
     log_share: float = 0.0
     log_velocity_mm_per_s: float = 1.0
+    # Contacts age, 1 + share · ln(1 + θ/time) with dθ/dt = 1 − vθ/length (Dieterich 1979).
     ageing_share: float = 0.0
     ageing_s: float = 0.1
     ageing_mm: float = 0.2
+    # A place that has rested sticks, 1 + excess · exp(−s/length) after sliding by s.
     breakaway_excess: float = 0.0
     breakaway_mm: float = 0.5
+    # Strands roll over the liner, 1 + share · sin(2πu/period + phase), u the displacement.
     roll_share: float = 0.0
     roll_mm: float = 5.0
     roll_phase_rad: float = 0.0

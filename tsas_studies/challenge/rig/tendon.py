@@ -27,28 +27,8 @@ class Rig:
     """What the rig is made of; the defaults are Table 1 and group a of Table 2 (Yang 2025).
 
     A profile or a course is a tuple of (position, value) pairs, linear in between and constant
-    outside.
-
-    Attributes
-    ----------
-    proximal_length_mm, distal_length_mm
-        Tendon outside the sheath at the drive and at the load, in series with it.
-    bend_profile
-        Relative curvature over the fraction of the sheath's length; only its shape counts.
-    friction_course
-        Factor on the friction over time [s].
-    load
-        "spring", or "force" and "displacement": what is prescribed at the distal end.
-    presliding_length_mm
-        Displacement over which friction reverses; small enough to pass for Coulomb.
-    sheath_compliance_ratio
-        How much more the sheath is compressed than the tendon stretches.
-    stiffening_per_N
-        The tendon's force over its stretch s is F0 + (exp(stiffening · k s) − 1) / stiffening.
-    antagonist
-        A second tendon that pulls the load back; it needs a spring at the load.
-    drive_end, friction, surface, load_end, restraint, give
-        What else there is along the way; nothing by default. The load's end needs a spring.
+    outside. The last fields are what else there is along the way, nothing by default; the
+    antagonist and the load's end need a spring at the load.
     """
 
     friction_coefficient: float = 0.125
@@ -58,15 +38,21 @@ class Rig:
     tendon_modulus_GPa: float = 60.0
     preload_N: float = 25.0
     load_stiffness_N_per_mm: float = 1.579
+    # "spring", or "force" and "displacement": what is prescribed at the distal end.
     load: str = "spring"
+    # Tendon outside the sheath at the drive and at the load, in series with it.
     proximal_length_mm: float = 0.0
     distal_length_mm: float = 0.0
+    # Relative curvature over the fraction of the sheath's length; only its shape counts.
     bend_profile: Course = ONE
-    friction_course: Course = ONE
+    friction_course: Course = ONE  # factor on the friction over time [s]
+    # Displacement over which friction reverses; small enough to pass for Coulomb.
     presliding_length_mm: float = 5e-6
+    # How much more the sheath is compressed than the tendon stretches.
     sheath_compliance_ratio: float = 0.0
+    # The tendon's force over its stretch s is F0 + (exp(stiffening · k s) − 1) / stiffening.
     stiffening_per_N: float = 0.0
-    antagonist: Antagonist = field(default_factory=Antagonist)
+    antagonist: Antagonist = field(default_factory=Antagonist)  # pulls the load back
     drive_end: DriveEnd = field(default_factory=DriveEnd)
     friction: Friction = field(default_factory=Friction)
     surface: Surface = field(default_factory=Surface)

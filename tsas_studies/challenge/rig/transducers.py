@@ -16,29 +16,17 @@ from tsas_studies.challenge.rig.motions import Floats
 
 @dataclass(frozen=True)
 class Transducer:
-    """What a channel does to its signal before it is sampled; zeros are nothing, in this order.
+    """What a channel does to its signal before it is sampled; zeros are nothing, in this order."""
 
-    Attributes
-    ----------
-    play
-        Between what is measured and the sensor, which starts in its middle.
-    hysteresis_share, hysteresis_span
-        While a force changes one way, the reading stays behind by share · span; it turns as Dahl's
-        law over this span.
-    creep_share, creep_s
-        So much of a change is read later, within this time.
-    lag_s
-        Time constant of a first-order low pass.
-    filter_s
-        1/(2πf) of a Butterworth filter of second order with the cut-off frequency f.
-    """
-
-    play: float = 0.0
+    play: float = 0.0  # between what is measured and the sensor, which starts in its middle
+    # While a force changes one way, the reading stays behind by share · span; it turns as Dahl's
+    # law over this span.
     hysteresis_share: float = 0.0
     hysteresis_span: float = 10.0
-    creep_share: float = 0.0
+    creep_share: float = 0.0  # so much of a change is read later, within this time
     creep_s: float = 3.0
-    lag_s: float = 0.0
+    lag_s: float = 0.0  # time constant of a first-order low pass
+    # 1/(2πf) of a Butterworth filter of second order with the cut-off frequency f.
     filter_s: float = 0.0
 
 
