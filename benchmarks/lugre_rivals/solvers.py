@@ -41,14 +41,8 @@ def sundae(
 ) -> Output:
     """CVODE through scikit-sundae, banded; its Newton coefficient cannot be set.
 
-    Parameters
-    ----------
-    problem, tolerance
-        What is solved, and how well.
-    max_order, max_newton
-        Highest order of the BDF formulas; most Newton iterations of a step.
-    steps_only
-        Ask for the steps, and join them by cubics; otherwise for the state at each time.
+    `max_order` is the highest of the BDF formulas. With `steps_only` it is asked for its steps,
+    which are joined by cubics; otherwise for the state at each time.
     """
     try:
         from sksundae.cvode import CVODE

@@ -38,13 +38,8 @@ def run(
 ) -> tuple[int, str]:
     """Run in a child of this process, in a folder; return its exit code and what it printed.
 
-    Parameters
-    ----------
-    work
-        What the child does; it returns the exit code.
-    processor_s
-        Processor time after which it is ended, `TIMED_OUT` then. Ten times as long on the clock
-        ends it too, so that one that waits for ever does.
+    `work` returns the exit code. It is ended after `processor_s` of processor time, `TIMED_OUT`
+    then, and after ten times as long on the clock, so that one that waits for ever ends too.
     """
     child = os.fork()
     if not child:

@@ -70,20 +70,10 @@ def picture(
 ) -> Picture:
     """Draw on an empty matplotlib figure and return it as a picture of the page.
 
-    Parameters
-    ----------
-    draw
-        Draws on the `matplotlib.figure.Figure` that it is given, with colours of `STAND_IN`.
-    key
-        Words of its own for each picture of the page, for the names inside the SVG.
-    alt
-        What the plot shows, for a reader who does not see it.
-    caption
-        The line under the plot.
-    height_in
-        Height in inches, at a width of `WIDTH_IN`.
-    every_point
-        Keep all points of each curve, so that the same place in two curves is the same sample.
+    `draw` draws on the `matplotlib.figure.Figure` that it is given, with colours of `STAND_IN`.
+    `key` is another one for each picture of the page, for the names inside the SVG; `alt` says what
+    the plot shows to a reader who does not see it. The height is that at a width of `WIDTH_IN`.
+    With `every_point` the same place in two curves is the same sample.
     """
     from matplotlib.figure import Figure
     from matplotlib.style import context

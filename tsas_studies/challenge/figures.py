@@ -47,22 +47,18 @@ def figures(judged: Sequence[Judged]) -> list[ScoreRate]:
     )
     return [
         ScoreRate("answered", "answered", rate(j.outcome != NO_ANSWER for j in judged)),
-        ScoreRate("one_exact", "one effect: named exactly", _exact(_of(clean, "one"))),
+        *_of_singles(clean),
         *(figure for size in sizes(clean) for figure in _of_one(clean, size)),
         *_of_several(clean),
         *_of_nothing(clean),
         *(_under("slow", f) for f in _of_nothing(slow)),
         *_beyond(clean),
-        *_of_faults(clean),
+        *_wrong("fault", "small fault of a sensor", _of(clean, "fault")),
         *_of_recording(judged),
         *_of_names(clean),
-        _under(
-            "realistic",
-            ScoreRate("one_exact", "one effect: named exactly", _exact(_of(realistic, "one"))),
-        ),
         *(
             _under("realistic", f)
-            for part in (_of_several, _of_nothing, _beyond, _of_names)
+            for part in (_of_singles, _of_several, _of_nothing, _beyond, _of_names)
             for f in part(realistic)
         ),
     ]
@@ -76,6 +72,10 @@ def _under(conditions: str, figure: ScoreRate) -> ScoreRate:
 
 def _of(judged: Iterable[Judged], *kinds: str) -> list[Judged]:
     return [j for j in judged if j.case.kind in kinds]
+
+
+def _of_singles(judged: Iterable[Judged]) -> list[ScoreRate]:
+    return [ScoreRate("one_exact", "one effect: named exactly", _exact(_of(judged, "one")))]
 
 
 def _of_several(judged: Iterable[Judged]) -> list[ScoreRate]:
@@ -101,12 +101,7 @@ def _beyond(judged: Iterable[Judged]) -> list[ScoreRate]:
     """Return the rates of what is near to the catalogue or not in it."""
     beyond = _of(judged, *OUTSIDE)
     return [
-        ScoreRate("beyond_wrong", "not in the catalogue: something wrong named", _false(beyond)),
-        ScoreRate(
-            "beyond_unwarned",
-            "not in the catalogue: something wrong named, no warning",
-            rate(j.outcome == "false" for j in _answered(beyond)),
-        ),
+        *_wrong("beyond", "not in the catalogue", beyond),
         ScoreRate(
             "beyond_recognised",
             "not in the catalogue: said so, or right in kind",
@@ -131,16 +126,13 @@ def _beyond(judged: Iterable[Judged]) -> list[ScoreRate]:
     ]
 
 
-def _of_faults(judged: Iterable[Judged]) -> list[ScoreRate]:
-    faults = _of(judged, "fault")
-    wrong_alone = rate(j.outcome == "false" for j in _answered(faults))
+def _wrong(name: str, title: str, cases: Sequence[Judged]) -> list[ScoreRate]:
+    """Return how often something wrong is named, and how often without a warning."""
+    said = f"{title}: something wrong named"
+    alone = (j.outcome == "false" for j in _answered(cases))
     return [
-        ScoreRate("fault_wrong", "small fault of a sensor: something wrong named", _false(faults)),
-        ScoreRate(
-            "fault_unwarned",
-            "small fault of a sensor: something wrong named, no warning",
-            wrong_alone,
-        ),
+        ScoreRate(f"{name}_wrong", said, _false(cases)),
+        ScoreRate(f"{name}_unwarned", f"{said}, no warning", rate(alone)),
     ]
 
 

@@ -8,9 +8,9 @@ from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, path_of
 from tsas_cli.support.files import folder_if, write_json
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_studies.reproduction import GROUPS
 from tsas_studies.reproduction.group import Group
 from tsas_studies.reproduction.page import reproduction_page
-from tsas_studies.reproduction.summary import reproduce as reproduce_paper
 from tsas_studies.reproduction.summary import sentence, summary_of, verdict_table
 
 
@@ -56,7 +56,11 @@ def reproduce(
     """
     paper, folder = yang2025(), path_of(out)
     with folder_if(folder, stage="reproduce", inputs=(), force=force) as written:
-        groups = reproduce_paper(paper, step)
+        groups: list[Group] = []
+        step.ahead(len(GROUPS))
+        for group in GROUPS:
+            groups.append(group(paper))
+            step()
         summary = summary_of(paper, groups)
         if written is not None:
             write_json(written / "reproduction.json", summary)

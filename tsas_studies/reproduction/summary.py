@@ -1,23 +1,11 @@
-"""The whole reproduction: all groups, how many rows have which verdict, what is written of it."""
+"""The whole reproduction: how many rows have which verdict, and what is written of it."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from tsas_cli.paper import Paper
 from tsas_cli.support import __version__
-from tsas_cli.support.steps import NO_PROGRESS, Steps
-from tsas_studies.reproduction import GROUPS
 from tsas_studies.reproduction.group import VERDICTS, Group, Verdict
-
-
-def reproduce(paper: Paper, step: Steps = NO_PROGRESS) -> list[Group]:
-    """Compute every group; `step` is called after each."""
-    groups = []
-    step.ahead(len(GROUPS))
-    for group in GROUPS:
-        groups.append(group(paper))
-        step()
-    return groups
 
 
 def counted(groups: Sequence[Group]) -> dict[Verdict, int]:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.commands.documented import documented
-from tsas_studies.reproduction import GROUPS, summary
+from tsas_studies.reproduction import GROUPS, reproduce
 from tsas_studies.reproduction.contradictions import contradictions
 from tsas_studies.reproduction.group import VERDICTS
 from tsas_studies.reproduction.tables_1_2_4 import tables_1_2_4
@@ -38,7 +38,7 @@ def groups_of(folders, printed):
 
 
 def test_it_writes_what_is_documented_and_the_same_again(tmp_path, monkeypatch, here):
-    monkeypatch.setattr(summary, "GROUPS", (tables_1_2_4, contradictions))
+    monkeypatch.setattr(reproduce, "GROUPS", (tables_1_2_4, contradictions))
     folders = (tmp_path / "one", tmp_path / "two")
     printed = []
     for folder, more in zip(folders, ([], ["--json"]), strict=True):

@@ -14,6 +14,7 @@ from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import bound, legend, line, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, spanned
+from tsas_cli.reporting.simulation import rms
 from tsas_cli.support.arrays import Floats
 
 _OUTSIDE = 0.02
@@ -139,12 +140,11 @@ def _force(condition: RunsUnderCondition, key: str) -> Picture:
 
 def _error(condition: RunsUnderCondition, key: str) -> Picture:
     band = _OUTSIDE * float(np.ptp(condition.runs[0].columns[WANTED]))
-    rmse = (plain(float(np.sqrt(np.mean(run.error**2))), 3) for run in condition.runs)
     return _picture(
         condition,
         [
-            TimeCurve(f"{run.name}, RMSE {size} N", run.name, run.error)
-            for run, size in zip(condition.runs, rmse, strict=True)
+            TimeCurve(f"{run.name}, RMSE {plain(rms(run.error), 3)} N", run.name, run.error)
+            for run in condition.runs
         ],
         partial(draw_panels, label="error [N]", band=band),
         key=key,

@@ -34,6 +34,14 @@ class Antagonist:
     f_in_share: float = 1.0
 
 
+class Tendons(NamedTuple):
+    """Both tendons, and the friction of the second one over that of the first."""
+
+    first: Tendon
+    second: Tendon
+    ratio: float
+
+
 class Net(NamedTuple):
     """What holds the load: preload [N] at each sample, and the load."""
 
@@ -55,31 +63,20 @@ class Pair(NamedTuple):
 
 @compiled
 def run_pair(
-    first: Tendon, second: Tendon, net: Net, time: Floats, x_in: Floats, mu: Floats, ratio: float
+    tendons: Tendons, net: Net, time: Floats, x_in: Floats, mu: Floats
 ) -> tuple[Floats, int]:
     """March through all samples, starting at rest with x_in = 0.
 
-    Parameters
-    ----------
-    first, second
-        The tendons, each with a displacement given at its distal end.
-    net
-        What holds the load.
-    time, x_in, mu
-        Of each sample, shape (m,) with m ≥ 2.
-    ratio
-        Friction of the second tendon over that of the first.
+    Each tendon has a displacement given at its distal end; `time`, `x_in` and `mu` are of each
+    sample, shape (m,) with m ≥ 2.
 
-    Returns
-    -------
-    signals
-        Tensions of the first and of the second tendon, each at the drive and at the load [N], state
-        of the load's guide, position of the load [mm], shape (6, m).
-    solved
-        The number of samples before the first tendon went slack or a step did not converge.
+    Return the tensions of the first and of the second tendon, each at the drive and at the load
+    [N], the state of the load's guide and the position of the load [mm], shape (6, m), and the
+    number of samples before the first tendon went slack or a step did not converge.
     """
     m = x_in.size
     out = np.full((6, m), np.nan)
+    first, second, _ = tendons
     one, two = at_rest(first.bend.size, first.surface), at_rest(second.bend.size, second.surface)
     load, slack = AT_REST, False
     x_before, mu_before, net_before = 0.0, mu[0], net.preload[0]
@@ -94,7 +91,7 @@ def run_pair(
             step, winds = (to - done) * h, x_in[i] - x_before
             if slack:
                 _hang(two, second, -x + (to - done) * winds, -load.y, winds)
-            y, pair = _balance(one, two, first, second, net, held, load, x, now, ratio, step)
+            y, pair = _balance((one, two), tendons, net, held, load, x, now, step)
             if pair.converged:
                 load = moved(net.load, load, y, step)
                 keep(one, pair.du, first, step)
@@ -116,21 +113,18 @@ def run_pair(
 
 @compiled
 def _balance(
-    one: State,
-    two: State,
-    first: Tendon,
-    second: Tendon,
+    states: tuple[State, State],
+    tendons: Tendons,
     net: Net,
     held: float,
     load: LoadState,
     x: float,
     mu: float,
-    ratio: float,
     h: float,
 ) -> tuple[float, Pair]:
     """Return where the load is after a step [mm], and what both tendons do there."""
     y = load.y
-    pair = _pulled(one, two, first, second, x, y, mu, ratio, h)
+    pair = _pulled(states, tendons, x, y, mu, h)
     pull = _net_pull(pair, net, held, load, y, h)
     step = pull / STIFFEST
     other, pull_other, bracketed = y, pull, False
@@ -138,7 +132,7 @@ def _balance(
         if abs(pull) < BALANCED_N or not pair.converged:
             return y, pair
         trial = y - pull * (other - y) / (pull_other - pull) if bracketed else y + step
-        pair = _pulled(one, two, first, second, x, trial, mu, ratio, h)
+        pair = _pulled(states, tendons, x, trial, mu, h)
         new = _net_pull(pair, net, held, load, trial, h)
         if new * pull < 0.0:
             other, pull_other, bracketed = y, pull, True
@@ -162,17 +156,10 @@ def _net_pull(pair: Pair, net: Net, held: float, load: LoadState, y: float, h: f
 
 @compiled
 def _pulled(
-    one: State,
-    two: State,
-    first: Tendon,
-    second: Tendon,
-    x: float,
-    y: float,
-    mu: float,
-    ratio: float,
-    h: float,
+    states: tuple[State, State], tendons: Tendons, x: float, y: float, mu: float, h: float
 ) -> Pair:
     """Return what both tendons do for positions of drive and load [mm]."""
+    (one, two), (first, second, ratio) = states, tendons
     good, du, t_in, t_out = stretched(one, first, Ends(x, mu, _distal(first, y)), h)
     if _is_slack(second, y - x):
         still = np.zeros(two.u.size)

@@ -86,22 +86,11 @@ def run(
 ) -> tuple[Floats, Floats, Floats, Floats, int]:
     """March through all samples, starting at rest at the preload with x_in = 0.
 
-    Parameters
-    ----------
-    tendon, path
-        What stays the same, and what gives way.
-    time
-        The time of each sample [s], shape (m,) with m ≥ 2.
-    x_in, mu, q
-        The fields of `Ends` at each sample, each of shape (m,).
+    `time` [s] and the fields of `Ends` are of each sample, shape (m,) with m ≥ 2.
 
-    Returns
-    -------
-    t_in, t_out, u_end, guide
-        Tensions at the drive and at the load [N], displacement of the sheath's distal end [mm]
-        and state of the load's guide, each of shape (m,).
-    solved
-        The number of samples before the tendon went slack or a step did not converge.
+    Return the tensions at the drive and at the load [N], the displacement of the sheath's distal
+    end [mm] and the state of the load's guide, shape (m,) each, and the number of samples before
+    the tendon went slack or a step did not converge.
     """
     m, n = x_in.size, tendon.bend.size
     state = at_rest(n, tendon.surface)

@@ -136,17 +136,10 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
 def hide(name: str, parameters: Parameters, rig: Rig, sensors: Sensors) -> tuple[Rig, Sensors]:
     """Return the rig and its sensors with one cause hidden in them.
 
-    Parameters
-    ----------
-    name
-        An effect of the catalogue, or one of `NEAR` or `UNKNOWNS`.
-    parameters
-        Its parameters by name; those left out stay as they are.
+    The cause is an effect of the catalogue, or one of `NEAR` or `UNKNOWNS`; parameters that are
+    left out stay as they are.
 
-    Raises
-    ------
-    KeyError
-        The cause or a parameter does not exist.
+    KeyError: the cause or a parameter does not exist.
     """
     places = {**CATALOGUE, **NEAR, **UNKNOWNS}[name]
     for parameter, value in parameters.items():

@@ -89,16 +89,9 @@ def write_dataset(
 ) -> Path:
     """Write `dataset.toml` and `runs/ID.parquet` into a folder, and return the folder.
 
-    Parameters
-    ----------
-    folder
-        Made where it is missing; files of the same names are replaced.
-    runs
-        The runs, in the order of the manifest.
-    name, description, more
-        Top-level keys of the manifest (`license`, `source`).
-    data_sheet
-        The manifest's [rig] table; Table 1 of Yang 2025 by default.
+    The folder is made where it is missing; files of the same names are replaced. `more` are other
+    top-level keys of the manifest (`license`, `source`), `data_sheet` is its [rig] table, Table 1
+    of Yang 2025 by default.
     """
     (folder / "runs").mkdir(parents=True, exist_ok=True)
     manifest = {"format": 1, "name": name, "kind": "simulated", "description": description, **more}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tsas_studies.challenge.rig import continuum
-from tsas_studies.challenge.rig.antagonist import Antagonist, Net, run_pair
+from tsas_studies.challenge.rig.antagonist import Antagonist, Net, Tendons, run_pair
 from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
 from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
 from tsas_studies.challenge.rig.friction import Friction, over_time, over_travel
@@ -84,29 +84,12 @@ def simulate(
 ) -> CleanRun:
     """Drive the rig through a motion, from rest at the preload with x_in = 0 mm.
 
-    A motion that starts elsewhere is reached by one straight pull before its first sample.
+    A motion that starts elsewhere is reached by one straight pull before its first sample; it is
+    linear between its samples. With load "force" `distal` is the tension [N], with "displacement"
+    x_out [mm] at each sample of the motion; it is left out for a spring. This run begins
+    `session_s` after the first one. Columns: time_s, x_in_mm, x_out_mm, f_in_N, f_out_N.
 
-    Parameters
-    ----------
-    rig
-        The rig.
-    motion
-        x_in over time; it is linear between its samples.
-    distal
-        With load "force" the tension [N], with "displacement" x_out [mm] at each sample of the
-        motion; left out for a spring.
-    session_s
-        How long after the first run this one begins [s].
-
-    Returns
-    -------
-    CleanRun
-        time_s, x_in_mm, x_out_mm, f_in_N, f_out_N.
-
-    Raises
-    ------
-    ValueError
-        The tendon goes slack, a step does not converge, or `distal` does not fit the load.
+    ValueError: the tendon goes slack, a step does not converge, or `distal` does not fit the load.
     """
     if (rig.load == "spring") != (distal is None):
         raise ValueError(f"load {rig.load!r} and distal values do not go together")
@@ -146,7 +129,8 @@ def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> 
     lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
     held = Load(end, rig.restraint, Spring(rig.load_stiffness_N_per_mm, F0))
     net = Net(F0 - lost, held)
-    signals, solved = run_pair(first, second, net, t, position, mu, other.friction_ratio)
+    pair = Tendons(first, second, other.friction_ratio)
+    signals, solved = run_pair(pair, net, t, position, mu)
     t_in, t_out, t_in_2, t_out_2, guide, y = signals
     _refuse_failed(t, t_in, solved)
     f_in = t_in - other.f_in_share * t_in_2
