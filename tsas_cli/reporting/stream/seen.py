@@ -135,10 +135,11 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     if inputs.dataset is None:
         return
     given, tracking, folders = tuple(_sources(inputs)), inputs.get(TrackingFile), inputs.folders
+    stages = dict.fromkeys(source.stage for source in given)
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
-        written = {stage: written_in(folders[stage], run.id) for stage in {s.stage for s in given}}
+        written = {stage: written_in(folders[stage], run.id) for stage in stages}
         channels = tuple(
             Channel(
                 name,
