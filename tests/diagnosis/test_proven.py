@@ -125,6 +125,7 @@ def test_what_an_effect_proves(monkeypatch, after, told, failed, law, negligible
         monkeypatch.setattr(p, function.__name__, function)
     monkeypatch.setattr(p, "worst_split", lambda *_: told["split"])
     monkeypatch.setattr(p, "split_in_words", lambda split: f"over {split}")
+    monkeypatch.setattr(p, "_within_interval", lambda split, own: False)
     monkeypatch.setattr(p, "within_scatter", lambda *_: "scatter" in told)
     monkeypatch.setattr(p, "_of_another_law", lambda *_: ())
     monkeypatch.setattr(p, "largest_forces", lambda bench: {"f_in_N": 40.0})
@@ -184,5 +185,5 @@ def test_where_much_is_left_no_effect_is_proven(first, last, reducible, structur
 @pytest.mark.parametrize(("values", "within"), [((0.09, 0.11), True), ((0.09, 0.13), False)])
 def test_parts_within_the_interval_of_the_whole_do_not_differ(values, within):
     parts = tuple(zip(("low", "high"), values, strict=True))
-    split = Split("backlash.play_mm", "speed", Reduction(0.1, 3.0, 2.0, convincing=True), parts)
+    split = Split("backlash.play_mm", "speed", Reduction(0.1, 3.0), parts)
     assert p._within_interval(split, [CLEAR]) == within
