@@ -8,7 +8,7 @@ import pytest
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.diagnosis import diagnose as d
 from tsas_cli.diagnosis.diagnose import nominal_fit, verdict_of
-from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.identification.model import data_sheet
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
 
@@ -42,7 +42,7 @@ def stated(*parts):
     ],
 )
 def test_the_share_left_is_of_what_could_be_explained(start, after, left):
-    assert d._share_left(*stated(start, after)) == pytest.approx(left)
+    assert share_left(*stated(start, after)) == pytest.approx(left)
 
 
 def test_why_nothing_can_be_diagnosed():

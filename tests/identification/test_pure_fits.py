@@ -1,5 +1,7 @@
 """A fit changes nothing that it is given: problems and benches serve again, whatever was done."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -63,7 +65,9 @@ def test_weighing_again_leaves_the_old_bench_as_it_was(solved):
     """The closed form and the meshes of either bench have the weights of that bench."""
     bench = bench_of(solved)
     folds = bench_folds(bench)
-    nominal, trial = bench.fit(), bench.fit(["free_tendon"])
+    nominal = bench.fit()
+    away = replace(nominal.solution, values=1.01 * nominal.solution.values)
+    trial = replace(nominal, solution=away)
     meshes = (bench.closed, bench.meshed, bench.coarse)
     before = [residuals_of(runs, bench.rigs) for runs in meshes]
     squares = held_out_squares(nominal, folds)

@@ -20,7 +20,11 @@ def run_of(x, *, gap=(), noise=0.1, smallest=0.5, **measured):
         run=SimpleNamespace(id="a"),
         drive_column="x_in_mm",
         drive=SimpleNamespace(values=x),
-        conditioned={"x_in_mm": SimpleNamespace(values=x, smallest_reversal=smallest)},
+        conditioned={
+            "x_in_mm": SimpleNamespace(
+                values=x, smallest_reversal=smallest, reversals=np.array([0, x.size - 1])
+            )
+        },
         in_gap=in_gap,
         measured=channels,
         noise=dict.fromkeys(channels, noise),

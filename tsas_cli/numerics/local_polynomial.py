@@ -19,7 +19,7 @@ RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
 UNDERSMOOTH = 0.75  # of the window of least risk: a hysteretic model tolerates noise, not bias
 CORNER = 6.0  # standard deviations of the difference of two slopes
 KINK = 4.0  # the same beside a curvature that changes, as that of a smooth turn does within
-COARSE = 16  # samples and fewer
+COARSE = 8  # samples and fewer
 
 
 def best_half_windows(
