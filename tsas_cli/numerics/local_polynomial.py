@@ -18,8 +18,8 @@ RISK_POINTS = 2000  # samples at which the risk is estimated, evenly spread
 RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
 UNDERSMOOTH = 0.75  # of the window of least risk: a hysteretic model tolerates noise, not bias
 CORNER = 6.0  # standard deviations of the difference of two slopes
-KINK = 4.0  # the same beside a curvature that changes, as that of a smooth turn does within
-COARSE = 8  # samples and fewer
+COARSE = 8  # samples: in such a window, and a shorter one, a smooth turn changes its curvature
+KINK = 4.0  # standard deviations there, beside a quartic that follows the turn
 
 
 def best_half_windows(

@@ -248,8 +248,7 @@ def files_of(scheme: str) -> Any:
     return files
 
 
-if hasattr(os, "register_at_fork"):  # connections belong to one process
-    os.register_at_fork(after_in_child=files_of.cache_clear)
+os.register_at_fork(after_in_child=files_of.cache_clear)  # connections belong to one process
 
 
 def _refuse_short(found: Any, size: int | None) -> None:
