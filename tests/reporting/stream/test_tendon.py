@@ -14,6 +14,7 @@ from tests.reporting.stream.streams import stream
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
+from tsas_cli.numerics.conditioning import condition
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
@@ -44,7 +45,7 @@ def answer(recording, one, samples=None):
     f_in = recording.columns["f_in_N"]
     slope_and_start = np.polyfit(recording.time_s[:20], f_in[:20], 1)
     drive = DriveInput(
-        recording.columns["x_in_mm"],
+        condition(recording.time_s, recording.columns["x_in_mm"]).values,
         time_s=recording.time_s,
         start_f_in_N=float(slope_and_start[1]),
     )
