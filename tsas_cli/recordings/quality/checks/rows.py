@@ -65,7 +65,8 @@ def lost_samples(trial: RunSignals) -> Remarks:
     size = trial.sizes["x_in_mm"]
     sudden = np.abs(jumps["x_in_mm"].at_once) > max(_SUDDEN * size.noise, _STEPS * size.step)
     gap = np.convolve(interval > _GAP * step_s, np.ones(2 * rows), mode="same") > 0.0
-    places = _places(jumps, rows, sudden & ~gap[rows - 1 : rows - 1 + sudden.size])
+    possible = sudden & ~gap[rows - 1 : rows - 1 + sudden.size]
+    places = _places(jumps, rows, possible, 0.5 * step_s)
     if places:
         lost = [lost_s for _, lost_s in places]
         first, lost_s = places[0]
@@ -104,8 +105,10 @@ def _torn(trial: RunSignals, moving: Mapping[str, Floats]) -> list[int]:
     return [int(row) for row in np.flatnonzero(drive & np.any(list(far.values()), axis=0))]
 
 
-def _places(jumps: dict[str, _Jumps], rows: int, possible: Mask) -> list[tuple[int, float]]:
-    """Return where samples are lost, and how long that lasted [s]."""
+def _places(
+    jumps: dict[str, _Jumps], rows: int, possible: Mask, least_s: float
+) -> list[tuple[int, float]]:
+    """Return where samples are lost, and how long that lasted, more than the least [s]."""
     drive = jumps["x_in_mm"]
     slope = 0.5 * (drive.before + drive.after)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -114,7 +117,7 @@ def _places(jumps: dict[str, _Jumps], rows: int, possible: Mask) -> list[tuple[i
     found: list[tuple[int, float]] = []
     sudden = np.abs(drive.at_once - drive.jump) < _SAME_TIME * np.abs(drive.jump) + drive.usual
     far = np.where(
-        possible & steady & sudden & (lost_s > 0.0), np.abs(drive.jump) / drive.usual, 0.0
+        possible & steady & sudden & (lost_s > least_s), np.abs(drive.jump) / drive.usual, 0.0
     )
     for place in np.argsort(-far):
         if far[place] < _FAR:
