@@ -58,7 +58,7 @@ def test_a_true_model_s_errors_are_about_one(make):
 
 @pytest.mark.parametrize("rate_Hz", [20.0, 30.0, 50.0])
 def test_a_coarse_sample_may_lie_behind_the_reversal_that_it_seems_to_end(rate_Hz):
-    """Without the weight there single errors of f_in are 20 to 60 standard deviations."""
+    """Were it compared, single errors of f_in would be 20 to 60 standard deviations."""
     for seed in range(4):
         run = prepared(Rig(), sine(rate_Hz=1000.0), sensors=Sensors(rate_Hz=rate_Hz), seed=seed)
         errors, rig = errors_of(run)

@@ -22,7 +22,7 @@ from tsas_cli.diagnosis.proof import (
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
-from tsas_cli.diagnosis.remainder import Remainder, remainder, share_left
+from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of, share_left
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
 from tsas_cli.identification.estimate import Estimate
@@ -103,10 +103,7 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     causes = tuple(_beside_another_law(cause, causes) for cause in causes)
     start = after
     if named:
-        before = judged.trial(frozenset(), on_mesh=mesh)
-        tolerated = tolerances(bench, before)
-        at_residuals = signals_at_residuals(bench, before)
-        start = remainder(bench, before, judged.folds, at_residuals, tolerated)
+        start = remainder_of(bench, judged.trial(frozenset(), on_mesh=mesh), judged.folds)
     causes = tuple(_beside_what_is_left(cause, start, after) for cause in causes)
     estimates = tuple(found.estimates)
     return Proven(search, judged, causes, stand_ins, estimates, held_out, start, after)

@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds, in_stretches
-from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
-from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, without_tolerances
+from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals, signals_at_residuals
+from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, tolerances, without_tolerances
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
@@ -97,6 +97,12 @@ class Remainder:
         name = max(self.slow, key=lambda n: self.slow[n].ratio)
         slow = self.slow[name]
         return name if slow.ratio**2 > MOST_SLOW and slow.time_s > JERK_S else None
+
+
+def remainder_of(bench: Bench, trial: HypothesisFit, folds: Folds) -> Remainder:
+    """Return what a trial leaves, with the tolerances of a rig at it."""
+    at_residuals = signals_at_residuals(bench, trial)
+    return remainder(bench, trial, folds, at_residuals, tolerances(bench, trial))
 
 
 def share_left(start: Remainder, after: Remainder) -> float:

@@ -28,8 +28,7 @@ from tsas_cli.diagnosis.evidence import (
 from tsas_cli.diagnosis.friction_scatter import is_in_line, with_friction_of_runs
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
-from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
-from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder_of
 from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench
@@ -139,10 +138,7 @@ class Search:
 
     def is_complete(self, names: Names) -> bool:
         """Return whether a regression finds nothing that a further cause could explain."""
-        trial = self.trial(names)
-        at_residuals = signals_at_residuals(self.bench, trial)
-        tolerated = tolerances(self.bench, trial)
-        return remainder(self.bench, trial, self.folds, at_residuals, tolerated).complete
+        return remainder_of(self.bench, self.trial(names), self.folds).complete
 
     def matters(self, before: Names, added: Names) -> bool:
         """Return whether added effects reduce the excess over the noise by a sufficient share."""

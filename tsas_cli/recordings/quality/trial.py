@@ -15,6 +15,7 @@ from tsas_cli.recordings.quality.samples import Size, alternates, outlying, size
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
+GAP = 1.5  # intervals; a longer one is a gap
 _LONG = 2.5  # times the lower quartile of the intervals
 _FEWEST_BATCHES = 5  # batches
 _TOGETHER = 0.05  # share of long intervals in a row, beyond which the clock changes its pace
@@ -157,6 +158,11 @@ class RunSignals:
         """
         others = _FOLLOWERS[self.recording.run.load] if name == "x_in_mm" else MECHANICAL[:1]
         return tuple(o for o in others if o in self.channels and self.moves(o))
+
+    def steps(self, name: str) -> Floats:
+        """Return the size of a channel's changes from row to row, 0 over a gap, shape (n - 1,)."""
+        sizes = np.nan_to_num(np.abs(np.diff(self.channels[name])))
+        return np.where(np.diff(self.time_s) > GAP * self.step_s, 0.0, sizes)
 
     @property
     def prescribed(self) -> str | None:

@@ -10,7 +10,6 @@ _FAR = 10.0  # times the largest step elsewhere
 _NOISE, _STEPS = 20.0, 3.0  # noise levels and quantisation steps
 _QUIET = 3.0  # times the largest step elsewhere, of a channel that does not jump
 _BESIDE = 2  # rows
-_GAP = 1.5  # intervals
 
 
 def jump(trial: RunSignals) -> Remarks:
@@ -22,7 +21,7 @@ def jump(trial: RunSignals) -> Remarks:
     outlier, which comes back; a drive that jumps, which the tension follows; a tendon that slips
     many times. A jump within the usual changes is a fault that `diagnose` names.
     """
-    channels = {name: _steps(trial, name) for name in trial.mechanical}
+    channels = {name: trial.steps(name) for name in trial.mechanical}
     for name in ("x_in_mm", "x_out_mm"):
         if name not in channels:
             continue
@@ -45,12 +44,6 @@ def jump(trial: RunSignals) -> Remarks:
                 name,
                 float(trial.time_s[at + 1]),
             )
-
-
-def _steps(trial: RunSignals, name: str) -> Floats:
-    """Return the changes of a channel from row to row, 0 over a gap, shape (n - 1,)."""
-    steps = np.nan_to_num(np.abs(np.diff(trial.channels[name])))
-    return np.where(np.diff(trial.time_s) > _GAP * trial.step_s, 0.0, steps)
 
 
 def _near(steps: Floats, at: int) -> float:

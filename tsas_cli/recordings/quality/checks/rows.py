@@ -1,7 +1,7 @@
 """The checks for rows that are lost, or repeated."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ from tsas_cli.recordings.quality.samples import (
     alternates,
     smallest_change,
 )
-from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.recordings.quality.trial import GAP, RunSignals
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.wording import count_of
 
@@ -20,7 +20,7 @@ _OF_A_STROKE, _LONGEST_S = 0.03, 0.1  # window on each side
 _FEWEST_ROWS = 6
 _FAR, _SEEN = 8.0, 5.0  # standard deviations, of x_in and of another channel
 _SUDDEN, _STEPS = 8.0, 3.0  # noise levels, and steps, that x_in changes by from row to row
-_EVEN, _MOSTLY, _GAP = 0.2, 0.98, 1.5  # intervals that are even, most of them, and a gap
+_EVEN, _MOSTLY = 0.2, 0.98  # intervals that are even, and most of them
 _SAME_SLOPE, _SAME_TIME = 0.4, 0.3  # relative
 _OTHERS, _TORN, _WITH_IT = 20, 10.0, 3.0  # changes from row to row, and times the least of them
 
@@ -64,7 +64,7 @@ def lost_samples(trial: RunSignals) -> Remarks:
     jumps = {name: _jumps(values, rows, step_s) for name, values in moving.items()}
     size = trial.sizes["x_in_mm"]
     sudden = np.abs(jumps["x_in_mm"].at_once) > max(_SUDDEN * size.noise, _STEPS * size.step)
-    gap = np.convolve(interval > _GAP * step_s, np.ones(2 * rows), mode="same") > 0.0
+    gap = np.convolve(interval > GAP * step_s, np.ones(2 * rows), mode="same") > 0.0
     possible = sudden & ~gap[rows - 1 : rows - 1 + sudden.size]
     places = _places(jumps, rows, possible, 0.5 * step_s)
     if places:
@@ -81,7 +81,7 @@ def lost_samples(trial: RunSignals) -> Remarks:
             float(trial.time_s[at]),
         )
     rows_of_places = {place + rows - 1 for place, _ in places}
-    for at in _torn(trial, moving):
+    for at in _torn(trial, list(moving)):
         if all(abs(at - row) > rows for row in rows_of_places):
             yield Remark(
                 "warning",
@@ -93,12 +93,11 @@ def lost_samples(trial: RunSignals) -> Remarks:
             )
 
 
-def _torn(trial: RunSignals, moving: Mapping[str, Floats]) -> list[int]:
+def _torn(trial: RunSignals, moving: Sequence[str]) -> list[int]:
     """Return the rows after which x_in and another channel change as nowhere else in the run."""
-    even = (np.diff(trial.time_s) < _GAP * trial.step_s) & ~trial.repeats[:-1]
     far = {}
-    for name, values in moving.items():
-        steps = np.abs(np.diff(values)) * even
+    for name in moving:
+        steps = np.where(trial.repeats[:-1], 0.0, trial.steps(name))
         usual = max(float(np.sort(steps)[-_OTHERS:][0]), trial.sizes[name].step)
         far[name] = steps > (_TORN if name == "x_in_mm" else _WITH_IT) * usual
     drive = far.pop("x_in_mm")
