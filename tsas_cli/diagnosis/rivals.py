@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 
-from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE
+from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
 from tsas_cli.diagnosis.search import Search, tried
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.quantities import QUANTITIES
 
 MODEL_ERROR = 0.1  # of the squares that a wrong model leaves, by which two effects differ by chance
+SIMPLER = LEAST_REDUCTION_PER_COMPLEXITY - LEAST_DIFFERENCE  # that a simpler effect leaves more
 
 
 def find_effects(search: Search) -> Hypotheses:
@@ -29,7 +30,7 @@ def exchanged(search: Search, named: Names, before: frozenset[Names] = frozenset
     well, the one with fewer parameters is. `before` are the sets on the path.
     """
     for name in sorted(named):
-        for other in rivals_of(search, named, name):
+        for other in rivals_of(search, named, name, SIMPLER):
             instead = named - {name} | {other}
             better = search.gain(named, instead).beyond(LEAST_DIFFERENCE)
             simpler = _parameters(search, instead, other) < _parameters(search, named, name)

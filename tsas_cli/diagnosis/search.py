@@ -40,7 +40,8 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 MOST_EFFECTS = 4
 SHARE = 0.2  # least reduction of the excess over the noise by a cause
-LEAST = 0.003  # least reduction of the nominal model's excess by a further cause
+LEAST = 0.003  # least reduction of the nominal model's excess by a further cause,
+MOST = 0.5  # unless it takes that share of what is left
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
 LINEAR = 0.4  # share of its reduction that a signature explains; a fit takes up to 2.5 times it
 ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
@@ -163,7 +164,8 @@ class Search:
         excess = self._excess(names, mesh, scatter)
         if not names:
             return SHARE * (excess - EXCESS_OF_COMPLETE_MODEL)
-        return max(SHARE * excess, LEAST * self._excess(frozenset(), mesh, scatter))
+        little = LEAST * self._excess(frozenset(), mesh, scatter)
+        return max(SHARE * excess, min(little, MOST * excess))
 
     def add(self, names: Names, least: float = 0.0) -> list[tuple[str, Reduction]]:
         """Return each further effect that passes screening, fitted, with its gain, best first.

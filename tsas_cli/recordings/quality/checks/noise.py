@@ -166,10 +166,11 @@ _FALLS = 30.0  # power of the noise over that at the highest frequencies
 _TOP = 0.7  # of the highest frequency: where that is taken
 _MIDDLE = (0.3, 0.5)  # of it: where white noise is as large as at the top
 _WHITE = 2.5  # times the power at the top, from which it is not white there
-_ROUNDING = 4.0  # times the power of the converter's rounding
+_ROUNDING = 2.0  # times the power of the converter's rounding
 _STEPS, _COMPUTED = 0.45, 3e-5  # of a step, and of the span: less is rounding, or no sensor's
 _FLOOR = 0.1  # of the rounding: below, nothing is rounded
-_EVEN, _FEWEST_BANDS = 5.0, 3  # the noise below the end of a filter, within a factor, in bands
+_EVEN = 5.0  # factor within which the noise below the end of a filter is even,
+_FEWEST_BANDS = 2, 3  # in so many bands above rounding, or above nothing: a motion falls all along
 _MATTERS = 10.0  # times the noise
 
 
@@ -223,8 +224,9 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
     if not noisy.any():
         return None
     highest = float(spectrum.power[noisy].max())
-    plateau = np.count_nonzero(noisy & (spectrum.power > highest / _EVEN)) >= _FEWEST_BANDS
-    if not plateau and (rounding == 0.0 or top < _FLOOR * rounding):
-        return None  # a computed recording: what is left of a smooth motion falls all the way
+    even = np.count_nonzero(noisy & (spectrum.power > highest / _EVEN))
+    computed = rounding == 0.0 or top < _FLOOR * rounding
+    if even < _FEWEST_BANDS[computed]:
+        return None  # what is left of a smooth motion
     level = float(np.median(spectrum.power[noisy]))
     return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())
