@@ -1,5 +1,7 @@
 """The sentences that give the reason of a verdict."""
 
+from dataclasses import replace
+
 import pytest
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
@@ -7,6 +9,7 @@ from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.estimate import Estimate
 
 TITLE = {e.name: e.title.lower() for e in EFFECTS}
 PLAY, MASS, FREE = "backlash", "load_inertia", "free_tendon"
@@ -70,11 +73,24 @@ def test_a_small_reduction_is_not_from_one_number_to_the_same(before, after, wor
     assert f"With it the RMS of the residual of f_in_N on held-out data falls {words} N." in said
 
 
-def test_rivals_are_said_once_each_in_order():
-    causes = [cause(PLAY, (MASS, FREE)), cause("presliding", (MASS,))]
-    both = ", ".join(sorted((TITLE[MASS], TITLE[FREE])))
+def test_each_cause_is_said_with_its_rivals():
+    causes = [cause(PLAY, (MASS, FREE)), cause("presliding", (MASS,)), cause("viscous_friction")]
     said = reason_of("ambiguous", causes, [], START, left(1.0))
-    assert said.endswith(f" Indistinguishable from it in these recordings: {both}.")
+    assert said.endswith(
+        f" These recordings do not distinguish {TITLE[PLAY]} from {TITLE[MASS]} or {TITLE[FREE]}. "
+        f"These recordings do not distinguish {TITLE['presliding']} from {TITLE[MASS]}."
+    )
+
+
+@pytest.mark.parametrize(("least", "alone"), [(-0.1, False), (0.1, True)])
+def test_parameters_that_are_significant_together_only(least, alone):
+    offsets = (
+        Estimate("force_sensor_offset.f_in_offset_N", 2.0, "N", "fitted", None, 1.0, least, 4.0),
+        Estimate("force_sensor_offset.f_out_offset_N", 0.6, "N", "fitted", None, 1.0, -2.4, 3.5),
+    )
+    found = replace(cause("force_sensor_offset"), parameters=offsets)
+    said = reason_of("named", [found], [], START, left(1.0))
+    assert ("No parameter of offset of a force sensor is significant alone" in said) != alone
 
 
 def test_a_stand_in_is_said_with_what_it_fails_to_prove():

@@ -8,6 +8,7 @@ from tsas_cli.diagnosis.law import Law
 from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
 from tsas_cli.diagnosis.remainder import LEAST_SLOW, Remainder
 from tsas_cli.diagnosis.signals import signal_in_words
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.columns import BY_NAME as BY_COLUMN
 from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
@@ -37,14 +38,22 @@ def reason_of(
             f"With {'them' if causes[1:] else 'it'} the RMS of the residual of {name} on held-out "
             f"data falls from {before} to {now} {BY_COLUMN[name].unit}."
         )
-        rivals = sorted({_title(r) for c in causes for r in c.rivals})
+        sentences += [
+            f"No parameter of {_title(c.effect)} is significant alone; together they are."
+            for c in causes
+            if _only_together(c)
+        ]
         sentences += [
             f"The law of {_title(c.effect)} differs from the catalogue's {c.law_differs}."
             for c in causes
             if c.law_differs
         ]
-        if rivals:
-            sentences.append(f"Indistinguishable from it in these recordings: {', '.join(rivals)}.")
+        sentences += [
+            f"These recordings do not distinguish {_title(c.effect)} from "
+            f"{listed([_title(rival) for rival in c.rivals], ' or ')}."
+            for c in causes
+            if c.rivals
+        ]
     elif verdict == "sufficient" and after.mean_square > 1.0 + LEAST_SLOW:
         return (
             f"The nominal model leaves {_digits(math.sqrt(after.mean_square), 2)} × the noise "
@@ -96,6 +105,17 @@ def _dependence(after: Remainder) -> list[str]:
         names = listed(after.brief)
         out.append(f"The {which} {names} {verb} from the model at a few moments of a run.")
     return out
+
+
+def _only_together(cause: FoundCause) -> bool:
+    """Return whether the interval of each of several parameters holds the neutral value."""
+    sizes = [e for e in cause.parameters if not QUANTITIES[e.name].shape]
+    return len(sizes) > 1 and all(
+        e.interval_low is not None
+        and e.interval_high is not None
+        and e.interval_low <= QUANTITIES[e.name].default <= e.interval_high
+        for e in sizes
+    )
 
 
 def _title(effect: str) -> str:

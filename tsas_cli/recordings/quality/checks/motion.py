@@ -137,12 +137,14 @@ def interference(trial: RunSignals) -> Remarks:
     looks like friction of the drive. What is late jumps too, against the direction, and so does the
     force of a load with a mass, where it stops braking.
     """
-    even = trial.increases and trial.batches is None
-    if not trial.on_spring or not even or len(trial.strokes) <= _FEWEST_REVERSALS:
-        yield CannotTell(
-            "the load is no spring, the times are uneven, or the drive has too few reversals"
-        )
-        return
+    for judged, reason in (
+        (trial.on_spring, "the load is no spring"),
+        (trial.increases and trial.batches is None, "the times are uneven"),
+        (len(trial.strokes) > _FEWEST_REVERSALS, "the drive has too few reversals"),
+    ):
+        if not judged:
+            yield CannotTell(reason)
+            return
     for name in [n for n in ("x_out_mm", "f_out_N") if n in trial.noisy]:
         jumps = _jumps(trial, trial.noisy[name], trial.sizes[name].noise)
         if jumps.size < _FEWEST_REVERSALS:

@@ -206,8 +206,8 @@ def delay(trial: RunSignals) -> Remarks:
     artefact of the recording: filters, another bus, another clock. It is fitted cycle by cycle,
     together with the spring's curvature and a friction at the load, and reported when the cycles
     agree and it matters: above half a sample, and with an error of the tension above a quarter of
-    the noise. Other pairs of channels lag by the physics of the sheath and are not judged. A damper
-    or a mass at the load looks like a delay too.
+    the noise. Other pairs of channels lag by the physics of the sheath and are not judged. A load
+    with a damper or a mass, or one that relaxes, looks like a delay too.
     """
     if not trial.on_spring:
         yield CannotTell(
@@ -231,7 +231,7 @@ def delay(trial: RunSignals) -> Remarks:
             f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
             f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
             "use the same filter and clock for both channels, or shift one at the source (offset_s "
-            "in a .join list)",
+            "in a .join list), unless the load relaxes, or has a damper or a mass",
             "f_out_N",
         )
 
