@@ -18,7 +18,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsas_cli.numerics.local_polynomial import HALF_WINDOWS, best_half_windows, corners, smoothed
+from tsas_cli.numerics.local_polynomial import (
+    COARSE,
+    HALF_WINDOWS,
+    best_half_windows,
+    corners,
+    smoothed,
+)
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.support.arrays import Floats, Indices
@@ -30,6 +36,7 @@ METHOD = (
 SHORTEST_BESIDE_CORNER = 4  # samples; to a line of fewer every acceleration is a corner
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
 STILL = 6.0  # standard deviations by which what rests moves in a window, at most
+MISSED = 4.0  # standard deviations by which a fit of few samples misses the signal
 SMOOTH = 0.5  # of a reversal's second difference, by those beside it at least
 REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
 REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
@@ -95,6 +102,7 @@ def smooth_out(
     half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
     remove_overshoot(smooth, cuts)
+    follow_corners(values, smooth, sd, half, noise * math.sqrt(memory))
     flatten_rests(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
     return smooth, sd, float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
 
@@ -129,6 +137,16 @@ def remove_overshoot(smooth: Floats, cuts: Indices) -> None:
         before = smooth[cut - 1] + rise
         if rise * fall < 0.0:
             smooth[cut] = min(smooth[cut], before) if rise > 0.0 else max(smooth[cut], before)
+
+
+def follow_corners(values: Floats, smooth: Floats, sd: Floats, half: Floats, noise: float) -> None:
+    """Set, in place, the values that a fit of few samples misses by far to the measured ones.
+
+    At coarse rates neither a cut nor a polynomial follows a rounded corner.
+    """
+    missed = (half <= COARSE) & (np.abs(values - smooth) > MISSED * noise)
+    smooth[missed] = values[missed]
+    sd[missed] = noise
 
 
 def flatten_rests(
