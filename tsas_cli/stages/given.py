@@ -15,7 +15,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
 from tsas_cli.support.errors import LONGEST_WORD, InputError, nearest
 
-NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS and Windows allow less
+NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS allows less
 Named = str | Path
 Thing = TypeVar("Thing")
 Word = TypeVar("Word", bound=str)
