@@ -91,7 +91,10 @@ def ingest_files(
             parts = merged(parts, time.source, how)
         first = next(parts)
         step()
-        run = _run(path, first, mapping)
+        conditions = run_conditions(path, first.header, mapping.run, mapping.read.decimal)
+        # The checksum is known once the file is written.
+        entry = {"file": f"runs/{conditions['id']}.parquet", "sha256": "0" * 64}
+        run = parse(Run, conditions | entry, path)
         if run.id in ingested:
             raise InputError(
                 f"run id {run.id!r} is also that of {ingested[run.id].source}",
@@ -133,15 +136,6 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     )
     joined = {part for path in files for part in joined_by(path)}
     return [path for path in files if path not in joined]
-
-
-def _run(path: Path, table: ColumnTable, mapping: IngestMap) -> Run:
-    conditions = run_conditions(path, table.header, mapping.run, mapping.read.decimal)
-    written = {
-        "file": f"runs/{conditions['id']}.parquet",
-        "sha256": "0" * 64,  # known once the file is written
-    }
-    return parse(Run, conditions | written, path)
 
 
 def _ingest(

@@ -1,7 +1,6 @@
 """What most readers give: the columns that a file offers, each loaded when it is requested."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, is_dataclass
 from functools import partial
 from importlib import import_module
@@ -57,8 +56,9 @@ def names(path: Path, module: str, kind: str, options: ReadOptions) -> list[str]
 
     InputError: the file is damaged, or the package for its format is not installed.
     """
-    with _opened(path, module, kind, options) as offered:
-        return offered.names
+    with foreign(path, kind), import_module(module).offered(path, options) as offered:
+        found: list[str] = offered.names
+        return found
 
 
 def read(
@@ -71,7 +71,7 @@ def read(
     InputError: as from `names`; or a column is missing or not numeric, the columns hold more than a
     file of this size can, their clocks differ and `resample` is not set, or a clock is no time.
     """
-    with _opened(path, module, kind, options) as offered:
+    with foreign(path, kind), import_module(module).offered(path, options) as offered:
         at = resolve(wanted, offered.names, path)
         expanded = Expanded.of(path)
         columns, times = dict[ColumnSource, Floats](), dict[ColumnSource, Floats]()
@@ -137,12 +137,6 @@ def _numbers(values: Any, source: ColumnSource, path: Path) -> tuple[Floats, boo
                 expected="2026-03-03T14:05:06.7 or 14:05:06.7 in all rows",
             ) from error
     return floats(values, source, path), False
-
-
-@contextmanager
-def _opened(path: Path, module: str, kind: str, options: ReadOptions) -> Iterator[Offered]:
-    with foreign(path, kind), import_module(module).offered(path, options) as offered:
-        yield offered
 
 
 def flat(record: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
