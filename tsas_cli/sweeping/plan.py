@@ -10,22 +10,18 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw
 from tsas_cli.support.plausible import AnyNumber
-from tsas_cli.support.strict_table import StrictTable
+from tsas_cli.support.strict_table import StrictTable, Texts
 from tsas_cli.sweeping.outcome import Row
 
 StageName = Literal["check", "calibrate", "simulate", "diagnose", "track"]
 STAGES: tuple[StageName, ...] = get_args(StageName)
 MOST_STEPS = 100_000
-
-
-def _listed(value: object) -> object:
-    return [value] if isinstance(value, str) else value
 
 
 class ValueRange(StrictTable):
@@ -65,7 +61,7 @@ class SweepPlan(StrictTable):
     format: Literal[1] = 1
     kind: Literal["sweep"] = "sweep"
     stage: StageName
-    datasets: Annotated[tuple[str, ...], BeforeValidator(_listed)] = ()
+    datasets: Texts = ()
     each_run: bool = False
     options: Raw = Field(default_factory=dict)
     vary: dict[str, Axis] = Field(default_factory=dict)
