@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from duckdb import DuckDBPyConnection
 
+SUM = ".sha256"  # suffix of the checksum's file
 FORMAT = 1  # to be increased with a change of `entries.SCHEMA`
 
 
@@ -47,7 +48,10 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     roots = [folder.resolve() for folder in folders]
     found, problems = files_below(roots)
     file = _file_for(roots)
-    intact = _is_intact(file)
+    try:
+        intact = file.with_suffix(SUM).read_bytes() == sha256_of(file).encode()
+    except OSError:
+        intact = False
     known = _known(connection, file) if intact else {}
     changed = [key for key, stamp in found.items() if known.get(key) != stamp]
     if intact and not changed and len(known) == len(found):
@@ -65,18 +69,6 @@ def _file_for(roots: Sequence[Path]) -> Path:
     cache = Path(os.environ.get("TSAS_CACHE_DIR") or platformdirs.user_cache_dir("tsas"))
     named = hashlib.sha256("\0".join(map(str, roots)).encode("utf-8", "surrogateescape"))
     return cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
-
-
-def _checksum_file(file: Path) -> Path:
-    return file.with_suffix(".sha256")
-
-
-def _is_intact(file: Path) -> bool:
-    """Return whether the index exists and matches its checksum."""
-    try:
-        return _checksum_file(file).read_bytes() == sha256_of(file).encode()
-    except OSError:
-        return False
 
 
 def _known(connection: "DuckDBPyConnection", file: Path) -> dict[FileKey, Stamp]:
@@ -128,7 +120,7 @@ def _stored(table: "pa.Table", file: Path) -> str | None:
         with own_file(file) as path:
             pq.write_table(table, path, compression="zstd")
             digest = sha256_of(path)
-        with own_file(_checksum_file(file)) as path:
+        with own_file(file.with_suffix(SUM)) as path:
             path.write_text(digest, encoding="utf-8")
     except (InputError, OSError) as error:
         what = error.what if isinstance(error, InputError) else error
