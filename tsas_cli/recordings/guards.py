@@ -73,9 +73,9 @@ class Expanded:
     items: int = 0
 
     @classmethod
-    def of(cls, path: Path, most: int = limits.EXPANSION) -> "Expanded":
-        """Return the empty count of a file that may expand to `most` times its size."""
-        return cls(path, path.stat().st_size, most)
+    def of(cls, path: Path) -> "Expanded":
+        """Return the empty count of a file."""
+        return cls(path, path.stat().st_size)
 
     def add(self, more: int, *, what: str = "") -> None:
         """Count one item of so many bytes.

@@ -165,12 +165,8 @@ def _ingest(
 def merged(parts: Iterable[ColumnTable], time: ColumnSource, how: How) -> Iterator[ColumnTable]:
     """Yield the parts of a file with one row for each time, which may be repeated across parts.
 
-    Parameters
-    ----------
-    time
-        The source of the clock; rows of one time follow each other.
-    how
-        The row that stays, or the mean of each column, gaps left out.
+    `time` is the source of the clock; rows of one time follow each other. `how` says which row
+    stays, or the mean of each column, gaps left out.
     """
     held: ColumnTable | None = None  # the rows of the last time
     for part in parts:

@@ -141,7 +141,6 @@ def read_map(path: Path) -> IngestMap:
 
 
 def _questions(content: Any, key: str = "") -> Iterator[str]:
-    """Yield the keys whose value is `QUESTION`."""
     if content == QUESTION:
         yield key
     elif isinstance(content, dict):

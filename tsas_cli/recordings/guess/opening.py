@@ -50,7 +50,10 @@ def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, s
         required |= _preamble(path, required)
     options = options_of(required)
     listed = names(path, options)
-    sources = {_source(listed, i): name for i, name in enumerate(listed)}
+    sources: dict[ColumnSource, str] = {  # by number where the name is empty or not unique
+        name if name.strip("? ") and listed.count(name) == 1 else number: name
+        for number, name in enumerate(listed, start=1)
+    }
     table, left_out = _all_or_each(path, options, list(sources))
     if table is None:
         required["resample"] = (True, "the channels have clocks of their own")
@@ -71,27 +74,17 @@ def options_of(required: dict[str, tuple[Any, str]]) -> ReadOptions:
     return ReadOptions.model_validate({key: value for key, (value, _) in required.items()})
 
 
-def _source(listed: tuple[str, ...], i: int) -> ColumnSource:
-    """Return the name of a column, or its number if the name is empty or not unique."""
-    name = listed[i]
-    return name if name.strip("? ") and listed.count(name) == 1 else i + 1
-
-
 def _encoding(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
     with path.open("rb") as stream:
         head = stream.read(1 << 16)
     if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
         yield "encoding", ("utf-16", "the file begins with the byte-order mark of UTF-16")
-    elif not _is_utf_8(head):
-        yield "encoding", ("cp1252", "the file is not UTF-8; cp1252 is usual on Windows")
-
-
-def _is_utf_8(head: bytes) -> bool:
+        return
     try:
         head.decode("utf-8")
     except UnicodeDecodeError as error:
-        return error.start > len(head) - 4  # a character that is cut at the end of the head
-    return True
+        if error.start <= len(head) - 4:  # else a character is cut at the end of the head
+            yield "encoding", ("cp1252", "the file is not UTF-8; cp1252 is usual on Windows")
 
 
 def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:

@@ -167,12 +167,7 @@ def columns_in(
     A vector is a column, the field of records `name.field`, the j-th column of a matrix
     `name(:,j)`; samples lie along its longer side. Other arrays hold none.
 
-    Parameters
-    ----------
-    array
-        With `shape`, `ndim` and `dtype`, such as one in a file.
-    load
-        Loads the values of `array`; without it they are there.
+    `array` has `shape`, `ndim` and `dtype`, such as one in a file, whose values `load` loads.
     """
     whole = partial(load, array) if load else partial(np.asarray, array)
     if array.ndim not in {1, 2} or (array.size < 2 and array.ndim == 2):

@@ -127,7 +127,9 @@ def _in_source(
     for other, shift in _places(reader, source, groups, but):
         others[other.run.id] = other
         seen = places.setdefault(other.run.id, Counter())
-        same = (s for s in seen if s.is_near(shift, SHIFT_TOLERANCE * source.interval_s))
+        near_s = SHIFT_TOLERANCE * source.interval_s
+        alike = (s for s in seen if s.spline == shift.spline)
+        same = (s for s in alike if abs(s.seconds - shift.seconds) < near_s)
         seen[next(same, shift)] += 1
     for run, seen in places.items():
         spans: list[RowSpan] = []
