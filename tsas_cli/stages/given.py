@@ -41,14 +41,6 @@ def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
     return [file_of(each) for each in several_of(given, least)]
 
 
-def places_of(given: Named | Iterable[Named]) -> list[Location]:
-    """Return one place or several as a list: local paths, or addresses of datasets.
-
-    InputError: one is of another kind, or there is none.
-    """
-    return [place_of(each) for each in several_of(given)]
-
-
 def place_of(given: Named | Address) -> Location:
     """Return a local path or an address; InputError where it is of another kind, or no name."""
     return _nameable(location_of(of_kind((str, Path, Address), given)))
