@@ -87,9 +87,7 @@ def explain(
     name: Annotated[
         str,
         typer.Argument(
-            metavar="NAME",
-            help="An effect of `tsas effects`.",
-            autocompletion=effect_names,
+            metavar="NAME", help="An effect of `tsas effects`.", autocompletion=effect_names
         ),
     ],
     quiet: Quiet = False,
