@@ -160,9 +160,7 @@ def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
         expected = BY_NAME[field.name].unit
         if unit.strip() and not _is_same(unit, expected):
             raise InputError(
-                f"column {field.name} has the unit {unit[:80]}",
-                where=path,
-                expected=expected,
+                f"column {field.name} has the unit {unit[:80]}", where=path, expected=expected
             )
 
 

@@ -132,10 +132,7 @@ def too_deep(path: object) -> InputError:
 
 
 def lines(stream: TextIO, path: Path) -> Iterator[str]:
-    """Yield the lines of a text table.
-
-    InputError: a line exceeds the limit.
-    """
+    """Yield the lines of a text table; InputError: a line exceeds the limit."""
     row = 0
     while line := stream.readline(LINE + 1):
         row += 1
@@ -222,9 +219,7 @@ def fits(path: object, bytes_: int) -> None:
 def out_of_memory(path: object) -> InputError:
     """Return the error for a file that exhausted the memory."""
     return InputError(
-        f"needs more memory than is free ({size(available())})",
-        where=path,
-        remedy=_remedy(path),
+        f"needs more memory than is free ({size(available())})", where=path, remedy=_remedy(path)
     )
 
 

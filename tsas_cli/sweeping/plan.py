@@ -44,14 +44,11 @@ class ValueRange(StrictTable):
         return [float(value) for value in space(self.first, self.last, self.steps)]
 
 
-def _form(value: object) -> str:
-    return "range" if isinstance(value, dict | ValueRange) else "list"
-
-
 Axis = Annotated[
     Annotated[tuple[Any, ...], Field(min_length=1), Tag("list")]
     | Annotated[ValueRange, Tag("range")],
-    Discriminator(_form),  # else an error is said of both forms
+    # Else an error is said of both forms.
+    Discriminator(lambda value: "range" if isinstance(value, dict | ValueRange) else "list"),
 ]
 
 

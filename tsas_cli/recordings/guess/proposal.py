@@ -58,10 +58,7 @@ class MapProposal:
 
 
 def propose(files: Sequence[Path]) -> MapProposal:
-    """Return the map proposed for files.
-
-    InputError: none of them can be read.
-    """
+    """Return the map proposed for files; InputError: none of them can be read."""
     opened, different = _first_that_opens(files)
     matching: list[Path] = []
     for path in files:

@@ -169,10 +169,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def optional(module: str, *, extra: str) -> ModuleType:
-    """Import a package that comes with an extra of tsas.
-
-    InputError: it is not installed.
-    """
+    """Import a package that comes with an extra of tsas; InputError: it is not installed."""
     try:
         return import_module(module)
     except ImportError as error:
