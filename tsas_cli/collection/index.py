@@ -36,10 +36,7 @@ class Index:
 
 
 def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: Steps) -> Index:
-    """Return the index of folders; only changed files are read.
-
-    InputError: a path is no folder.
-    """
+    """Return the index of folders; only changed files are read; InputError: a path is no folder."""
     for folder in folders:
         if not folder.is_dir():
             raise InputError(

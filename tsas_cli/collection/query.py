@@ -109,10 +109,7 @@ class QueryResult:
 
 
 def connected() -> "DuckDBPyConnection":
-    """Return a connection to a database in memory.
-
-    InputError: DuckDB is not installed.
-    """
+    """Return a connection to a database in memory; InputError: DuckDB is not installed."""
     try:
         import duckdb
     except ImportError as error:

@@ -127,11 +127,7 @@ def export(
         text = json_text(content) if kind == "json" else _csv(found)
     with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    summary = heading("export") | {
-        "format_of_model": kind,
-        "errors": errors,
-        "lost": lost,
-    }
+    summary = heading("export") | {"format_of_model": kind, "errors": errors, "lost": lost}
     return ExportResult(summary, path, lost)
 
 

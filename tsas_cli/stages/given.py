@@ -60,10 +60,7 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
 
 
 def one_of(words: Sequence[Word], given: str, name: str) -> Word:
-    """Return a word that is among those that are known.
-
-    InputError: it is not.
-    """
+    """Return a word that is among those that are known; InputError: it is not."""
     for word in words:
         if isinstance(given, str) and word == given:  # an array is equal one by one
             return word
@@ -77,10 +74,9 @@ def at_least(least: int, given: int, name: str, *, most: float = math.inf) -> in
 
     InputError: it is.
     """
-    if of_kind((int,), given) < least:
-        raise InputError(f"{name} is {given}", expected=f"{least} or more")
-    if given > most:
-        raise InputError(f"{name} is {given}", expected=f"at most {most}")
+    if not least <= of_kind((int,), given) <= most:
+        wanted = f"{least} or more" if given < least else f"at most {most}"
+        raise InputError(f"{name} is {given}", expected=wanted)
     return given
 
 

@@ -39,14 +39,7 @@ from tsas_cli.tracking.recorded import (
 )
 from tsas_cli.tracking.references import reference as reference_of
 from tsas_cli.tracking.settings import Settings, known_drive, printed_gains, read_settings
-from tsas_cli.tracking.track import (
-    Known,
-    Plant,
-    TendonDynamics,
-    over_seeds,
-    plan,
-    run_loop,
-)
+from tsas_cli.tracking.track import Known, Plant, TendonDynamics, over_seeds, plan, run_loop
 from tsas_cli.verifying.claims import change_notes
 
 DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")

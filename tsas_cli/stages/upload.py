@@ -95,11 +95,7 @@ def upload(
             error.what, where=error.where, expected=error.expected, remedy=remedy
         ) from error
     files[MANIFEST_FILE] = len(content)
-    summary = heading("upload") | {
-        "folder": str(source),
-        "address": str(target),
-        "files": files,
-    }
+    summary = heading("upload") | {"folder": str(source), "address": str(target), "files": files}
     return UploadResult(summary, None)
 
 
