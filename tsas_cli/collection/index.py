@@ -49,7 +49,11 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
         intact = file.with_suffix(SUM).read_bytes() == sha256_of(file).encode()
     except OSError:
         intact = False
-    known = _known(connection, file) if intact else {}
+    known: dict[FileKey, Stamp] = {}
+    if intact:
+        sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
+        rows = connection.execute(sql, [str(file)]).fetchall()
+        known = {FileKey(*row[:3]): Stamp(*row[3:]) for row in rows}
     changed = [key for key, stamp in found.items() if known.get(key) != stamp]
     if intact and not changed and len(known) == len(found):
         return Index(folders, file, None, problems)
@@ -66,13 +70,6 @@ def _file_for(roots: Sequence[Path]) -> Path:
     cache = Path(os.environ.get("TSAS_CACHE_DIR") or platformdirs.user_cache_dir("tsas"))
     named = hashlib.sha256("\0".join(map(str, roots)).encode("utf-8", "surrogateescape"))
     return cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
-
-
-def _known(connection: "DuckDBPyConnection", file: Path) -> dict[FileKey, Stamp]:
-    """Return the files in the index with their stamps."""
-    sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
-    rows = connection.execute(sql, [str(file)]).fetchall()
-    return {FileKey(*row[:3]): Stamp(*row[3:]) for row in rows}
 
 
 def _renewed(

@@ -40,13 +40,7 @@ def tables(path: Path) -> list[str]:
 
 
 def _tables(content: Any, key: str) -> Iterator[str]:
-    if (
-        key
-        and isinstance(content, dict)
-        and all(
-            isinstance(v, list) and v and isinstance(v[0], int | float) for v in content.values()
-        )
-    ):
+    if key and isinstance(content, dict) and all(_is_column(v) for v in content.values()):
         yield key
     elif isinstance(content, dict):
         for name, value in content.items():
@@ -89,6 +83,10 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
         expected="a list of rows, a list of records, or an object of columns",
         remedy=f'name the key that holds it in the map: table = "…" under [read]{keys}',
     )
+
+
+def _is_column(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
 
 
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:

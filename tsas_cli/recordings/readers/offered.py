@@ -167,7 +167,7 @@ def columns_in(
     A vector is a column, the field of records `name.field`, the j-th column of a matrix
     `name(:,j)`; samples lie along its longer side. Other arrays hold none.
 
-    `array` has `shape`, `ndim` and `dtype`, such as one in a file, whose values `load` loads.
+    `array` has `shape`, `ndim` and `dtype`; `load` loads its values, which are there without it.
     """
     whole = partial(load, array) if load else partial(np.asarray, array)
     if array.ndim not in {1, 2} or (array.size < 2 and array.ndim == 2):

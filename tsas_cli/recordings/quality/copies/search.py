@@ -109,13 +109,10 @@ def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int])
 
 def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
     """Return each common stretch of two runs once: as that of the later run, if found in both."""
-
-    def earlier(copy: Copy) -> bool:
-        return order[copy.run.id] < order[copy.other.id]
-
-    later = [copy for copy in parts if not earlier(copy)]
-    pairs = {(copy.run.id, copy.other.id) for copy in later}
-    return later + [c for c in parts if earlier(c) and (c.other.id, c.run.id) not in pairs]
+    later = [copy for copy in parts if order[copy.run.id] >= order[copy.other.id]]
+    earlier = [copy for copy in parts if order[copy.run.id] < order[copy.other.id]]
+    pairs = {(copy.other.id, copy.run.id) for copy in later}
+    return later + [copy for copy in earlier if (copy.run.id, copy.other.id) not in pairs]
 
 
 def _in_source(
