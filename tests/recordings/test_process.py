@@ -96,7 +96,6 @@ def test_what_takes_too_long_is_ended(path, monkeypatch):
         ask(path, hangs)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such timer")
 def test_it_ends_by_itself_where_nobody_waits_any_more(path):
     assert module.LEAST_S < ask(path, seconds_left) < module.LEAST_S + 6
 

@@ -2,7 +2,7 @@
 
 import os
 import stat
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC
 from glob import escape
 from pathlib import Path
@@ -96,16 +96,13 @@ class Stamp(NamedTuple):
 def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> Entry:
     """Return the entry of a file by the columns of the index, with its faults in `problems`."""
     try:
-        return _KINDS[file](connection, folder)
+        return _manifest(connection, folder) if file == MANIFEST else _diagnosis(folder)
     except InputError as error:
         without_location = InputError(error.what, expected=error.expected, remedy=error.remedy)
         return {"problems": [without_location.line()]}
     except OSError as error:
         return {"problems": [f"cannot be read ({error.strerror})"]}
-    except (
-        ValueError,
-        OverflowError,
-    ) as error:  # a valid time or number that cannot be represented
+    except (ValueError, OverflowError) as error:  # a time or number beyond what can be held
         return {"problems": [f"holds a value that cannot be represented ({limits.reason(error)})"]}
 
 
@@ -194,10 +191,9 @@ def _durations_s(connection: DuckDBPyConnection, paths: Sequence[Path]) -> dict[
     }
 
 
-def _diagnosis(_: DuckDBPyConnection, folder: Path) -> Entry:
+def _diagnosis(folder: Path) -> Entry:
     path = folder / DIAGNOSIS
-    content = read_json(path)
-    diagnosis = parse(DiagnosisFile, content, path)
+    diagnosis = parse(DiagnosisFile, read_json(path), path)
     chosen = diagnosis.chosen if diagnosis.chosen is not None else diagnosis.dataset.chosen
     return {
         "manifest_sha256": diagnosis.dataset.hashes.get(MANIFEST, "").lower(),
@@ -206,12 +202,6 @@ def _diagnosis(_: DuckDBPyConnection, folder: Path) -> Entry:
         "causes": [cause.effect for cause in diagnosis.named],
         "problems": [],
     }
-
-
-_KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
-    MANIFEST: _manifest,
-    DIAGNOSIS: _diagnosis,
-}
 
 
 def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]:
@@ -230,7 +220,7 @@ def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]
             problems.append(f"{root}: its name is not UTF-8; rename it")
             continue
         for place, folders, files in os.walk(root, onerror=unreadable):
-            folder = place[len(str(root)) :].replace(os.sep, "/").strip("/")
+            folder = place[len(str(root)) :].strip("/")
             for name in {MANIFEST, DIAGNOSIS}.intersection(files):
                 try:
                     state = os.stat(f"{place}/{name}")  # noqa: PTH116 - Path is slower

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from duckdb import DuckDBPyConnection
 
+SUM = ".sha256"  # suffix of the checksum's file
 FORMAT = 1  # to be increased with a change of `entries.SCHEMA`
 
 
@@ -35,10 +36,7 @@ class Index:
 
 
 def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: Steps) -> Index:
-    """Return the index of folders; only changed files are read.
-
-    InputError: a path is no folder.
-    """
+    """Return the index of folders; only changed files are read; InputError: a path is no folder."""
     for folder in folders:
         if not folder.is_dir():
             raise InputError(
@@ -47,8 +45,15 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     roots = [folder.resolve() for folder in folders]
     found, problems = files_below(roots)
     file = _file_for(roots)
-    intact = _is_intact(file)
-    known = _known(connection, file) if intact else {}
+    try:
+        intact = file.with_suffix(SUM).read_bytes() == sha256_of(file).encode()
+    except OSError:
+        intact = False
+    known: dict[FileKey, Stamp] = {}
+    if intact:
+        sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
+        rows = connection.execute(sql, [str(file)]).fetchall()
+        known = {FileKey(*row[:3]): Stamp(*row[3:]) for row in rows}
     changed = [key for key, stamp in found.items() if known.get(key) != stamp]
     if intact and not changed and len(known) == len(found):
         return Index(folders, file, None, problems)
@@ -65,25 +70,6 @@ def _file_for(roots: Sequence[Path]) -> Path:
     cache = Path(os.environ.get("TSAS_CACHE_DIR") or platformdirs.user_cache_dir("tsas"))
     named = hashlib.sha256("\0".join(map(str, roots)).encode("utf-8", "surrogateescape"))
     return cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
-
-
-def _checksum_file(file: Path) -> Path:
-    return file.with_suffix(".sha256")
-
-
-def _is_intact(file: Path) -> bool:
-    """Return whether the index exists and matches its checksum."""
-    try:
-        return _checksum_file(file).read_bytes() == sha256_of(file).encode()
-    except OSError:
-        return False
-
-
-def _known(connection: "DuckDBPyConnection", file: Path) -> dict[FileKey, Stamp]:
-    """Return the files in the index with their stamps."""
-    sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
-    rows = connection.execute(sql, [str(file)]).fetchall()
-    return {FileKey(*row[:3]): Stamp(*row[3:]) for row in rows}
 
 
 def _renewed(
@@ -128,7 +114,7 @@ def _stored(table: "pa.Table", file: Path) -> str | None:
         with own_file(file) as path:
             pq.write_table(table, path, compression="zstd")
             digest = sha256_of(path)
-        with own_file(_checksum_file(file)) as path:
+        with own_file(file.with_suffix(SUM)) as path:
             path.write_text(digest, encoding="utf-8")
     except (InputError, OSError) as error:
         what = error.what if isinstance(error, InputError) else error

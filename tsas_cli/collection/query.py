@@ -38,10 +38,6 @@ class SqlQuery:
     sql: str
     shifts: tuple[tuple[int, int], ...]
 
-    def position_in_query(self, position: int) -> int:
-        """Return the position in the query of a position in the SQL."""
-        return position - sum(by for at, by in self.shifts if at <= position)
-
 
 def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     """Return a query as SQL, with `2026-01` as a time and `f_out in channels` with the full name.
@@ -54,19 +50,14 @@ def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     sql, behind, shifts = "", 0, []
     for token in TOKEN.finditer(query):
         sql += query[behind : token.start()]
-        translated = _translated(token, channels)
+        date, name, translated = token["date"], token["channel"], token[0]
+        if date is not None:
+            translated = f"TIMESTAMP '{date}{'-01' if len(date) == len('2026-01') else ''}'"
+        elif name is not None and name.lower() not in NO_CHANNELS:
+            translated = f"'{_channel(name, list(channels()))}'"
         sql, behind = sql + translated, token.end()
         shifts.append((len(sql), len(translated) - len(token[0])))
     return SqlQuery(sql + query[behind:], tuple(shifts))
-
-
-def _translated(token: re.Match[str], channels: Callable[[], Iterable[str]]) -> str:
-    if (date := token["date"]) is not None:
-        return f"TIMESTAMP '{date}-01'" if len(date) == len("2026-01") else f"TIMESTAMP '{date}'"
-    name = token["channel"]
-    if name is None or name.lower() in NO_CHANNELS:
-        return token[0]
-    return f"'{_channel(name, list(channels()))}'"
 
 
 def _channel(name: str, known: list[str]) -> str:
@@ -118,10 +109,7 @@ class QueryResult:
 
 
 def connected() -> "DuckDBPyConnection":
-    """Return a connection to a database in memory.
-
-    InputError: DuckDB is not installed.
-    """
+    """Return a connection to a database in memory; InputError: DuckDB is not installed."""
     try:
         import duckdb
     except ImportError as error:
@@ -243,7 +231,10 @@ def _query_error(
             else nearest(missing[1], sorted(columns)),
         )
     message, position = _message(str(error))
-    at = -1 if position is None else translated.position_in_query(position - len(PREFIX))
+    at = -1
+    if position is not None:
+        in_sql = position - len(PREFIX)
+        at = in_sql - sum(by for behind, by in translated.shifts if behind <= in_sql)
     return InputError(
         message, where=_position(query, at), expected=f"a condition such as: {EXAMPLE}"
     )

@@ -65,14 +65,15 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 
 
-class Bar(Steps):
-    """A progress bar, whose total grows with the announced steps.
+class Bar(Steps, logging.Handler):
+    """A progress bar, whose total grows with the announced steps; above it stands what is logged.
 
     The remaining time is that of the steps that were announced together, at their pace: those
     before may have been of another kind.
     """
 
     def __init__(self, shown: "Progress", label: str) -> None:
+        logging.Handler.__init__(self)
         self.shown, self.label, self.total, self.done = shown, label, 0, 0
         self.before, self.since_s = 0, 0.0  # steps, and time, before those that are under way
         self.task = shown.add_task(label, total=None, left="")
@@ -96,6 +97,10 @@ class Bar(Steps):
         """Print a sentence above the bar."""
         self.shown.console.print(printable(sentence), markup=False, highlight=False)
 
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print what the package logs."""
+        self.say(record.getMessage())
+
     def end(self) -> None:
         """Ask a search to end at its next step."""
         self.ended = True
@@ -112,18 +117,6 @@ class Bar(Steps):
             left = f"about {timedelta(seconds=round(pace_s * rest))} left"
             left += " of these" if self.before else ""
         self.shown.update(self.task, total=self.total or None, completed=self.done, left=left)
-
-
-class _Said(logging.Handler):
-    """What the package logs, above the bar."""
-
-    def __init__(self, bar: Bar) -> None:
-        super().__init__()
-        self.bar = bar
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Print a record."""
-        self.bar.say(record.getMessage())
 
 
 def run(
@@ -263,15 +256,15 @@ def progress(label: str, *, quiet: bool, endable: bool = False) -> Iterator[Step
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         bar = Bar(shown, label)
-        log, said = logging.getLogger("tsas"), _Said(bar)
+        log = logging.getLogger("tsas")
         level = log.level
         log.setLevel(logging.INFO)
-        log.addHandler(said)
+        log.addHandler(bar)
         try:
             with (
                 asked_first(bar.end) if endable and "MAKELEVEL" not in os.environ else nullcontext()
             ):
                 yield bar
         finally:
-            log.removeHandler(said)
+            log.removeHandler(bar)
             log.setLevel(level)

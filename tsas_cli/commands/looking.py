@@ -11,8 +11,6 @@ import tsas_cli as tsas
 from tsas_cli.commands.common import Force, Json, Quiet, present, progress, run, show
 from tsas_cli.commands.completion import effect_names
 
-_HOW_TO_END = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
-
 
 def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR", help="Output folders of stages.")],
@@ -65,7 +63,8 @@ def view(
                 shown_stream([location_of(path) for path in paths], step)
             )
         viewer = stack.enter_context(opened(stream, in_browser=in_browser, port=port))
-        talk = () if quiet else (*notes, note_once(), _HOW_TO_END[in_browser])
+        end = "Ctrl-C ends it" if in_browser else "close the window or press Ctrl-C to end it"
+        talk = () if quiet else (*notes, note_once(), end)
         for sentence in filter(None, talk):
             print(f"- {sentence}", file=sys.stderr)
         summary = {"stage": "view", "stream": str(stream), "address": viewer.page or None}
@@ -87,9 +86,7 @@ def explain(
     name: Annotated[
         str,
         typer.Argument(
-            metavar="NAME",
-            help="An effect of `tsas effects`.",
-            autocompletion=effect_names,
+            metavar="NAME", help="An effect of `tsas effects`.", autocompletion=effect_names
         ),
     ],
     quiet: Quiet = False,

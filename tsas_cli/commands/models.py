@@ -7,30 +7,14 @@ from typing import Annotated, Literal
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    ChosenRuns,
-    DatasetFolder,
-    Despite,
-    Force,
-    Json,
-    Live,
-    ModelOption,
-    OutFolder,
-    Quiet,
-    Rrd,
-    present,
-    progress,
-    run,
-    watched,
-    with_stream,
-)
+from tsas_cli.commands import common
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.stopping import EXIT_CODE
 
 
 def calibrate(
-    dataset: DatasetFolder,
-    out: OutFolder,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
     model: Annotated[
         Path | None,
         typer.Option(metavar="M.toml", help="The initial model, whose effects are kept."),
@@ -39,20 +23,20 @@ def calibrate(
         Literal["slip", "lugre"],
         typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
     ] = "slip",
-    runs: ChosenRuns = None,
-    despite: Despite = None,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    runs: common.ChosenRuns = None,
+    despite: common.Despite = None,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Fit the nominal model and the stiffness km of each phase to a dataset."""
-    run(tsas.calibrate, **locals())
+    common.run(tsas.calibrate, **locals())
 
 
 def identify_harmonic_drive(
-    dataset: DatasetFolder,
-    out: OutFolder,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
     speed: Annotated[
         Literal["measured", "commanded"],
         typer.Option(
@@ -61,20 +45,20 @@ def identify_harmonic_drive(
             "controller. The wrong choice is a delay of half a sample.",
         ),
     ] = "measured",
-    runs: ChosenRuns = None,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    runs: common.ChosenRuns = None,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
-    run(tsas.identify_harmonic_drive, **locals())
+    common.run(tsas.identify_harmonic_drive, **locals())
 
 
 def simulate(
-    dataset: DatasetFolder,
-    out: OutFolder,
-    model: ModelOption = None,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
+    model: common.ModelOption = None,
     dynamics: Annotated[
         Literal["static", "slip", "lugre"],
         typer.Option(
@@ -83,49 +67,45 @@ def simulate(
         ),
     ] = "slip",
     fit_own: Annotated[
-        bool,
-        typer.Option(help="First fit the preload and zeros of each run."),
+        bool, typer.Option(help="First fit the preload and zeros of each run.")
     ] = False,
     nodes: Annotated[int | None, typer.Option(help="Nodes of the chain, 2 to 1000.")] = None,
-    runs: ChosenRuns = None,
-    rrd: Rrd = False,
-    live: Live = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    runs: common.ChosenRuns = None,
+    rrd: common.Rrd = False,
+    live: common.Live = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Simulate every run with a model, and compute its residual."""
     given = locals()
     data = tsas.read(given.pop("dataset"), runs=given.pop("runs"))
     name = f"{data.manifest.name} · simulation"
-    with watched(given.pop("live"), name, quiet=quiet) as stream:
+    with common.watched(given.pop("live"), name, quiet=quiet) as stream:
         each = partial(stream.simulated, data) if stream else None
-        run(tsas.simulate, dataset=data, each=each, **given)
+        common.run(tsas.simulate, dataset=data, each=each, **given)
 
 
 def diagnose(
-    dataset: DatasetFolder,
-    out: OutFolder,
-    model: ModelOption = None,
-    runs: ChosenRuns = None,
-    despite: Despite = None,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    dataset: common.DatasetFolder,
+    out: common.OutFolder,
+    model: common.ModelOption = None,
+    runs: common.ChosenRuns = None,
+    despite: common.Despite = None,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Locate the residuals of the simulation, name their cause, and fit the extended model."""
-    with progress("diagnose", quiet=quiet, endable=True) as step, with_stream(rrd, step):
+    with (
+        common.progress("diagnose", quiet=quiet, endable=True) as step,
+        common.with_stream(rrd, step),
+    ):
         result = tsas.diagnose(
-            dataset,
-            out=out,
-            model=model,
-            runs=runs,
-            despite=despite or (),
-            force=force,
-            step=step,
+            dataset, out=out, model=model, runs=runs, despite=despite or (), force=force, step=step
         )
-    present(result, quiet=quiet, as_json=as_json)
+    common.present(result, quiet=quiet, as_json=as_json)
     if step.ended and result.verdict == "undecided":
         raise typer.Exit(EXIT_CODE)
 
@@ -138,7 +118,7 @@ def predict(
             help="Models, or outputs of `tsas calibrate` or `diagnose`; then the dataset.",
         ),
     ],
-    runs: ChosenRuns = None,
+    runs: common.ChosenRuns = None,
     fit_own: Annotated[
         bool,
         typer.Option(
@@ -147,12 +127,11 @@ def predict(
         ),
     ] = True,
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Also write DIR/predict.json and DIR/runs/."),
+        Path | None, typer.Option(metavar="DIR", help="Also write DIR/predict.json and DIR/runs/.")
     ] = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Predict recordings with models that were fitted to others, and say whether that carries over.
 
@@ -165,7 +144,7 @@ def predict(
         raise InputError(
             "one argument alone", where=dataset, expected="MODEL… DATASET, the dataset last"
         )
-    run(tsas.predict, models=models, dataset=dataset, **options)
+    common.run(tsas.predict, models=models, dataset=dataset, **options)
 
 
 def compare(
@@ -175,20 +154,20 @@ def compare(
         str | None,
         typer.Option(metavar="DATASET", help="Simulate both models on these recordings."),
     ] = None,
-    runs: ChosenRuns = None,
+    runs: common.ChosenRuns = None,
     out: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Also write DIR/compare.json and DIR/report.html."),
     ] = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Compare two models or results, and test whether they differ by more than the uncertainty.
 
     A and B are model files, or outputs of `tsas calibrate`, `diagnose`, `simulate` or `track`.
     """
-    run(tsas.compare, **locals())
+    common.run(tsas.compare, **locals())
 
 
 def plan(
@@ -198,12 +177,12 @@ def plan(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Also write DIR/plan.json.")
     ] = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Compute the smallest detectable size of each effect, and the most useful further run."""
-    run(tsas.plan, runs=path, out=out, force=force, quiet=quiet, as_json=as_json)
+    common.run(tsas.plan, runs=path, out=out, force=force, quiet=quiet, as_json=as_json)
 
 
 def export(
@@ -215,12 +194,12 @@ def export(
     ] = None,
     total_bend_rad: Annotated[float | None, typer.Option(help="Likewise.")] = None,
     preload_n: Annotated[float | None, typer.Option("--preload-N", help="Likewise.")] = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Write a model as JSON, CSV, or a MuJoCo model; what that cannot hold is said."""
-    with progress("export", quiet=quiet):
+    with common.progress("export", quiet=quiet):
         result = tsas.export(
             model,
             to=to,
@@ -230,4 +209,4 @@ def export(
             preload_N=preload_n,
             force=force,
         )
-    present(result, quiet=quiet, as_json=as_json)
+    common.present(result, quiet=quiet, as_json=as_json)

@@ -8,19 +8,7 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import (
-    ChosenRuns,
-    DatasetFolder,
-    Force,
-    Json,
-    Quiet,
-    Rrd,
-    names,
-    present,
-    progress,
-    run,
-)
-from tsas_cli.commands.completion import run_columns, sort_columns
+from tsas_cli.commands import common, completion
 from tsas_cli.support.errors import InputError
 
 
@@ -40,9 +28,9 @@ def ingest(
     guess: Annotated[
         bool, typer.Option("--guess", help="Propose a map, to standard output or --out.")
     ] = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Convert raw files to a dataset by a map, or propose the map (docs/ingest.md)."""
     if guess:
@@ -50,7 +38,7 @@ def ingest(
             raise InputError(
                 "--guess proposes a map, --map uses one", remedy="leave one of them out"
             )
-        present(tsas.guess(sources, out=out, force=force), quiet=quiet, as_json=as_json)
+        common.present(tsas.guess(sources, out=out, force=force), quiet=quiet, as_json=as_json)
     elif map_path is None or out is None:
         source = shlex.quote(str(sources[0]))
         raise InputError(
@@ -60,24 +48,24 @@ def ingest(
         )
     else:
         shown = {"quiet": quiet, "as_json": as_json}
-        run(tsas.ingest, sources=sources, map=map_path, out=out, force=force, **shown)
+        common.run(tsas.ingest, sources=sources, map=map_path, out=out, force=force, **shown)
 
 
 def check(
-    dataset: DatasetFolder,
+    dataset: common.DatasetFolder,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Also write DIR/check.json.")
     ] = None,
-    runs: ChosenRuns = None,
-    rrd: Rrd = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    runs: common.ChosenRuns = None,
+    rrd: common.Rrd = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Check recordings for faults before a model is fitted."""
     if rrd and out is None:
         raise InputError("--rrd has no folder to write to", remedy="set --out")
-    run(tsas.check, **locals())
+    common.run(tsas.check, **locals())
 
 
 def runs(
@@ -93,8 +81,8 @@ def runs(
         typer.Option(
             metavar="NAMES",
             help="Columns to print, comma-separated.",
-            autocompletion=run_columns,
-            callback=names,
+            autocompletion=completion.run_columns,
+            callback=common.names,
         ),
     ] = None,
     sort: Annotated[
@@ -102,16 +90,16 @@ def runs(
         typer.Option(
             metavar="NAMES",
             help="Columns to sort by; -NAME: descending.",
-            autocompletion=sort_columns,
-            callback=names,
+            autocompletion=completion.sort_columns,
+            callback=common.names,
         ),
     ] = None,
     limit: Annotated[int | None, typer.Option(min=0, help="Largest number of runs.")] = None,
     paths: Annotated[
         bool, typer.Option("--paths", help="Print only the datasets' folders, one per line.")
     ] = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Find runs in all datasets below a folder, by conditions, channels and verdicts.
 
@@ -119,17 +107,12 @@ def runs(
     """
     if paths and as_json:
         raise InputError("--paths and --json are two outputs", remedy="leave one out")
-    with progress("runs", quiet=quiet) as step:
+    with common.progress("runs", quiet=quiet) as step:
         found = tsas.runs(
-            query,
-            folders or ".",
-            columns=columns or (),
-            sort=sort or (),
-            limit=limit,
-            step=step,
+            query, folders or ".", columns=columns or (), sort=sort or (), limit=limit, step=step
         )
     if not paths:
-        present(found, quiet=quiet, as_json=as_json)
+        common.present(found, quiet=quiet, as_json=as_json)
     elif not quiet:
         print(*found.paths, sep="\n", end="\n" if found.paths else "")
 
@@ -139,12 +122,12 @@ def upload(
     address: Annotated[
         str, typer.Argument(metavar="ADDRESS", help="The target: s3://BUCKET/PATH or gs://….")
     ],
-    force: Force = False,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    force: common.Force = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Copy a dataset to object storage, where every command reads it by its address."""
-    run(tsas.upload, **locals())
+    common.run(tsas.upload, **locals())
 
 
 def verify(
@@ -153,15 +136,15 @@ def verify(
         list[Path] | None,
         typer.Option("--raw", metavar="DIR", help="A folder of raw recordings that have moved."),
     ] = None,
-    quiet: Quiet = False,
-    as_json: Json = False,
+    quiet: common.Quiet = False,
+    as_json: common.Json = False,
 ) -> None:
     """Verify every recorded checksum, from a report back to the raw recordings.
 
     The exit code is 2 if a file has changed or is missing. A file without a recorded checksum is
     listed, but is no fault.
     """
-    result = run(tsas.verify, **locals())
+    result = common.run(tsas.verify, **locals())
     sys.stdout.flush()
     if wrong := result.wrong:
         some = ", ".join(dict.fromkeys(one.file for one in wrong[:3]))

@@ -37,11 +37,7 @@ def init(
 
     files, proposal = start(folder, sources or [])
     questions = proposal.questions if proposal else {}
-    summary = heading("init") | {
-        "folder": str(folder),
-        "files": files,
-        "questions": questions,
-    }
+    summary = heading("init") | {"folder": str(folder), "files": files, "questions": questions}
     tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
     show(summary, tables, quiet=quiet, as_json=as_json)
     if not quiet and not as_json:

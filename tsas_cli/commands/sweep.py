@@ -39,8 +39,7 @@ def sweep(
         int | None, typer.Option(min=1, help="Number of processes; default: one per core.")
     ] = None,
     cluster: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="A Dask scheduler, to use its workers."),
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler, to use its workers.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Repeat completed tasks.")] = False,
     quiet: Quiet = False,

@@ -16,8 +16,7 @@ def track(
         typer.Option(metavar="M.toml", help="The controller's model; default: the paper's rig."),
     ] = None,
     plant: Annotated[
-        Path | None,
-        typer.Option(metavar="P.toml", help="The simulated rig; default: as --model."),
+        Path | None, typer.Option(metavar="P.toml", help="The simulated rig; default: as --model.")
     ] = None,
     drive: Annotated[
         Path | None,

@@ -56,11 +56,7 @@ class Comparison:
 
 
 def compare(
-    a: Path | Model,
-    b: Path | Model,
-    *,
-    on: Dataset | None = None,
-    step: Steps = NO_PROGRESS,
+    a: Path | Model, b: Path | Model, *, on: Dataset | None = None, step: Steps = NO_PROGRESS
 ) -> Comparison:
     """Hold two models, or what two stages wrote, against each other.
 

@@ -165,10 +165,11 @@ def models_of(it: Predicted, out: Path | None) -> tuple[PredictingModel, ...]:
 
 def tables(record: PredictionFile, title: str = "predictions") -> list[Table]:
     """Return what is printed: the models, the errors under their title, and the ranges."""
-    models = [
-        (one.name, one.kind, one.path, _count(one.recordings), one.dynamics)
-        for one in record.models
-    ]
+    models = []
+    for one in record.models:
+        known = one.recordings
+        count = "unknown" if known is None else count_of(len(known), "recording")
+        models.append((one.name, one.kind, one.path, count, one.dynamics))
     errors = [
         (
             row.run,
@@ -184,25 +185,17 @@ def tables(record: PredictionFile, title: str = "predictions") -> list[Table]:
         )
         for row in record.channels
     ]
+    alike: dict[tuple[str, str, str], list[str]] = {}  # the models of which the same is to be said
+    for row in record.ranges:
+        what = "; ".join(one.text() for one in row.outside)
+        alike.setdefault((row.run, row.verdict, what), []).append(row.model)
+    ranges = [(run, ", ".join(of), verdict, what) for (run, verdict, what), of in alike.items()]
     header = ("run", "channel", "model", "RMSE", "unit", "% of range", "RMSE / noise", "RMSE / A")
     return [
         ("models", ("model", "kind", "path", "fitted to", "dynamics"), models),
         (title, (*header, "repeatability", "seen"), errors),
-        ("ranges that the models were fitted to", ("run", "model", "range", "by"), _ranges(record)),
+        ("ranges that the models were fitted to", ("run", "model", "range", "by"), ranges),
     ]
-
-
-def _count(recordings: dict[str, str] | None) -> str:
-    return "unknown" if recordings is None else count_of(len(recordings), "recording")
-
-
-def _ranges(record: PredictionFile) -> list[tuple[str, ...]]:
-    """Return a row for each run and the models of whose ranges the same is to be said."""
-    rows: dict[tuple[str, str, str], list[str]] = {}
-    for row in record.ranges:
-        what = "; ".join(one.text() for one in row.outside)
-        rows.setdefault((row.run, row.verdict, what), []).append(row.model)
-    return [(run, ", ".join(of), verdict, what) for (run, verdict, what), of in rows.items()]
 
 
 def findings(it: Predicted) -> Iterator[str]:

@@ -71,7 +71,7 @@ class Predictions:
     """Answers to recordings, each of which is read and made ready once."""
 
     def __init__(self, step: Steps = NO_PROGRESS) -> None:
-        """Take what is called after each compared."""
+        """Take what is called after each run."""
         self._prepared: dict[tuple[Location, str], Prepared] = {}
         self._step = step
 
@@ -83,21 +83,19 @@ class Predictions:
             return []
         out = []
         for run in dataset.runs:
-            ready = self._ready(dataset, run)
+            key = (dataset.folder.resolve(), run.id)
+            if key not in self._prepared:
+                self._prepared[key] = prepare(dataset[run.id], dataset.manifest.session_start)
+            ready = self._prepared[key]
             if side.model is None:
                 out.append(_written(side, ready))
             else:
                 model = _for_run(side.model, side.recordings, run)
                 model = with_own_values(model, ready) if fit_own else model
-                out.append(_simulated(model, side, ready))
+                found = simulated(ready, model, side.dynamics)
+                out.append(ComparedRun(ready, found.response.f_in_N, found.channels))
             self._step()
         return out
-
-    def _ready(self, dataset: Dataset, run: Run) -> Prepared:
-        key = (dataset.folder.resolve(), run.id)
-        if key not in self._prepared:
-            self._prepared[key] = prepare(dataset[run.id], dataset.manifest.session_start)
-        return self._prepared[key]
 
 
 def matched(a: list[ComparedRun], b: list[ComparedRun]) -> list[Both]:
@@ -163,13 +161,8 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
     )
 
 
-def _simulated(model: Model, side: Side, run: Prepared) -> ComparedRun:
-    compared = simulated(run, model, side.dynamics)
-    return ComparedRun(run, compared.response.f_in_N, compared.channels)
-
-
 def _written(side: Side, run: Prepared) -> ComparedRun:
-    """Return the compared that `tsas simulate` has written."""
+    """Return what `tsas simulate` has written of a run."""
     path = result_file(side.path, run.run.id)
     columns = columns_of(path, names_of(path))
     for values in columns.values():

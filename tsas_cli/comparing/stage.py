@@ -89,15 +89,13 @@ def held_out(it: Comparison) -> list[HeldOutPair]:
 
 def tables(it: Comparison) -> list[Table]:
     """Return what the stage prints."""
+    sides = []
+    for name, side in it.sides.items():
+        source, read = side.source, side.recordings
+        known = "unknown" if source is None or read is None else f"{len(read)} of {source.name}"
+        sides.append((name, side.kind, str(side.path), known, side.verdict))
     every: list[Table] = [
-        (
-            "sides",
-            ("", "kind", "path", "recordings", "verdict"),
-            [
-                (name, side.kind, str(side.path), _recordings_of(side), side.verdict)
-                for name, side in it.sides.items()
-            ],
-        ),
+        ("sides", ("", "kind", "path", "recordings", "verdict"), sides),
         (
             "parameters",
             ("name", "run", "A [95 %]", "B [95 %]", "B − A [95 %]", "differs", "unit"),
@@ -120,13 +118,6 @@ def tables(it: Comparison) -> list[Table]:
         ),
     ]
     return [table for table in every if table[2]]
-
-
-def _recordings_of(side: Side) -> str:
-    """Return how many recordings of which dataset a side has read."""
-    if side.source is None or side.recordings is None:
-        return "unknown"
-    return f"{len(side.recordings)} of {side.source.name}"
 
 
 def _row(pair: ParameterPair) -> tuple[str, ...]:

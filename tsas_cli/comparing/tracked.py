@@ -48,10 +48,7 @@ class Tracks:
 
 
 def are_tracked(a: Path, b: Path) -> bool:
-    """Say whether both are folders of `tsas track`.
-
-    InputError: only one of them is.
-    """
+    """Say whether both are folders of `tsas track`; InputError: only one of them is."""
     there = [(path / TRACKING_FILE).is_file() for path in (a, b)]
     if any(there) and not all(there):
         raise InputError(

@@ -121,15 +121,9 @@ def _differs_from_row_before(columns: Mapping[str, Floats], last: Mapping[str, f
     differs = np.zeros(columns[TIME].size, dtype=np.bool_)
     differs[0] = not last
     for name, values in columns.items():
-        if last:
-            differs[0] |= _differ(values[:1], np.array([last[name]]))[0]
-        differs[1:] |= _differ(values[1:], values[:-1])
+        before = np.concatenate(([last.get(name, np.nan)], values[:-1]))
+        differs |= (values != before) & ~(np.isnan(values) & np.isnan(before))
     return differs
-
-
-def _differ(values: Floats, others: Floats) -> Mask:
-    differ: Mask = (values != others) & ~(np.isnan(values) & np.isnan(others))
-    return differ
 
 
 def _check_values(

@@ -50,17 +50,13 @@ class Dataset:
         InputError: there is no such run, or none is chosen.
         """
         known = [run.id for run in self.manifest.run]
-        chosen = tuple(ids)
+        chosen, where = tuple(ids), self.folder / MANIFEST_FILE
         if not chosen:
-            where = self.folder / MANIFEST_FILE
             raise InputError("no run is chosen", where=where, expected="a run")
         for name in chosen:
             if name not in known:
-                raise InputError(
-                    f"there is no run {name!r}",
-                    where=self.folder / MANIFEST_FILE,
-                    remedy=nearest(str(name), known),
-                )
+                hint = nearest(str(name), known)
+                raise InputError(f"there is no run {name!r}", where=where, remedy=hint)
         return replace(self, chosen=chosen)
 
     def under(self, **conditions: float) -> "Dataset":

@@ -73,9 +73,9 @@ class Expanded:
     items: int = 0
 
     @classmethod
-    def of(cls, path: Path, most: int = limits.EXPANSION) -> "Expanded":
-        """Return the empty count of a file that may expand to `most` times its size."""
-        return cls(path, path.stat().st_size, most)
+    def of(cls, path: Path) -> "Expanded":
+        """Return the empty count of a file."""
+        return cls(path, path.stat().st_size)
 
     def add(self, more: int, *, what: str = "") -> None:
         """Count one item of so many bytes.
@@ -180,7 +180,7 @@ def limited(
     """Return the result of a function, or its error; called in the other process."""
     os.chdir(folder)
     called = getattr(import_module(module), function)
-    _end_after(seconds + 5.0)  # in case the parent process is dead
+    signal.setitimer(signal.ITIMER_REAL, seconds + 5.0)  # in case the parent process is dead
     _limit(memory)
     try:
         return called(*arguments)
@@ -189,12 +189,7 @@ def limited(
     except Exception:  # noqa: BLE001 # a defect, whose type may not be picklable
         return RuntimeError(traceback.format_exc())
     finally:
-        _end_after(0.0)  # cancels the timer
-
-
-def _end_after(seconds: float) -> None:
-    if sys.platform != "win32":
-        signal.setitimer(signal.ITIMER_REAL, seconds)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
 def _limit(memory: int) -> None:

@@ -91,7 +91,10 @@ def ingest_files(
             parts = merged(parts, time.source, how)
         first = next(parts)
         step()
-        run = _run(path, first, mapping)
+        conditions = run_conditions(path, first.header, mapping.run, mapping.read.decimal)
+        # The checksum is known once the file is written.
+        entry = {"file": f"runs/{conditions['id']}.parquet", "sha256": "0" * 64}
+        run = parse(Run, conditions | entry, path)
         if run.id in ingested:
             raise InputError(
                 f"run id {run.id!r} is also that of {ingested[run.id].source}",
@@ -135,15 +138,6 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     return [path for path in files if path not in joined]
 
 
-def _run(path: Path, table: ColumnTable, mapping: IngestMap) -> Run:
-    conditions = run_conditions(path, table.header, mapping.run, mapping.read.decimal)
-    written = {
-        "file": f"runs/{conditions['id']}.parquet",
-        "sha256": "0" * 64,  # known once the file is written
-    }
-    return parse(Run, conditions | written, path)
-
-
 def _ingest(
     parts: Iterator[ColumnTable],
     run: str,
@@ -171,12 +165,8 @@ def _ingest(
 def merged(parts: Iterable[ColumnTable], time: ColumnSource, how: How) -> Iterator[ColumnTable]:
     """Yield the parts of a file with one row for each time, which may be repeated across parts.
 
-    Parameters
-    ----------
-    time
-        The source of the clock; rows of one time follow each other.
-    how
-        The row that stays, or the mean of each column, gaps left out.
+    `time` is the source of the clock; rows of one time follow each other. `how` says which row
+    stays, or the mean of each column, gaps left out.
     """
     held: ColumnTable | None = None  # the rows of the last time
     for part in parts:

@@ -141,7 +141,6 @@ def read_map(path: Path) -> IngestMap:
 
 
 def _questions(content: Any, key: str = "") -> Iterator[str]:
-    """Yield the keys whose value is `QUESTION`."""
     if content == QUESTION:
         yield key
     elif isinstance(content, dict):
@@ -241,7 +240,7 @@ def _plain(text: str) -> float | int | str:
 
 @contextmanager
 def at_most(seconds: float) -> Iterator[None]:
-    """Run the block with a time limit; without one on Windows and outside the main thread.
+    """Run the block with a time limit; without one outside the main thread.
 
     TimeoutError: the block took longer.
     """
@@ -250,8 +249,7 @@ def at_most(seconds: float) -> Iterator[None]:
         del number, frame
         raise TimeoutError
 
-    on_main = threading.current_thread() is threading.main_thread()
-    if not on_main or not hasattr(signal, "setitimer"):
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
     before = signal.signal(signal.SIGALRM, late)

@@ -1,12 +1,12 @@
 """The manifest `dataset.toml` of a dataset, format 1: its content and validation."""
 
-import os
 import re
 import tomllib
 import unicodedata
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from datetime import date, datetime
+from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal, Self, TypeVar
 
@@ -33,8 +33,6 @@ T = TypeVar("T", bound=BaseModel)
 _MOST_ERRORS = 5  # listed of one file; further ones are counted
 _VALUE_LENGTH = 80  # characters of an invalid value in a message
 _PATH_LENGTH = 1000  # characters of a path in the dataset
-_SLASHES = "/\\"
-_ON_WINDOWS = '<>:"|?*'  # where a colon opens another stream of the same file
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 
@@ -49,14 +47,13 @@ def _as_date(value: object) -> object:
     raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
 
 
-def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> str:
+def check_run_name(name: str) -> str:
     """Return an id; refuse one that is no valid file name.
 
     ValueError: it is empty, not printable, too long, or a Windows device; it has a slash, or a
     blank at either end.
     """
-    bad = _SLASHES + (_ON_WINDOWS if on_windows else "")
-    unusable = name in {"", ".", ".."} or any(c in name for c in bad) or not name.isprintable()
+    unusable = name in {"", ".", ".."} or {"/", "\\"} & set(name) or not name.isprintable()
     if unusable or len(f"{name}.parquet".encode()) > 255 or name != name.strip():
         raise ValueError(
             "must be usable as a file name (no slash, no control character, no blank at its ends, "
@@ -239,26 +236,23 @@ def parse(model: type[T], content: Raw, path: object) -> T:
     return read
 
 
-def _booleans_as_numbers(written: Any, read: Any) -> Iterator[str]:
+def _booleans_as_numbers(written: Any, read: Any, place: str = "") -> Iterator[str]:
     """Yield the places where true or false was read as 1 or 0.
 
     Pydantic's strict mode would also refuse 1 for 1.0, and lists for tuples.
     """
+    inside: Iterable[tuple[Any, Any, Any]] = ()
     if isinstance(written, dict):
-        for key, value in written.items():
-            inner = read.get(key) if isinstance(read, dict) else getattr(read, key, None)
-            yield from _booleans_inside(str(key), value, inner)
+        get = read.get if isinstance(read, dict) else partial(getattr, read)
+        inside = ((key, value, get(key, None)) for key, value in written.items())
     elif isinstance(written, list) and isinstance(read, list | tuple):
-        for number, (value, inner) in enumerate(zip(written, read, strict=False)):
-            yield from _booleans_inside(str(number), value, inner)
-
-
-def _booleans_inside(place: str, written: Any, read: Any) -> Iterator[str]:
-    if isinstance(written, bool):
-        if isinstance(read, int | float) and not isinstance(read, bool):
-            yield place
-    elif isinstance(written, dict | list) and read is not None and read is not written:
-        yield from (f"{place}.{inner}" for inner in _booleans_as_numbers(written, read))
+        inside = ((k, *both) for k, both in enumerate(zip(written, read, strict=False)))
+    elif isinstance(written, bool) and isinstance(read, int | float) and not isinstance(read, bool):
+        yield place
+    for key, value, inner in inside:
+        if inner is not None and inner is not value:
+            at = f"{place}.{key}" if place else str(key)
+            yield from _booleans_as_numbers(value, inner, at)
 
 
 def _sentence(error: Any, model: type[BaseModel]) -> str:

@@ -74,7 +74,6 @@ def size_of(source: ParquetSource) -> int:
 
 
 def _check_footer(stream: IO[bytes] | pa.NativeFile, path: object) -> None:
-    """Refuse a footer that exceeds its limit."""
     size = int(stream.seek(0, io.SEEK_END))
     stream.seek(max(0, size - _TRAILER_BYTES))
     length, mark = struct.unpack("<I4s", stream.read().rjust(_TRAILER_BYTES, b"\0"))
@@ -119,11 +118,6 @@ def check_size(
             expanded.add(group.num_rows * each, what=f"{metadata.num_rows} rows")
     if whole:
         expanded.fits()
-
-
-def is_number(kind: pa.DataType) -> bool:
-    """Return whether a column's type is numeric, or null throughout."""
-    return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_null(kind))
 
 
 def unit_of(field: pa.Field) -> str:

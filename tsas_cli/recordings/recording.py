@@ -65,10 +65,7 @@ class Recording:
 
 
 def recording_of(runs: Mapping[str, Recording], run: str) -> Recording:
-    """Return a run by its id.
-
-    InputError: there is no such run.
-    """
+    """Return a run by its id; InputError: there is no such run."""
     if run not in runs:
         raise InputError(f"there is no run {run!r}", remedy=nearest(run, runs))
     return runs[run]

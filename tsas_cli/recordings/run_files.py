@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from pyarrow.types import is_floating, is_integer, is_null
 
 from tsas_cli.recordings.columns import (
     BY_NAME,
@@ -21,7 +22,6 @@ from tsas_cli.recordings.parquet_files import (
     check_size,
     checked_file,
     floats_from,
-    is_number,
     open_parquet,
     reading,
     size_of,
@@ -75,7 +75,7 @@ class RunColumns:
     def names(self) -> list[str]:
         """The numeric columns, in the order of the file."""
         schema = self.file.schema_arrow
-        return [f.name for f in schema if f.name in BY_NAME or pa.types.is_floating(f.type)]
+        return [f.name for f in schema if f.name in BY_NAME or is_floating(f.type)]
 
     @property
     def rows(self) -> int:
@@ -151,17 +151,16 @@ def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
             continue
         if schema.names.count(field.name) > 1:
             raise InputError(f"duplicate column {field.name}", where=path)
-        if not is_number(field.type):
+        kind = field.type
+        if not any(f(kind) for f in (is_floating, is_integer, is_null)):
             raise InputError(
-                f"column {field.name} holds {str(field.type)[:80]}", where=path, expected="float64"
+                f"column {field.name} holds {str(kind)[:80]}", where=path, expected="float64"
             )
         unit = unit_of(field)
         expected = BY_NAME[field.name].unit
         if unit.strip() and not _is_same(unit, expected):
             raise InputError(
-                f"column {field.name} has the unit {unit[:80]}",
-                where=path,
-                expected=expected,
+                f"column {field.name} has the unit {unit[:80]}", where=path, expected=expected
             )
 
 

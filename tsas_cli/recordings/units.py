@@ -71,18 +71,9 @@ def conversion(
 ) -> tuple[float, float]:
     """Return slope and intercept of the conversion of a number in a file to a canonical unit.
 
-    Parameters
-    ----------
-    unit
-        The unit in any common spelling.
-    to
-        The canonical unit: s, mm, N, rpm, rad or °C.
-    factor, factor_unit
-        One `unit` is `factor` times `factor_unit`; required for counts and volts.
-    pulley_radius_mm
-        The radius that converts an angle to mm, or a torque to N.
-    where
-        The location in error messages.
+    `unit` has any common spelling, `to` is s, mm, N, rpm, rad or °C. One `unit` is `factor` times
+    `factor_unit`, which counts and volts need; `pulley_radius_mm` converts an angle to mm, or a
+    torque to N; `where` is the location in error messages.
 
     InputError: the unit is unknown or not convertible, or the factor is zero or not finite.
     """

@@ -55,16 +55,13 @@ class WrittenRuns(Mapping[str, Recording]):
 
 def write_dataset(folder: Path, manifest: Manifest, tables: Mapping[str, pa.Table]) -> None:
     """Write the runs' tables and the manifest with their checksums into an empty folder."""
-    runs = tuple(write_run(folder, run, tables[run.id]) for run in manifest.run)
-    write_manifest(folder, manifest.model_copy(update={"run": runs}))
-
-
-def write_run(folder: Path, run: Run, table: pa.Table) -> Run:
-    """Write one run's table into a dataset's folder; return the run with its checksum."""
-    path = folder / run.file
-    path.parent.mkdir(exist_ok=True)
-    write_parquet(path, table)
-    return run.model_copy(update={"sha256": sha256_of(path)})
+    runs = []
+    for run in manifest.run:
+        path = folder / run.file
+        path.parent.mkdir(exist_ok=True)
+        write_parquet(path, tables[run.id])
+        runs.append(run.model_copy(update={"sha256": sha256_of(path)}))
+    write_manifest(folder, manifest.model_copy(update={"run": tuple(runs)}))
 
 
 def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:

@@ -1,5 +1,6 @@
 """The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -178,7 +179,6 @@ def _prepared(dataset: Dataset, run: Run, copied: CopiedRows) -> Prepared:
 
 
 def _stiffness_rows(result: Calibration, manifest: Manifest) -> Iterator[records.Stiffness]:
-    """Yield the stiffness of each phase of each run."""
     for run, slopes, by_model in zip(result.runs, result.slopes, result.expected, strict=True):
         expected = {slope.phase: slope for slope in reversed(by_model)}
         for slope in slopes:
@@ -210,16 +210,13 @@ def _stiffness(
 ) -> records.Stiffness:
     """Return one row: measured km and kr beside what theory and the calibrated model expect."""
     sheet = manifest.rig
-    stated = all(
-        v is not None
-        for v in (
-            sheet.friction_coefficient,
-            sheet.tendon_modulus_GPa,
-            sheet.tendon_diameter_mm,
-            sheet.load_stiffness_N_per_mm,
-            run.run.total_bend_rad,
-            run.run.sheath_length_mm,
-        )
+    stated = None not in (
+        sheet.friction_coefficient,
+        sheet.tendon_modulus_GPa,
+        sheet.tendon_diameter_mm,
+        sheet.load_stiffness_N_per_mm,
+        run.run.total_bend_rad,
+        run.run.sheath_length_mm,
     )
     theory, elastic = _theory((data_sheet(manifest) if stated else model).rig(run.run), slope, run)
     radius, gear = sheet.turntable_radius_mm, sheet.gear_ratio
@@ -239,7 +236,6 @@ def _stiffness(
 
 
 def _parameter(name: str, slope: Slope, unit: str, factor: float, run: str) -> ParameterValue:
-    low, high = slope.value - slope.half_width, slope.value + slope.half_width
     return ParameterValue(
         name=name,
         value=slope.value * factor,
@@ -247,15 +243,13 @@ def _parameter(name: str, slope: Slope, unit: str, factor: float, run: str) -> P
         origin="fitted",
         run=run,
         stderr=slope.stderr * factor,
-        interval_low=low * factor,
-        interval_high=high * factor,
+        interval_low=(slope.value - slope.half_width) * factor,
+        interval_high=(slope.value + slope.half_width) * factor,
     )
 
 
 def _theory(rig: Rig, slope: Slope, run: Prepared) -> tuple[float | None, float | None]:
     """Return km by Eqs. (29), (31), (32), and with the elastic term kept (30)."""
-    import math
-
     wrap = rig.friction_coefficient * rig.total_bend_rad
     if wrap <= 0.0:
         return None, None

@@ -92,9 +92,7 @@ def check(
     with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
         report = check_dataset(data, step)
         record = CheckFile(
-            **data.header(folder),
-            findings=report.findings,
-            not_checked=report.not_checked,
+            **data.header(folder), findings=report.findings, not_checked=report.not_checked
         )
         if written is not None:
             record.write(written)

@@ -81,7 +81,10 @@ def compare(
     sides = [side if isinstance(side, Model) else file_of(side) for side in (a, b)]
     paths = [side for side in sides if isinstance(side, Path)]
     tracks = len(paths) == len(sides) and are_tracked(*paths)
-    _refuse(on=on is not None, runs=runs is not None, tracks=tracks)
+    if tracks and on is not None:
+        raise InputError("closed loops have recordings of their own", where="--on")
+    if runs is not None and on is None:
+        raise InputError("there is no dataset to take runs of", where="--runs", remedy="add --on")
     data = None if on is None else dataset_of(on, runs)
     inputs = [*paths, *([] if data is None else [data.folder])]
     path = path_of(out)
@@ -98,11 +101,3 @@ def _page(both: Comparison | Tracks, step: Steps) -> str:
     from tsas_cli.reporting.comparing import comparison_page, tracked_page
 
     return tracked_page(both, step) if isinstance(both, Tracks) else comparison_page(both, step)
-
-
-def _refuse(*, on: bool, runs: bool, tracks: bool) -> None:
-    """Refuse options that have nothing to work on."""
-    if tracks and on:
-        raise InputError("closed loops have recordings of their own", where="--on")
-    if runs and not on:
-        raise InputError("there is no dataset to take runs of", where="--runs", remedy="add --on")

@@ -5,7 +5,7 @@ import io
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -26,8 +26,6 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import json_text, new_file
 
-Format = Literal["json", "csv", "mujoco"]
-FORMATS: tuple[Format, ...] = get_args(Format)
 MARKS = {"json": b'"stage": "export"', "csv": b"name,run,value", "mujoco": b"tsas export"}
 STROKE_MM = 10.0  # where the model's file does not say what it was fitted to
 STROKES, SAMPLES = 4, 400  # of the motion by which models are compared; samples of a stroke
@@ -108,7 +106,7 @@ def export(
     InputError
         The model is wrong, a condition is not known, or `out` exists and `force` is not set.
     """
-    kind = one_of(FORMATS, to, "to")
+    kind = one_of([*MARKS], to, "to")
     given: Model | Path = path_of(model, Model)
     path = file_of(out)
     found = model_of(given)
@@ -129,11 +127,7 @@ def export(
         text = json_text(content) if kind == "json" else _csv(found)
     with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    summary = heading("export") | {
-        "format_of_model": kind,
-        "errors": errors,
-        "lost": lost,
-    }
+    summary = heading("export") | {"format_of_model": kind, "errors": errors, "lost": lost}
     return ExportResult(summary, path, lost)
 
 

@@ -15,7 +15,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
 from tsas_cli.support.errors import LONGEST_WORD, InputError, nearest
 
-NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS and Windows allow less
+NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS allows less
 Named = str | Path
 Thing = TypeVar("Thing")
 Word = TypeVar("Word", bound=str)
@@ -41,14 +41,6 @@ def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
     return [file_of(each) for each in several_of(given, least)]
 
 
-def places_of(given: Named | Iterable[Named]) -> list[Location]:
-    """Return one place or several as a list: local paths, or addresses of datasets.
-
-    InputError: one is of another kind, or there is none.
-    """
-    return [place_of(each) for each in several_of(given)]
-
-
 def place_of(given: Named | Address) -> Location:
     """Return a local path or an address; InputError where it is of another kind, or no name."""
     return _nameable(location_of(of_kind((str, Path, Address), given)))
@@ -68,10 +60,7 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
 
 
 def one_of(words: Sequence[Word], given: str, name: str) -> Word:
-    """Return a word that is among those that are known.
-
-    InputError: it is not.
-    """
+    """Return a word that is among those that are known; InputError: it is not."""
     for word in words:
         if isinstance(given, str) and word == given:  # an array is equal one by one
             return word
@@ -85,10 +74,9 @@ def at_least(least: int, given: int, name: str, *, most: float = math.inf) -> in
 
     InputError: it is.
     """
-    if of_kind((int,), given) < least:
-        raise InputError(f"{name} is {given}", expected=f"{least} or more")
-    if given > most:
-        raise InputError(f"{name} is {given}", expected=f"at most {most}")
+    if not least <= of_kind((int,), given) <= most:
+        wanted = f"{least} or more" if given < least else f"at most {most}"
+        raise InputError(f"{name} is {given}", expected=wanted)
     return given
 
 

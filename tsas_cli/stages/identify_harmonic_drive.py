@@ -30,7 +30,6 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
 
 STAGE = "identify-harmonic-drive"
@@ -118,7 +117,7 @@ def identify_harmonic_drive(
     InputError
         A recording does not serve, or `out` exists and `force` is not set.
     """
-    hold = HOLDS[one_of(SPEEDS, speed, "speed")]
+    hold = HOLDS[one_of([*HOLDS], speed, "speed")]
     data, path = dataset_of(dataset, runs), path_of(out)
     with folder_if(path, stage=STAGE, inputs=[data.folder], force=force) as folder:
         step.ahead(2)

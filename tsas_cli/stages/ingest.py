@@ -128,7 +128,7 @@ def guess(
     """
     files, path = find_files(paths_of(sources), "*"), path_of(out)
     proposal = propose(files)
-    summary = content(proposal)
+    summary = heading("guess") | content(proposal)
     if path is not None:
         with new_file(path, mark=MAP_MARK, inputs=files, force=force) as written:
             written.write_text(map_text(proposal), encoding="utf-8")

@@ -13,7 +13,7 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.reporting.pdf import PDF_MARK, browser, print_page
-from tsas_cli.stages.given import Named, file_of, places_of
+from tsas_cli.stages.given import Named, file_of, place_of, several_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -67,7 +67,7 @@ def report(
         A folder is of no known kind, does not belong to the dataset, `out` exists and `force` is
         not set, or there is no Chromium to print with.
     """
-    pages, places = [file_of(out)], places_of(folders)
+    pages, places = [file_of(out)], [place_of(each) for each in several_of(folders)]
     if pdf:
         browser()  # before the work, where there is none
         pages.append(_beside(Path(out)))

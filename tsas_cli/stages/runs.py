@@ -128,16 +128,15 @@ def runs(
         "fitting": found.fitting,
         "all_runs": found.all_runs,
         "runs": [
-            {name: _plain(value) for name, value in zip(found.columns, row, strict=True)}
+            {
+                name: value.isoformat() if isinstance(value, datetime) else value
+                for name, value in zip(found.columns, row, strict=True)
+            }
             for row in found.rows
         ],
         "problems": found.problems,
     }
     return RunsResult(summary, None, found, shown or SHOWN)
-
-
-def _plain(value: Any) -> Any:
-    return value.isoformat() if isinstance(value, datetime) else value
 
 
 def _cell(value: Any) -> str:

@@ -16,7 +16,6 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import model_of
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.stages.given import Named, at_least, file_of
 from tsas_cli.stages.read import read
@@ -166,12 +165,13 @@ def _done(task: Raw) -> TaskOutcome:
 
 
 def _arguments(inputs: Raw, places: Raw) -> Raw:
-    """Return the keywords of the call."""
     given: Raw = inputs["options"] | {name: Path(places[name]) for name in inputs["files"]}
     for name, source in inputs["files"].items():
         _refuse_changed(Path(places[name]), source["sha256"])
     if "dataset" in inputs:
-        given["dataset"] = dataset = _dataset(inputs, places)
+        folder = Path(places["dataset"])
+        _refuse_changed(folder / MANIFEST_FILE, inputs["dataset"]["sha256"])
+        given["dataset"] = dataset = read(folder).under(**inputs["conditions"])
         if inputs["model"]:
             base = data_sheet(dataset.manifest) if "model" not in given else given["model"]
             runs = [run.id for run in dataset.runs]
@@ -187,12 +187,6 @@ def _arguments(inputs: Raw, places: Raw) -> Raw:
     if inputs["settings"]:
         given["settings"] = with_settings(given.get("settings"), inputs["settings"])
     return given
-
-
-def _dataset(inputs: Raw, places: Raw) -> Dataset:
-    folder = Path(places["dataset"])
-    _refuse_changed(folder / MANIFEST_FILE, inputs["dataset"]["sha256"])
-    return read(folder).under(**inputs["conditions"])
 
 
 def _with_values(values: Raw, runs: list[str], base: Model | Path | None) -> Model:

@@ -39,15 +39,7 @@ from tsas_cli.tracking.recorded import (
 )
 from tsas_cli.tracking.references import reference as reference_of
 from tsas_cli.tracking.settings import Settings, known_drive, printed_gains, read_settings
-from tsas_cli.tracking.track import (
-    Known,
-    Plant,
-    TendonDynamics,
-    Tracked,
-    over_seeds,
-    plan,
-    run_loop,
-)
+from tsas_cli.tracking.track import Known, Plant, TendonDynamics, over_seeds, plan, run_loop
 from tsas_cli.verifying.claims import change_notes
 
 DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")
@@ -221,7 +213,16 @@ def track(
                 if models == (None, None, None):
                     printed = printed_rmse(name, condition, str(reference), read)
                 tables[run_id] = table
-                results.append(_result(run_id, name, condition, runs, printed))
+                result = records.TrackedResult(
+                    controller=name,
+                    condition=condition.name,
+                    run=run_id,
+                    scores=over_seeds([run.score for run in runs]),
+                    printed_rmse_N=printed,
+                    relay=any(run.is_relay for run in runs),
+                    unsettled_steps=sum(run.unsettled for run in runs),
+                )
+                results.append(result)
                 each(made(results=results), run_id, table)
         said = [*change_notes(models), *run_notes(drive_path, known, real, results)]
         if dynamics == "lugre":
@@ -278,17 +279,3 @@ def what_is_known(
             )
     actuator = known_drive(drive, settings.drive)
     return Known(known.rig(run), actuator), Plant(real.rig(run), settings.drive.actuator())
-
-
-def _result(
-    run_id: str, name: str, condition: Condition, runs: list[Tracked], printed: float | None
-) -> records.TrackedResult:
-    return records.TrackedResult(
-        controller=name,
-        condition=condition.name,
-        run=run_id,
-        scores=over_seeds([run.score for run in runs]),
-        printed_rmse_N=printed,
-        relay=any(run.is_relay for run in runs),
-        unsettled_steps=sum(run.unsettled for run in runs),
-    )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import MANIFEST_FILE, Run
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.parquet_files import changed, local_file
 from tsas_cli.recordings.storage import Address
 from tsas_cli.records.result import Result, Table, heading
@@ -78,7 +78,13 @@ def upload(
     files: dict[str, int] = {}
     try:
         for run in dataset.runs:
-            files[run.file] = _upload_run(source, run, target)
+            path, copy = local_file(source, run), target / run.file
+            digest = run.sha256.lower()
+            if sha256_of(path) != digest:
+                raise changed(path, run)
+            if not copy.holds(digest):
+                copy.copy_from(path, digest)
+            files[run.file] = path.stat().st_size
             step()
         content = (source / MANIFEST_FILE).read_bytes()
         manifest.write_bytes(content)
@@ -89,11 +95,7 @@ def upload(
             error.what, where=error.where, expected=error.expected, remedy=remedy
         ) from error
     files[MANIFEST_FILE] = len(content)
-    summary = heading("upload") | {
-        "folder": str(source),
-        "address": str(target),
-        "files": files,
-    }
+    summary = heading("upload") | {"folder": str(source), "address": str(target), "files": files}
     return UploadResult(summary, None)
 
 
@@ -106,13 +108,3 @@ def _refuse_foreign(existing: Address, size: int) -> None:
             expected="an address that is free, or a dataset",
             remedy="choose another address, or remove the object with the storage's own tools",
         )
-
-
-def _upload_run(folder: Path, run: Run, target: Address) -> int:
-    path = local_file(folder, run)
-    if sha256_of(path) != run.sha256.lower():
-        raise changed(path, run)
-    there = target / run.file
-    if not there.holds(run.sha256.lower()):
-        there.copy_from(path, run.sha256.lower())
-    return path.stat().st_size

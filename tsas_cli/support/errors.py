@@ -34,14 +34,10 @@ class InputError(Exception):
 
     def line(self) -> str:
         """Return the whole message on one line, with control characters escaped."""
-        what = shortened(self.what)
-        head = f"{self.where}: {what}" if self.where else what
-        parts = [head]
-        if self.expected:
-            parts.append(shortened(f"expected {self.expected}"))
-        if self.remedy:
-            parts.append(shortened(self.remedy))
-        return printable("; ".join(parts))
+        expected = f"expected {self.expected}" if self.expected else ""
+        more = filter(None, (expected, self.remedy))
+        line = "; ".join(map(shortened, (self.what, *more)))
+        return printable(f"{self.where}: {line}" if self.where else line)
 
 
 def shortened(text: str) -> str:

@@ -8,7 +8,7 @@ import math
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TextIO
@@ -81,9 +81,13 @@ def text_name(path: Path) -> None:
         raise InputError("its name is not UTF-8", where=path, remedy="rename it")
 
 
-def is_text(path: Path) -> bool:
-    """Return whether a path is valid UTF-8."""
-    return _encodable(str(path))
+def is_text(name: object) -> bool:
+    """Return whether a path or a name is valid UTF-8."""
+    try:
+        str(name).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def toml(text: str, path: object) -> None:
@@ -105,16 +109,13 @@ def toml(text: str, path: object) -> None:
 
 def depth(content: Any, path: object) -> None:
     """Refuse tables and lists that are nested too deep."""
-    level = [content]
+    level = [content] if isinstance(content, dict | list) else []
     for _ in range(DEPTH):
-        level = [v for outer in level for v in _members(outer) if isinstance(v, dict | list)]
+        outer = [each.values() if isinstance(each, dict) else each for each in level]
+        level = [v for each in outer for v in each if isinstance(v, dict | list)]
         if not level:
             return
     raise too_deep(path)
-
-
-def _members(value: Any) -> Iterable[Any]:
-    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
 
 
 def reason(error: Exception) -> str:
@@ -131,10 +132,7 @@ def too_deep(path: object) -> InputError:
 
 
 def lines(stream: TextIO, path: Path) -> Iterator[str]:
-    """Yield the lines of a text table.
-
-    InputError: a line exceeds the limit.
-    """
+    """Yield the lines of a text table; InputError: a line exceeds the limit."""
     row = 0
     while line := stream.readline(LINE + 1):
         row += 1
@@ -152,7 +150,7 @@ def columns(names: Sequence[str], path: object) -> None:
     """Refuse too many columns, or invalid names."""
     column_count(len(names), path)
     for number, name in enumerate(names, start=1):
-        if len(name) > NAME or not _encodable(name):
+        if len(name) > NAME or not is_text(name):
             raise InputError(
                 f"the name of column {number} is not UTF-8 or longer than {NAME} characters",
                 where=path,
@@ -177,14 +175,6 @@ def size(bytes_: int) -> str:
         if bytes_ >= one:
             return f"{bytes_ / one:.3g} {unit}"
     return f"{bytes_} bytes"
-
-
-def _encodable(name: str) -> bool:
-    try:
-        name.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 def loadable() -> None:
@@ -229,9 +219,7 @@ def fits(path: object, bytes_: int) -> None:
 def out_of_memory(path: object) -> InputError:
     """Return the error for a file that exhausted the memory."""
     return InputError(
-        f"needs more memory than is free ({size(available())})",
-        where=path,
-        remedy=_remedy(path),
+        f"needs more memory than is free ({size(available())})", where=path, remedy=_remedy(path)
     )
 
 

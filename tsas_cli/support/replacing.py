@@ -6,7 +6,7 @@ It never replaces an input of the call, or a path that contains or lies inside o
 import json
 import os
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 
 from tsas_cli.support.errors import InputError
@@ -152,7 +152,10 @@ def _refuse_foreign(path: Path, stage: str) -> None:
             expected="a new name, or a folder that it has written",
             remedy="choose another --out",
         )
-    foreign = sorted(name for name in _files_in(path) if name not in ours)
+    # A link to a folder is a file.
+    files = (p for p in path.rglob("*") if p.is_symlink() or not p.is_dir())
+    names = (p.relative_to(path).as_posix() for p in files if p.name not in LEFT_BY_DESKTOPS)
+    foreign = sorted(set(names) - ours)
     if foreign:
         raise InputError(
             f"holds files that `tsas {stage}` has not written ({', '.join(foreign[:5])})",
@@ -160,13 +163,6 @@ def _refuse_foreign(path: Path, stage: str) -> None:
             expected="an earlier output only",
             remedy="move them elsewhere, or choose another --out",
         )
-
-
-def _files_in(folder: Path) -> Iterator[str]:
-    """Yield the relative paths of the files in a folder; a link to a folder is a file."""
-    for path in folder.rglob("*"):
-        if (path.is_symlink() or not path.is_dir()) and path.name not in LEFT_BY_DESKTOPS:
-            yield path.relative_to(folder).as_posix()
 
 
 def _of_stage(folder: Path, stage: str) -> set[str] | None:

@@ -45,7 +45,6 @@ def _widths(cells: Sequence[_Row], room: float) -> list[int]:
 
 
 def _lines(row: _Row, widths: Sequence[int]) -> Iterator[str]:
-    """Yield the lines of one row."""
     wrapped = (
         [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False)
         for cell, width in zip(row, widths, strict=True)

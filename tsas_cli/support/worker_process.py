@@ -7,8 +7,8 @@ import subprocess
 import sys
 import tempfile
 from contextlib import suppress
-from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import IO, Any
 
 STDERR_BYTES = 500  # last bytes of a dead process's standard error
@@ -82,6 +82,5 @@ def serve() -> None:
             work, arguments = pickle.load(sys.stdin.buffer)  # noqa: S301 # from the process that started this
         except EOFError:
             return
-        module, _, function = work.partition(":")
-        pickle.dump(getattr(import_module(module), function)(*arguments), results)
+        pickle.dump(resolve_name(work)(*arguments), results)
         results.flush()

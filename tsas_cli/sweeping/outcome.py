@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 from tsas_cli.support import __version__
@@ -36,11 +37,7 @@ def success(results: Row, parameters: list[Row]) -> TaskOutcome:
 
 def run_task(work: str, text: str) -> str:
     """Return the outcome of a task, as JSON like the task; `work` is `module:function`."""
-    from importlib import import_module
-
-    module, _, name = work.partition(":")
-    outcome: TaskOutcome = getattr(import_module(module), name)(json.loads(text))
-    return json.dumps(outcome)
+    return json.dumps(resolve_name(work)(json.loads(text)))
 
 
 @cache

@@ -10,22 +10,18 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw
 from tsas_cli.support.plausible import AnyNumber
-from tsas_cli.support.strict_table import StrictTable
+from tsas_cli.support.strict_table import StrictTable, Texts
 from tsas_cli.sweeping.outcome import Row
 
 StageName = Literal["check", "calibrate", "simulate", "diagnose", "track"]
 STAGES: tuple[StageName, ...] = get_args(StageName)
 MOST_STEPS = 100_000
-
-
-def _listed(value: object) -> object:
-    return [value] if isinstance(value, str) else value
 
 
 class ValueRange(StrictTable):
@@ -48,14 +44,11 @@ class ValueRange(StrictTable):
         return [float(value) for value in space(self.first, self.last, self.steps)]
 
 
-def _form(value: object) -> str:
-    return "range" if isinstance(value, dict | ValueRange) else "list"
-
-
 Axis = Annotated[
     Annotated[tuple[Any, ...], Field(min_length=1), Tag("list")]
     | Annotated[ValueRange, Tag("range")],
-    Discriminator(_form),  # else an error is said of both forms
+    # Else an error is said of both forms.
+    Discriminator(lambda value: "range" if isinstance(value, dict | ValueRange) else "list"),
 ]
 
 
@@ -65,7 +58,7 @@ class SweepPlan(StrictTable):
     format: Literal[1] = 1
     kind: Literal["sweep"] = "sweep"
     stage: StageName
-    datasets: Annotated[tuple[str, ...], BeforeValidator(_listed)] = ()
+    datasets: Texts = ()
     each_run: bool = False
     options: Raw = Field(default_factory=dict)
     vary: dict[str, Axis] = Field(default_factory=dict)

@@ -158,15 +158,14 @@ def _named(task: Task) -> Row:
 def write_rows(path: Path, rows: Sequence[Row]) -> None:
     """Write rows as Parquet; a column of mixed types is text."""
     names = list(dict.fromkeys(name for row in rows for name in row))
-    columns = {name: _column([row.get(name) for row in rows]) for name in names}
+    columns = {}
+    for name in names:
+        values = [row.get(name) for row in rows]
+        try:
+            columns[name] = pa.array(values)
+        except (pa.ArrowInvalid, pa.ArrowTypeError):
+            columns[name] = pa.array([None if value is None else str(value) for value in values])
     pq.write_table(pa.table(columns), path, compression="zstd")
-
-
-def _column(values: list[Any]) -> pa.Array:
-    try:
-        return pa.array(values)
-    except (pa.ArrowInvalid, pa.ArrowTypeError):
-        return pa.array([None if value is None else str(value) for value in values])
 
 
 def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Table]:

@@ -6,7 +6,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -125,7 +125,6 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Sw
 
 
 def _matching(name: str, base: Path) -> Iterator[SweepSource]:
-    """Yield the datasets of a name or a pattern."""
     if not any(sign in name for sign in WILD) or (base / name).is_dir():
         yield _source(name, base)
         return
@@ -160,6 +159,4 @@ def _runs(source: SweepSource) -> Iterator[SweepSource]:
         runs = [str(run["id"]) for run in read_toml(source.folder / MANIFEST_FILE)["run"]]
     except (InputError, KeyError, TypeError):
         runs = []
-    yield from (SweepSource(source.name, source.folder, source.sha256, run) for run in runs)
-    if not runs:
-        yield source
+    yield from [replace(source, run=run) for run in runs] or [source]

@@ -61,7 +61,10 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
         elif name in options:
             kinds["options"][name] = _option(name, value, options[name])
         elif name in CONDITIONS and of_runs:
-            kinds["conditions"][name] = _condition(name, value)
+            kinds["conditions"][name] = number = _number(name, value)
+            parse(
+                Run, _ANY_RUN | {name: number}, "the plan"
+            )  # which refuses what a manifest may not
             if name in QUANTITIES:  # a calibrated model has a preload of each run
                 kinds["model"][name] = _quantity(name, value, name)
         elif name in QUANTITIES and "model" in options:
@@ -126,13 +129,6 @@ def _quantity(label: str, value: Any, name: str) -> float:
             where="the plan",
             expected=f"{quantity.lower:g} to {quantity.upper:g} {quantity.unit}",
         )
-    return number
-
-
-def _condition(name: str, value: Any) -> float:
-    """Return the value of a condition that is valid in a manifest."""
-    number = _number(name, value)
-    parse(Run, _ANY_RUN | {name: number}, "the plan")
     return number
 
 

@@ -1,8 +1,6 @@
 """The files that a stage writes into its folder, as its JSON names them."""
 
-from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.support.errors import InputError
@@ -40,13 +38,8 @@ def outputs_of(path: Path) -> list[str]:
         return []
     if not isinstance(content, dict) or not {"format", "stage"} <= content.keys():
         return []
-    runs = (f"runs/{run}.parquet" for run in _run_ids(content, _RUNS.get(path.name)))
-    return [path.name, *BESIDE[path.name], *runs]
-
-
-def _run_ids(content: Mapping[str, Any], key: str | None) -> Iterable[str]:
-    """Return the runs below a key: they are its keys, or each entry of its list names one."""
-    named = content.get(key) if key else None
+    named = content.get(_RUNS.get(path.name))  # runs are the keys, or a list's entries name them
     if isinstance(named, list):
         named = dict.fromkeys(str(one.get("run")) for one in named if isinstance(one, dict))
-    return named if isinstance(named, dict) else ()
+    runs = named if isinstance(named, dict) else ()
+    return [path.name, *BESIDE[path.name], *(f"runs/{run}.parquet" for run in runs)]

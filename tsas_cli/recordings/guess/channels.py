@@ -27,7 +27,9 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     # A torque of the motor is before a gear of unknown friction.
     tensions = [c for c in tensions if (c.end, c.quantity) != ("motor", "torque")]
     ends = assign(displacements, tensions)
-    found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
+    signed = signs(ends.assigned)
+    found = {n: _channel(n, c, ends, signed.get(n, (1, ""))) for n, c in ends.assigned.items()}
+    found |= _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
     found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
     found |= _unrecorded(found, [c for c in moving if c.words.is_reference])
     return [found[name] for name in NAMES if name in found]
@@ -75,14 +77,6 @@ def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
     return Proposed(
         name, entry, "open" if questions else "likely", tuple(column.reasons), questions, others
     )
-
-
-def _assigned(ends: Assignment) -> dict[str, Proposed]:
-    by_name = signs(ends.assigned)
-    return {
-        name: _channel(name, column, ends, by_name.get(name, (1, "")))
-        for name, column in ends.assigned.items()
-    }
 
 
 def _channel(name: str, column: FileColumn, ends: Assignment, sign: Sign) -> Proposed:
@@ -209,8 +203,7 @@ def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     found: dict[str, Sign] = {}
     for name in ("f_in_N", "f_out_N"):
         if name in assigned:
-            side = sign_of(assigned[name].values)
-            found[name] = _SIGNS[side]
+            found[name] = _SIGNS[sign_of(assigned[name].values)]
     if "x_in_mm" in assigned:
         found["x_in_mm"] = _drive(assigned, found)
     if "x_out_mm" in assigned:
@@ -239,8 +232,7 @@ def _drive(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sig
         if correlated < -_CLEAR:
             why = f"it falls as {assigned[name].shown} rises: one of the two has the wrong sign"
             return QUESTION, f"{why}; 1 or -1, so that it rises when the drive pulls"
-    forces = [n for n in ("f_in_N", "f_out_N") if n in assigned]
-    if forces:
+    if assigned.keys() & {"f_in_N", "f_out_N"}:
         return (
             QUESTION,
             "no tension clearly follows it; 1 or -1, so that it rises when the drive pulls",
@@ -259,10 +251,8 @@ def _load(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sign
             f"it does not follow {drive.shown}; 1 or -1, so that it rises when the drive pulls",
         )
     sign = found["x_in_mm"][0]
+    moves = "moves with" if correlated > 0.0 else "moves opposite to"
     if isinstance(sign, str):
         same = "the same as" if correlated > 0.0 else "the opposite of"
-        return QUESTION, f"{same} that of x_in_mm: it {_FOLLOWS[correlated > 0.0]} x_in_mm"
-    return (sign if correlated > 0.0 else -sign), f"it {_FOLLOWS[correlated > 0.0]} {drive.shown}"
-
-
-_FOLLOWS = {True: "moves with", False: "moves opposite to"}
+        return QUESTION, f"{same} that of x_in_mm: it {moves} x_in_mm"
+    return (sign if correlated > 0.0 else -sign), f"it {moves} {drive.shown}"

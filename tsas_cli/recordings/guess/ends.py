@@ -5,9 +5,9 @@ names and with the order in which the channels move. A channel is assigned if al
 assignments agree on its column.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import permutations
+from itertools import combinations, permutations, product
 
 from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.guess.looks import leads
@@ -23,6 +23,7 @@ _ORDER = (
 LENGTHS, FORCES = ("displacement", "angle"), ("force", "torque")
 _MOST = 5  # columns of one kind whose motion is compared
 _Candidate = Mapping[str, FileColumn | None]
+_Order = Mapping[tuple[int, int], int]  # of two columns by id: 1 if the first moves first, or −1, 0
 
 
 @dataclass(frozen=True)
@@ -46,11 +47,18 @@ def assign(displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]) 
     if max(len(displacements), len(tensions)) > _MOST:
         reason = "there are too many columns of one kind to order them by their motion"
         return Assignment({}, _every(displacements, tensions), reason, ())
-    motion = _Motion()
-    candidates = list(_candidates(displacements, tensions))
-    by_name = [one for one in candidates if _fits_names(one, (*displacements, *tensions))]
+    columns = (*displacements, *tensions)
+    motion: dict[tuple[int, int], int] = {}
+    for a, b in combinations(columns, 2):
+        order = leads(a.values, b.values)
+        motion |= {(id(a), id(b)): order, (id(b), id(a)): -order}
+    candidates = [
+        dict(zip((*_X, *_F), (*x, *f), strict=True))
+        for x, f in product(_pairs(displacements), _pairs(tensions))
+    ]
+    by_name = [one for one in candidates if _fits_names(one, columns)]
     consistent = [one for one in by_name if _fits_motion(one, motion)]
-    ahead = motion.pairs((*displacements, *tensions))
+    ahead = tuple((a, b) for a, b in permutations(columns, 2) if motion[id(a), id(b)] == 1)
     if not consistent:
         return _inconsistent(displacements, tensions, ahead, by_names=not by_name)
     assigned: dict[str, FileColumn] = {}
@@ -103,30 +111,6 @@ def _every(
     return {name: columns for name, columns in channels.items() if columns}
 
 
-class _Motion:
-    """Which of two columns moves first after a reversal, computed once per pair."""
-
-    def __init__(self) -> None:
-        self._found: dict[tuple[int, int], int] = {}
-
-    def __call__(self, a: FileColumn, b: FileColumn) -> int:
-        if (id(a), id(b)) not in self._found:
-            order = leads(a.values, b.values)
-            self._found |= {(id(a), id(b)): order, (id(b), id(a)): -order}
-        return self._found[id(a), id(b)]
-
-    def pairs(self, columns: Sequence[FileColumn]) -> tuple[tuple[FileColumn, FileColumn], ...]:
-        return tuple((a, b) for a, b in permutations(columns, 2) if self(a, b) == 1)
-
-
-def _candidates(
-    displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]
-) -> Iterator[_Candidate]:
-    for x_in, x_out in _pairs(displacements):
-        for f_in, f_out in _pairs(tensions):
-            yield dict(zip((*_X, *_F), (x_in, x_out, f_in, f_out), strict=True))
-
-
 def _pairs(columns: Sequence[FileColumn]) -> list[tuple[FileColumn | None, FileColumn | None]]:
     """Return every assignment of columns to two ends; a single column may be at either."""
     if not columns:
@@ -151,12 +135,12 @@ def _fits_names(candidate: _Candidate, columns: Sequence[FileColumn]) -> bool:
     return True
 
 
-def _fits_motion(candidate: _Candidate, motion: _Motion) -> bool:
+def _fits_motion(candidate: _Candidate, motion: _Order) -> bool:
     """Return whether no channel moves before one that is nearer to the drive."""
 
     def order(near: str, far: str) -> int:
         a, b = candidate[near], candidate[far]
-        return 0 if a is None or b is None else motion(a, b)
+        return 0 if a is None or b is None else motion[id(a), id(b)]
 
     if any(order(*pair) == -1 for pair in _ORDER):
         return False

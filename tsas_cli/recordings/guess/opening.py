@@ -44,17 +44,20 @@ def open_file(path: Path) -> Opened:
 
 
 def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, str]) -> Opened:
-    text = text_of(path, _options(required))
+    text = text_of(path, options_of(required))
     if text is not None:
         required |= dict(_encoding(text))
         required |= _preamble(path, required)
-    options = _options(required)
+    options = options_of(required)
     listed = names(path, options)
-    sources = {_source(listed, i): name for i, name in enumerate(listed)}
+    sources: dict[ColumnSource, str] = {  # by number where the name is empty or not unique
+        name if name.strip("? ") and listed.count(name) == 1 else number: name
+        for number, name in enumerate(listed, start=1)
+    }
     table, left_out = _all_or_each(path, options, list(sources))
     if table is None:
         required["resample"] = (True, "the channels have clocks of their own")
-        table, left_out = _all_or_each(path, _options(required), list(sources), each=True)
+        table, left_out = _all_or_each(path, options_of(required), list(sources), each=True)
     if table is None or not table.columns:
         why = "".join(f" ({reason})" for reason in list(left_out.values())[:1])
         raise InputError(f"holds no column of numbers{why}", where=path)
@@ -66,14 +69,9 @@ def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, s
     return Opened(path, required, found, found_names, left_out | short, asked)
 
 
-def _options(required: dict[str, tuple[Any, str]]) -> ReadOptions:
+def options_of(required: dict[str, tuple[Any, str]]) -> ReadOptions:
+    """Return the options of keys with values and reasons."""
     return ReadOptions.model_validate({key: value for key, (value, _) in required.items()})
-
-
-def _source(listed: tuple[str, ...], i: int) -> ColumnSource:
-    """Return the name of a column, or its number if the name is empty or not unique."""
-    name = listed[i]
-    return name if name.strip("? ") and listed.count(name) == 1 else i + 1
 
 
 def _encoding(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
@@ -81,16 +79,12 @@ def _encoding(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
         head = stream.read(1 << 16)
     if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
         yield "encoding", ("utf-16", "the file begins with the byte-order mark of UTF-16")
-    elif not _is_utf_8(head):
-        yield "encoding", ("cp1252", "the file is not UTF-8; cp1252 is usual on Windows")
-
-
-def _is_utf_8(head: bytes) -> bool:
+        return
     try:
         head.decode("utf-8")
     except UnicodeDecodeError as error:
-        return error.start > len(head) - 4  # a character that is cut at the end of the head
-    return True
+        if error.start <= len(head) - 4:  # else a character is cut at the end of the head
+            yield "encoding", ("cp1252", "the file is not UTF-8; cp1252 is usual on Windows")
 
 
 def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
@@ -109,7 +103,7 @@ def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
 
 def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
     """Return the lines to skip above a text table, if columns are without names with them."""
-    best, skipped, options = _named(path, required), 0, _options(required)
+    best, skipped, options = _named(path, required), 0, options_of(required)
     numbers = list(range(1, len(names(path, options)) + 1)) if best == 0.0 else []
     if best > 0.5 or (numbers and _tried(read, path, options, numbers) is not None):
         return {}  # a table without names is one, too
@@ -126,7 +120,7 @@ def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
 
     A title with delimiters behind it, "Bench 42;;;", names few columns.
     """
-    found = _tried(names, path, _options(required)) or ()
+    found = _tried(names, path, options_of(required)) or ()
     return sum(map(bool, found)) / len(found) if len(found) > 1 else -1.0
 
 

@@ -12,10 +12,10 @@ from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock, repeats
 from tsas_cli.recordings.guess.columns import FileColumn, Proposed, columns_of, with_trusted_names
 from tsas_cli.recordings.guess.looks import correlation
-from tsas_cli.recordings.guess.opening import Opened, open_file
+from tsas_cli.recordings.guess.opening import Opened, open_file, options_of
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names, stem
-from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
+from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError
 
 _SPRING = 0.95  # least correlation of tension and displacement at the load of a spring
@@ -58,10 +58,7 @@ class MapProposal:
 
 
 def propose(files: Sequence[Path]) -> MapProposal:
-    """Return the map proposed for files.
-
-    InputError: none of them can be read.
-    """
+    """Return the map proposed for files; InputError: none of them can be read."""
     opened, different = _first_that_opens(files)
     matching: list[Path] = []
     for path in files:
@@ -106,16 +103,12 @@ def _first_that_opens(files: Sequence[Path]) -> tuple[Opened, dict[Path, str]]:
 
 def _difference(path: Path, opened: Opened) -> str:
     """Return how a file differs from the one that was opened; empty if its columns match."""
-    options = ReadOptions.model_validate({key: value for key, (value, _) in opened.read.items()})
+    options = options_of(opened.read)
     try:
-        found = names(path, options)
+        same = names(path, options) == names(opened.path, options)
     except InputError as error:
         return error.what
-    return (
-        ""
-        if found == names(opened.path, options)
-        else "its columns have other names, or another order"
-    )
+    return "" if same else "its columns have other names, or another order"
 
 
 def _repeated(columns: Sequence[FileColumn], time: Proposed) -> dict[str, tuple[Any, str]]:

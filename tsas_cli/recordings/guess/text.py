@@ -14,7 +14,6 @@ from tsas_cli.recordings.guess.columns import Proposed
 from tsas_cli.recordings.guess.proposal import MapProposal
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.manifest import RigSheet
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
 
 _WIDTH = 96
@@ -181,11 +180,8 @@ def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
 
 
 def content(proposal: MapProposal) -> dict[str, object]:
-    """Return the proposal with the text of its map (docs/ingest.md, format 1)."""
+    """Return the proposal with the text of its map, as JSON holds it (docs/ingest.md)."""
     return {
-        "format": 1,
-        "stage": "guess",
-        "version": __version__,
         "looked_at": str(proposal.looked_at.path),
         "unlike": {str(path): reason for path, reason in proposal.different.items()},
         "columns": {

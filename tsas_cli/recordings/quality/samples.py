@@ -175,12 +175,7 @@ def _deviating(time_s: Floats, values: Floats, least: float, span: float) -> Mas
 def noise_spectrum(time_s: Floats, values: Floats, segment_s: float) -> NoiseSpectrum | None:
     """Return the spectrum of the noise of evenly sampled values; None for too few segments.
 
-    Parameters
-    ----------
-    time_s, values
-        Shape (n,); without gaps.
-    segment_s
-        Length of a segment [s].
+    Times and values have the shape (n,), without gaps; `segment_s` is the length of a segment [s].
     """
     step = float(time_s[-1] - time_s[0]) / (time_s.size - 1)
     rows = max(round(segment_s / step), _FEWEST_ROWS)

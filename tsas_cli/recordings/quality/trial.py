@@ -227,7 +227,6 @@ class RunSignals:
 
 
 def _with_enough_values(channels: dict[str, Floats]) -> dict[str, Floats]:
-    """Return the channels that hold at least `_FEWEST` values."""
     return {n: v for n, v in channels.items() if np.isfinite(v).sum() >= _FEWEST}
 
 

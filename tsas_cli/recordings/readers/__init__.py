@@ -55,12 +55,10 @@ _CONVERTED = (  # the same, of files that are converted to one of the above
     (_SHEETS, "spreadsheet", "a spreadsheet"),
 )
 READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
-_CONVERTERS = {
-    suffix: (module, kind) for suffixes, module, kind in _CONVERTED for suffix in suffixes
-}
+_ALL = READERS | {s: (module, kind) for suffixes, module, kind in _CONVERTED for s in suffixes}
 _IN_PARTS = ("delimited", "parquet")  # they have `batches` and `names`, the others `offered`
 _WITH_TABLES = ("json_table", "matlab", "spreadsheet")
-SUFFIXES = (*READERS, *_CONVERTERS)
+SUFFIXES = tuple(_ALL)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -123,7 +121,7 @@ def _suffix(path: Path) -> str:
 
 def _call(function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    module, kind = (READERS | _CONVERTERS)[_suffix(path)]
+    module, kind = _ALL[_suffix(path)]
     name = f"{__name__}.{module}"
     if module not in _IN_PARTS and function in ("names", "read"):
         name, rest = offered.__name__, (name, kind or "a table", *rest)
@@ -149,7 +147,7 @@ def _checked(
             _check(file)
             file = converted.converted(file, options, partial(_call, "convert"))
         _check(file)
-        yield (READERS | _CONVERTERS)[_suffix(file)][0], file
+        yield _ALL[_suffix(file)][0], file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))
@@ -166,22 +164,18 @@ def _check(file: Path) -> None:
 
 
 def _unknown(path: Path) -> InputError:
+    """Return the error, with the command that makes a readable file, or which formats to use."""
     packed = converted.is_packed(path)
     suffix = (path.with_suffix("") if packed else path).suffix or "(no suffix)"
-    return InputError(
-        f"unknown file format {suffix}{' inside' if packed else ''}",
-        where=path,
-        expected=f"one of {', '.join(SUFFIXES)}",
-        remedy=_way_to_convert(path),
-    )
-
-
-def _way_to_convert(path: Path) -> str:
-    """Return the sentence with the command that makes a readable file, or which formats to use."""
-    suffixes = [suffix.lower() for suffix in path.suffixes]
+    suffixes = [each.lower() for each in path.suffixes]
     last = ".tar" if ".tar" in suffixes else suffixes[-1] if suffixes else ""
     made = path.with_name(path.name.split(".")[0] or "data")
     ends = {"folder": "", "parquet": ".parquet", "hdf5": ".h5", "text": ".txt"}
     names = {key: shlex.quote(f"{made}{end}") for key, end in ends.items()}
     way = _WAYS.get(_SAME_WAY.get(last, last), _EXPORTED)
-    return way.format(file=shlex.quote(str(path)), **names)
+    return InputError(
+        f"unknown file format {suffix}{' inside' if packed else ''}",
+        where=path,
+        expected=f"one of {', '.join(SUFFIXES)}",
+        remedy=way.format(file=shlex.quote(str(path)), **names),
+    )

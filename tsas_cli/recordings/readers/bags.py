@@ -204,18 +204,14 @@ def _of_mcap(path: Path) -> _Topics:
         yield topics, {"expected": "messages of ROS 1 or 2, or in JSON"}
 
 
-def _decode(channel: Any, schema: Any) -> Decode:
-    encoding = channel.message_encoding
-    if encoding == "json":
-        return json.loads
-    if encoding not in ("cdr", "ros1") or schema is None:
-        raise UnknownTypeError(f"in {encoding[:40]}")
-    text = schema.data.decode() if schema.encoding in ("ros2msg", "ros1msg") else ""
-    return decoder(schema.name, text, ros1=encoding == "ros1")
-
-
 def _mcap(file: Any, channel: Any, schema: Any) -> Iterator[Message]:
-    decode = _decode(channel, schema)
+    encoding = channel.message_encoding
+    decode: Decode = json.loads
+    if encoding != "json":
+        if encoding not in ("cdr", "ros1") or schema is None:
+            raise UnknownTypeError(f"in {encoding[:40]}")
+        text = schema.data.decode() if schema.encoding in ("ros2msg", "ros1msg") else ""
+        decode = decoder(schema.name, text, ros1=encoding == "ros1")
     for _, found, message in file.iter_messages(topics=[channel.topic]):
         if found.id == channel.id:
             yield message.publish_time, decode(message.data)

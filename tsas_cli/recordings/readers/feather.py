@@ -30,10 +30,8 @@ def _values(file: pa.ipc.RecordBatchFileReader, number: int) -> npt.NDArray[Any]
     batches = [file.get_batch(i) for i in range(file.num_record_batches)]
     for batch in batches:
         batch.validate(full=True)
-    values: npt.NDArray[Any] = to_numpy(
-        pa.chunked_array([batch.column(number) for batch in batches], file.schema.types[number])
-    )
-    return values
+    columns = [batch.column(number) for batch in batches]
+    return to_numpy(pa.chunked_array(columns, file.schema.types[number]))
 
 
 def to_numpy(column: pa.ChunkedArray) -> npt.NDArray[Any]:

@@ -44,8 +44,8 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
             return item[()]
 
         file.visititems(visit)
-        said = {k: v for k, v in file.attrs.items() if isinstance(v, str | np.number)}
-        yield Offered(columns, tuple(f"{key} = {value}" for key, value in said.items()))
+        said = (f"{k} = {v}" for k, v in file.attrs.items() if isinstance(v, str | np.number))
+        yield Offered(columns, tuple(said))
 
 
 def _unit(item: Any) -> str:

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path, PurePath
 
+import numpy as np
 from pydantic import Field
 
 from tsas_cli.recordings import readers
@@ -35,8 +36,11 @@ def joined_by(path: Path) -> list[Path]:
     """Return the files that a list joins, none for another file; InputError: the list is wrong."""
     if path.suffix.lower() != SUFFIX:
         return []
-    listed = (parse(JoinedFile, one, f"{path}, {name}") for name, one in read_toml(path).items())
-    return [path.parent / part.file for part in listed]
+    return [path.parent / part.file for part in _listed(path).values()]
+
+
+def _listed(path: Path) -> dict[str, JoinedFile]:
+    return {n: parse(JoinedFile, one, f"{path}, {n}") for n, one in read_toml(path).items()}
 
 
 @contextmanager
@@ -46,10 +50,8 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     InputError: the list or a file is wrong, a file is not in the list's folder, or its clock states
     no unit or counts from its own first date and the list no offset.
     """
-    parts = {
-        name: parse(JoinedFile, one, f"{path}, {name}") for name, one in read_toml(path).items()
-    }
-    yield Offered([column for name in parts for column in _columns(path, name, parts[name])])
+    parts = _listed(path).items()
+    yield Offered([column for name, part in parts for column in _columns(path, name, part)])
 
 
 def _columns(path: Path, name: str, part: JoinedFile) -> Iterator[Column]:
@@ -70,12 +72,8 @@ def _columns(path: Path, name: str, part: JoinedFile) -> Iterator[Column]:
             table = readers.read(file, part.read, [number])
         except InputError:
             continue
-        values, unit = partial(_loaded, table.columns[number]), table.units.get(number, "")
-        yield Column(f"{name}.{column or number}", values, unit, partial(_loaded, times))
-
-
-def _loaded(values: Floats) -> Floats:
-    return values
+        values, unit = partial(np.asarray, table.columns[number]), table.units.get(number, "")
+        yield Column(f"{name}.{column or number}", values, unit, partial(np.asarray, times))
 
 
 def _seconds(table: ColumnTable, part: JoinedFile, where: str) -> Floats:

@@ -146,10 +146,7 @@ def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
 
 
 def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
-    """Return the struct that holds X and Y with data, or None.
-
-    InputError: there are several.
-    """
+    """Return the struct that holds X and Y with data, or None; InputError: there are several."""
     if _is_capture(content):
         return content
     found = captures(content)

@@ -44,7 +44,10 @@ class _Reader:
     def _value(self, item: Any, deep: int) -> Any:
         if isinstance(item, self.h5py.Group):
             members = self.members(item, deep=deep)
-            return _records(members) if _is_struct_array(item) else members
+            if not _is_struct_array(item):
+                return members
+            each = zip(*members.values(), strict=True)
+            return [dict(zip(members, values, strict=True)) for values in each]
         if not isinstance(item, self.h5py.Dataset):
             return None  # a named type is no variable
         if item.is_virtual or item.external:
@@ -93,8 +96,3 @@ def _is_struct_array(group: Any) -> bool:
     return bool(members) and all(
         not hasattr(m, "keys") and m.dtype.kind == "O" and not _class(m) for m in members
     )
-
-
-def _records(members: dict[str, list[Any]]) -> list[Raw]:
-    names = list(members)
-    return [dict(zip(names, values, strict=True)) for values in zip(*members.values(), strict=True)]

@@ -1,7 +1,6 @@
 """What most readers give: the columns that a file offers, each loaded when it is requested."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, is_dataclass
 from functools import partial
 from importlib import import_module
@@ -57,8 +56,9 @@ def names(path: Path, module: str, kind: str, options: ReadOptions) -> list[str]
 
     InputError: the file is damaged, or the package for its format is not installed.
     """
-    with _opened(path, module, kind, options) as offered:
-        return offered.names
+    with foreign(path, kind), import_module(module).offered(path, options) as offered:
+        found: list[str] = offered.names
+        return found
 
 
 def read(
@@ -71,7 +71,7 @@ def read(
     InputError: as from `names`; or a column is missing or not numeric, the columns hold more than a
     file of this size can, their clocks differ and `resample` is not set, or a clock is no time.
     """
-    with _opened(path, module, kind, options) as offered:
+    with foreign(path, kind), import_module(module).offered(path, options) as offered:
         at = resolve(wanted, offered.names, path)
         expanded = Expanded.of(path)
         columns, times = dict[ColumnSource, Floats](), dict[ColumnSource, Floats]()
@@ -139,12 +139,6 @@ def _numbers(values: Any, source: ColumnSource, path: Path) -> tuple[Floats, boo
     return floats(values, source, path), False
 
 
-@contextmanager
-def _opened(path: Path, module: str, kind: str, options: ReadOptions) -> Iterator[Offered]:
-    with foreign(path, kind), import_module(module).offered(path, options) as offered:
-        yield offered
-
-
 def flat(record: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the values of a record by their paths: `pose.position.x`, `effort[0]`."""
     for key, value in record.items():
@@ -173,12 +167,7 @@ def columns_in(
     A vector is a column, the field of records `name.field`, the j-th column of a matrix
     `name(:,j)`; samples lie along its longer side. Other arrays hold none.
 
-    Parameters
-    ----------
-    array
-        With `shape`, `ndim` and `dtype`, such as one in a file.
-    load
-        Loads the values of `array`; without it they are there.
+    `array` has `shape`, `ndim` and `dtype`; `load` loads its values, which are there without it.
     """
     whole = partial(load, array) if load else partial(np.asarray, array)
     if array.ndim not in {1, 2} or (array.size < 2 and array.ndim == 2):

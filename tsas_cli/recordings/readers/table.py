@@ -5,30 +5,25 @@ from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import Field
 
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.strict_table import StrictTable, Texts
 
 ColumnSource = str | int  # a column's name, or its number counted from 1
 
 BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of its run
 
 
-def _as_list(value: object) -> object:
-    return [value] if isinstance(value, str) else value
-
-
-class ReadOptions(BaseModel):
+class ReadOptions(StrictTable):
     """The table `[read]` of a map; every key is optional, and detected by default."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     files: str = "*"  # of a folder, the files whose names match
     extra: tuple[ColumnSource, ...] = ()  # source columns that are kept unchanged
@@ -38,7 +33,7 @@ class ReadOptions(BaseModel):
     table: str | None = None  # the JSON key or the MATLAB variable that holds the table
     encoding: str = "utf-8-sig"
     skip_lines: int = Field(default=0, ge=0, le=1_000_000_000)
-    comment: Annotated[tuple[str, ...], BeforeValidator(_as_list)] = ("%", "#")
+    comment: Texts = ("%", "#")
     delimiter: str | None = Field(default=None, min_length=1, max_length=1)
     decimal: Literal[".", ","] | None = None
     units_row: bool | None = None
@@ -174,10 +169,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def optional(module: str, *, extra: str) -> ModuleType:
-    """Import a package that comes with an extra of tsas.
-
-    InputError: it is not installed.
-    """
+    """Import a package that comes with an extra of tsas; InputError: it is not installed."""
     try:
         return import_module(module)
     except ImportError as error:

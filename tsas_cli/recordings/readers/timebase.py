@@ -66,15 +66,10 @@ def on_one_clock(
 ) -> dict[ColumnSource, Floats]:
     """Return the channels' values on a common clock, and that clock.
 
-    Parameters
-    ----------
-    series
-        Times and values by source, each of shape (n,) with its own n.
-    clock_sources
-        The sources of the clock in the map: `time`, its number, both or none.
-    resample
-        Interpolate different times linearly onto those of the channel with the most samples,
-        within the interval that all channels cover.
+    `series` holds times and values by source, each of shape (n,) with its own n; `clock_sources`
+    are those of the clock in the map: `time`, its number, both or none. With `resample`, different
+    times are interpolated linearly onto those of the channel with the most samples, within the
+    interval that all channels cover.
 
     InputError: there is no channel; the times differ and `resample` is not set, do not increase, or
     never overlap.

@@ -20,35 +20,22 @@ def time_order(trial: RunSignals) -> Remarks:
     time is wrong by orders of magnitude. Every other stage refuses such a run.
     """
     step = np.diff(trial.time_s)
-    rows = np.flatnonzero(step <= 0) + 1
-    if rows.size == 0:
-        yield from _implausible_steps(trial, (step < SHORTEST_STEP_S) | (step > LONGEST_STEP_S))
-        return
-    row = int(rows[0])
-    before, after = trial.time_s[row - 1], trial.time_s[row]
-    yield Remark(
-        "error",
-        f"time does not increase at {rows.size} of {trial.time_s.size} rows, first at row "
-        f"{trial.first_row + row} ({before:.6g} s, then {after:.6g} s)",
-        "correct the clock or the order of the rows at the source, then ingest again",
-        "time_s",
-        float(before),
-    )
-
-
-def _implausible_steps(trial: RunSignals, implausible: Mask) -> Iterator[Remark]:
-    if implausible.any():
-        row = int(implausible.argmax()) + 1
-        before = float(trial.time_s[row - 1])
+    wrong, what = step <= 0, "does not increase"
+    remedy = "correct the clock or the order of the rows at the source"
+    if not wrong.any():
+        wrong = (step < SHORTEST_STEP_S) | (step > LONGEST_STEP_S)
+        what = f"increases by less than {SHORTEST_STEP_S:g} s or more than {LONGEST_STEP_S:g} s"
+        remedy = "check the unit of the time"
+    if wrong.any():
+        row = int(wrong.argmax()) + 1
+        before, after = trial.time_s[row - 1], trial.time_s[row]
         yield Remark(
             "error",
-            f"time increases by less than {SHORTEST_STEP_S:g} s or more than {LONGEST_STEP_S:g} s "
-            f"at {int(implausible.sum())} of {implausible.size + 1} rows, first at row "
-            f"{trial.first_row + row} "
-            f"({before:.6g} s, then {trial.time_s[row]:.6g} s)",
-            "check the unit of the time, then ingest again",
+            f"time {what} at {int(wrong.sum())} of {trial.time_s.size} rows, first at row "
+            f"{trial.first_row + row} ({before:.6g} s, then {after:.6g} s)",
+            f"{remedy}, then ingest again",
             "time_s",
-            before,
+            float(before),
         )
 
 

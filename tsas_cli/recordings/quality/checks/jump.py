@@ -29,11 +29,12 @@ def jump(trial: RunSignals) -> Remarks:
             yield CannotTell("no other channel shows whether the tendon moved")
             continue
         at = int(np.argmax(channels[name]))
-        size, elsewhere = channels[name][at], _elsewhere(channels[name], at)
+        beside = slice(max(at - _BESIDE, 0), at + _BESIDE + 1)
+        size, elsewhere = channels[name][at], _elsewhere(channels[name], beside)
         sizes = trial.sizes[name]
         least = max(_FAR * elsewhere, _NOISE * sizes.noise, _STEPS * sizes.step)
         others = [steps for other, steps in channels.items() if other != name]
-        alone = all(_near(steps, at) <= _QUIET * _elsewhere(steps, at) for steps in others)
+        alone = all(steps[beside].max() <= _QUIET * _elsewhere(steps, beside) for steps in others)
         if size > least and alone:
             before, after = trial.channels[name][at : at + 2]
             yield Remark(
@@ -46,12 +47,8 @@ def jump(trial: RunSignals) -> Remarks:
             )
 
 
-def _near(steps: Floats, at: int) -> float:
-    return float(steps[max(at - _BESIDE, 0) : at + _BESIDE + 1].max())
-
-
-def _elsewhere(steps: Floats, at: int) -> float:
+def _elsewhere(steps: Floats, beside: slice) -> float:
     """Return the largest change, but for those beside a row."""
     rest = steps.copy()
-    rest[max(at - _BESIDE, 0) : at + _BESIDE + 1] = 0.0
+    rest[beside] = 0.0
     return float(rest.max(initial=0.0))

@@ -224,7 +224,10 @@ def delay(trial: RunSignals) -> Remarks:
     if delays.size < 2:
         yield CannotTell("fewer than two cycles of changing speed with a load like a spring")
         return
-    mean, half = float(delays.mean()), _half_interval(delays)
+    from scipy.special import stdtrit
+
+    mean, quantile = float(delays.mean()), float(stdtrit(delays.size - 1, 0.975))
+    half = quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)  # each cycle is one
     if abs(mean) - half > _smallest(trial):
         yield Remark(
             "warning",
@@ -289,11 +292,3 @@ def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
     if np.var(y - terms @ coefficients) > _SPRING * np.var(y):
         return math.nan
     return float(-coefficients[4] / coefficients[1])
-
-
-def _half_interval(delays: Floats) -> float:
-    """Return half the 95 % interval of the mean, each cycle one observation."""
-    from scipy.special import stdtrit
-
-    quantile = float(stdtrit(delays.size - 1, 0.975))
-    return quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)

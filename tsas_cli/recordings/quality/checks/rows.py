@@ -8,10 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
-from tsas_cli.recordings.quality.samples import (
-    alternates,
-    smallest_change,
-)
+from tsas_cli.recordings.quality.samples import alternates, smallest_change
 from tsas_cli.recordings.quality.trial import GAP, RunSignals
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.wording import count_of
@@ -197,22 +194,19 @@ def repeated_rows(trial: RunSignals) -> Remarks:
 def _chances(trial: RunSignals, fresh: Mask) -> Floats:
     """Return the probability that a row equals the preceding one, for each block of fresh rows.
 
-    It is the largest of a block and its two neighbours, for blocks at the edge of a rest.
+    It is the largest of a block and its two neighbours, for blocks at the edge of a rest. A channel
+    whose noise is below its smallest change repeats for certain.
     """
     chance = np.ones(-(-int(fresh.sum()) // _BLOCK))
-    for values in trial.channels.values():
-        chance *= _chances_of(values[fresh], chance.size)
+    for values in (channel[fresh] for channel in trial.channels.values()):
+        smallest = smallest_change(values)
+        third = np.zeros(chance.size * _BLOCK)
+        third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(np.diff(values, 3)))
+        noise = np.median(third.reshape(-1, _BLOCK), axis=1) / _MEDIAN_OF_THIRD
+        repeats = smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300)
+        chance *= np.where(noise > smallest, repeats, 1.0)
     padded = np.pad(chance, 1, mode="edge")
     return np.maximum(chance, np.maximum(padded[:-2], padded[2:]))
-
-
-def _chances_of(values: Floats, blocks: int) -> Floats:
-    """Return the probabilities of one channel; 1 where its noise is below its smallest change."""
-    smallest = smallest_change(values)
-    third = np.zeros(blocks * _BLOCK)
-    third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(np.diff(values, 3)))
-    noise = np.median(third.reshape(blocks, _BLOCK), axis=1) / _MEDIAN_OF_THIRD
-    return np.where(noise > smallest, smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300), 1.0)
 
 
 _FEWEST_OF_A_BUFFER = 4  # of a block

@@ -241,13 +241,8 @@ class Reader:
 
 def _plausible(piece: Piece) -> Piece:
     """Return a piece with its implausible values as NaN."""
-    return Piece(
-        piece.start,
-        {
-            name: np.where(np.abs(values) <= largest(name), values, np.nan)
-            for name, values in piece.columns.items()
-        },
-    )
+    columns = piece.columns.items()
+    return Piece(piece.start, {n: np.where(np.abs(v) <= largest(n), v, np.nan) for n, v in columns})
 
 
 MOST_SAMPLES = 1 << 16  # compared at once

@@ -35,10 +35,6 @@ class Shift:
     seconds: float
     spline: bool
 
-    def is_near(self, other: "Shift", nearly_s: float) -> bool:
-        """Return whether two shifts are of one kind, and one within a tolerance."""
-        return abs(self.seconds - other.seconds) < nearly_s and self.spline == other.spline
-
 
 class Lookup:
     """Index of a source's samples, for the search of stretches."""

@@ -109,13 +109,10 @@ def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int])
 
 def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
     """Return each common stretch of two runs once: as that of the later run, if found in both."""
-
-    def earlier(copy: Copy) -> bool:
-        return order[copy.run.id] < order[copy.other.id]
-
-    later = [copy for copy in parts if not earlier(copy)]
-    pairs = {(copy.run.id, copy.other.id) for copy in later}
-    return later + [c for c in parts if earlier(c) and (c.other.id, c.run.id) not in pairs]
+    later = [copy for copy in parts if order[copy.run.id] >= order[copy.other.id]]
+    earlier = [copy for copy in parts if order[copy.run.id] < order[copy.other.id]]
+    pairs = {(copy.other.id, copy.run.id) for copy in later}
+    return later + [copy for copy in earlier if (copy.run.id, copy.other.id) not in pairs]
 
 
 def _in_source(
@@ -127,7 +124,9 @@ def _in_source(
     for other, shift in _places(reader, source, groups, but):
         others[other.run.id] = other
         seen = places.setdefault(other.run.id, Counter())
-        same = (s for s in seen if s.is_near(shift, SHIFT_TOLERANCE * source.interval_s))
+        near_s = SHIFT_TOLERANCE * source.interval_s
+        alike = (s for s in seen if s.spline == shift.spline)
+        same = (s for s in alike if abs(s.seconds - shift.seconds) < near_s)
         seen[next(same, shift)] += 1
     for run, seen in places.items():
         spans: list[RowSpan] = []
