@@ -68,7 +68,12 @@ def follow(
     stribeck = rig.effects.stribeck_friction
     # The inverse crosses a dead band at once: only the smoothed path has a speed.
     by_drive = rig._replace(effects=rig.effects._replace(stribeck_friction=StribeckFriction()))
-    for _ in range(ITERATIONS if _depends_on_path(rig.effects) else 1):
+    depends_on_path = (
+        rig.effects.position_dependent_friction.slope_per_mm != 0.0
+        or stribeck.excess != 0.0
+        or rig.effects.viscous_friction.coefficient_N_s_per_mm != 0.0
+    )
+    for _ in range(ITERATIONS if depends_on_path else 1):
         losses = losses_over(np.maximum(time_s, 0.0), end, speed, 0.0, rig)
         if stribeck.excess != 0.0:
             losses[[PULLED, RELEASED]] *= [stribeck_factor(v, stribeck) for v in speed]
@@ -91,8 +96,7 @@ def follow(
 def geared_at(end: Floats, effects: Effects) -> Floats:
     """Return the gear's output for positions of the tendon's end, with play, from x_in = 0."""
     direction = last_direction(np.concatenate(([0.0], end)))[1:]
-    geared: Floats = end + 0.5 * effects.backlash.play_mm * direction
-    return geared
+    return end + 0.5 * effects.backlash.play_mm * direction
 
 
 def drive_at(geared: Floats, ripple: Wave, step_s: float) -> Floats:
@@ -125,8 +129,10 @@ def unrippled(geared: Floats, ripple: Wave) -> Floats:
 def smoothed(x: Floats, width: int, step_s: float) -> Floats:
     """Return smoothed x and its first three derivatives, shape (4, m − 4 width)."""
     levels = [x]
-    for _ in range(MEANS):
-        levels.append(_mean(levels[-1], width))
+    for _ in range(MEANS):  # trapezoidal means over each `width` steps
+        last = levels[-1]
+        total = np.concatenate(([0.0], np.cumsum(0.5 * (last[1:] + last[:-1]))))
+        levels.append((total[width:] - total[:-width]) / width)
     rows = []
     for order in range(MEANS):
         rate = levels[MEANS - order]
@@ -134,18 +140,3 @@ def smoothed(x: Floats, width: int, step_s: float) -> Floats:
             rate = (rate[width:] - rate[:-width]) / (width * step_s)
         rows.append(rate)
     return np.vstack(rows)
-
-
-def _mean(x: Floats, width: int) -> Floats:
-    """Return the mean over each `width` steps (trapezoidal), shape (n − width,)."""
-    total = np.concatenate(([0.0], np.cumsum(0.5 * (x[1:] + x[:-1]))))
-    mean: Floats = (total[width:] - total[:-width]) / width
-    return mean
-
-
-def _depends_on_path(effects: Effects) -> bool:
-    return (
-        effects.position_dependent_friction.slope_per_mm != 0.0
-        or effects.stribeck_friction.excess != 0.0
-        or effects.viscous_friction.coefficient_N_s_per_mm != 0.0
-    )

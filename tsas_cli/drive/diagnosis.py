@@ -67,6 +67,12 @@ def diagnose_drive(
     attainable = max(floor, after * math.sqrt(1.0 - could))
     gained, low, high = _gain_percent(search, nominal, explained)
     verdict = _verdict(search, causes, left, share)
+    leaves_much = left > MOST_LEFT or (
+        left > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT
+    )
+    how = "Stretches are predicted by a fit to the rest"
+    if search.folds.by_run:
+        how = "Each run is predicted by a fit to the others"
     found = DriveDiagnosis(
         verdict=verdict,
         reason="",
@@ -84,27 +90,19 @@ def diagnose_drive(
             )
         },
         remainder=RemainingResidual(
-            unexplained=verdict == "unexplained" or (bool(causes) and _leaves_much(left, share)),
+            unexplained=verdict == "unexplained" or (bool(causes) and leaves_much),
             depends_on=depends if left > 1.0 + EXCESS_OF_COMPLETE_MODEL else (),
             share_percent=100.0 * share if causes else 100.0,
             mean_square=left,
         ),
-        evidence=_evidence(search),
+        evidence=DriveEvidence(
+            held_out="runs" if search.folds.by_run else "stretches",
+            blocks=search.folds.blocks,
+            sentence=f"{how}; {search.folds.blocks} blocks longer than the error's memory count.",
+        ),
     )
     said = {"reason": reason_of(found, start, left), "next_experiment": next_run(found)}
     return nominal, found.model_copy(update=said)
-
-
-def _evidence(search: DriveSearch) -> DriveEvidence:
-    folds = search.folds
-    how = "Each run is predicted by a fit to the others"
-    if not folds.by_run:
-        how = "Stretches are predicted by a fit to the rest"
-    return DriveEvidence(
-        held_out="runs" if folds.by_run else "stretches",
-        blocks=folds.blocks,
-        sentence=f"{how}; {folds.blocks} blocks longer than the error's memory count.",
-    )
 
 
 def _nominal(search: DriveSearch, final: Terms) -> Terms:
@@ -126,13 +124,6 @@ def _verdict(
     if share > UNEXPLAINED_SHARE:
         return "unexplained"
     return "ambiguous" if any(cause.rivals for cause in causes) else "named"
-
-
-def _leaves_much(mean_square: float, share: float) -> bool:
-    """Return whether named causes leave a residual that needs a further explanation."""
-    return mean_square > MOST_LEFT or (
-        mean_square > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT
-    )
 
 
 def _cause(

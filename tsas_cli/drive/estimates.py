@@ -18,7 +18,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.model import check_wrap
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
-from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, RigSheet
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest
 from tsas_cli.support.arrays import Indices
 from tsas_cli.support.errors import InputError
 
@@ -65,9 +65,13 @@ def drive_sheet(manifest: Manifest) -> DataSheet:
     InputError: what follows from it is no property of a drive.
     """
     rig = manifest.rig
-    sheet = DataSheet(
-        rig.turntable_radius_mm, rig.gear_ratio, rig.inertia_N_mm_s2, _pull(rig, manifest)
-    )
+    kL, mu = rig.load_stiffness_N_per_mm, rig.friction_coefficient
+    bend, *others = {run.total_bend_rad for run in manifest.run}
+    pull = None
+    if kL is not None and mu is not None and bend is not None and not others:
+        check_wrap(mu, bend, f"{MANIFEST_FILE}, rig")
+        pull = kL * math.exp(mu * bend)
+    sheet = DataSheet(rig.turntable_radius_mm, rig.gear_ratio, rig.inertia_N_mm_s2, pull)
     stated, (low, high) = sheet.stated_frequency, PLAUSIBLE_HZ
     if stated is not None and not low <= stated <= high:
         raise InputError(
@@ -78,17 +82,6 @@ def drive_sheet(manifest: Manifest) -> DataSheet:
             remedy="check their units",
         )
     return sheet
-
-
-def _pull(rig: RigSheet, manifest: Manifest) -> float | None:
-    bends = [run.total_bend_rad for run in manifest.run]
-    bend = bends[0]
-    if rig.load_stiffness_N_per_mm is None or rig.friction_coefficient is None or bend is None:
-        return None
-    if any(b != bend for b in bends):
-        return None
-    check_wrap(rig.friction_coefficient, bend, f"{MANIFEST_FILE}, rig")
-    return rig.load_stiffness_N_per_mm * math.exp(rig.friction_coefficient * bend)
 
 
 def estimates_of(
@@ -164,7 +157,6 @@ def _from(
 
 
 def _slope(law: Callable[[DriveValues], float], trial: DriveTrial, j: int) -> float:
-    """Return the slope of a law over a scaled unknown."""
     q = QUANTITIES[trial.unknowns[j].name]
     at = float(trial.solution.values[j])
     ends = [

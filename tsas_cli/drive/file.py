@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Literal
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict
+from pydantic import Field
 
 from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range
+from tsas_cli.support.strict_table import StrictTable
 
 RANGES = {
     "gain_mm_per_s_rpm": Range(1e-9, 1e6, "mm/(s rpm)"),
@@ -66,20 +67,16 @@ class IdentifiedDrive:
     gear_ratio: float | None = None
 
 
-class _Structure(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
+class _Structure(StrictTable):
     name: str
     hold: Literal["zero", "first"] = "first"
 
 
-class _DriveTables(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
+class _DriveTables(StrictTable):
     format: Literal[1]
     kind: Literal["drive"]
     version: str = ""
-    dataset: dict[str, object] = {}
+    dataset: dict[str, object] = Field(default_factory=dict)
     structure: _Structure
     parameters: dict[str, StoredValue]
 
@@ -100,15 +97,17 @@ def write_drive(
         "dataset": dict(dataset),
         "structure": dict(structure),
         "parameters": {
-            name: {k: v for k, v in asdict(e).items() if k not in ("name", "run") and _writable(v)}
+            name: {
+                key: value
+                for key, value in asdict(e).items()
+                if key not in ("name", "run")
+                and value is not None
+                and (not isinstance(value, float) or math.isfinite(value))
+            }
             for name, e in estimates.items()
         },
     }
     path.write_text(tomlkit.dumps(content), encoding="utf-8")
-
-
-def _writable(value: object) -> bool:
-    return value is not None and not (isinstance(value, float) and not math.isfinite(value))
 
 
 def read_drive(path: Path) -> IdentifiedDrive:

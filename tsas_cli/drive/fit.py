@@ -89,8 +89,13 @@ class DriveBench:
 
     @cached_property
     def gain(self) -> float:
-        """The initial value of the gain [mm/(s rpm)]."""
-        return _initial_gain(self.runs)
+        """The initial value of the gain [mm/(s rpm)]: the travel per turn of all runs."""
+        both = squares = 0.0
+        for run in self.runs:
+            turns = run.u.integral - run.u.integral.mean()
+            both += float(turns @ (run.x_in - run.x_in.mean())) / run.noise_mm**2
+            squares += float(turns @ turns) / run.noise_mm**2
+        return max(both / squares, GAIN.lower)
 
     def fit(self, terms: Iterable[str], simpler: Iterable[DriveTrial] = ()) -> DriveTrial:
         """Fit a set of terms from several initial values and return the best fit.
@@ -208,16 +213,6 @@ def response_at(values: DriveValues, jw: Complex) -> Complex:
 def _unknown(q: Quantity, value: float) -> Unknown:
     scale = LOG_SCALE if q.positive else 1.0
     return Unknown(q.name, None, q.scaled(value), q.scaled(q.lower), q.scaled(q.upper), scale)
-
-
-def _initial_gain(runs: Sequence[DriveRun]) -> float:
-    """Return the travel per turn of all runs, whatever the lags."""
-    both = squares = 0.0
-    for run in runs:
-        turns = run.u.integral - run.u.integral.mean()
-        both += float(turns @ (run.x_in - run.x_in.mean())) / run.noise_mm**2
-        squares += float(turns @ turns) / run.noise_mm**2
-    return max(both / squares, GAIN.lower)
 
 
 def _guess(

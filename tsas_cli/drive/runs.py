@@ -85,7 +85,11 @@ def _checked(recording: Recording, hold: Hold, copied: CopiedRows) -> DriveRun:
             expected="an even clock",
             remedy="cut the run there, or resample it before ingest",
         )
-    u = _speed(recording, step)
+    if "motor_angle_rad" in recording.columns and "motor_speed_rpm" not in recording.columns:
+        angle = _channel(recording, "motor_angle_rad")
+        u = np.asarray(np.gradient(angle, step) * RPM_PER_RAD_S)
+    else:
+        u = _channel(recording, "motor_speed_rpm")
     if float(np.ptp(u)) == 0.0:
         still = u[0] == 0.0
         raise InputError(
@@ -112,14 +116,6 @@ def _checked(recording: Recording, hold: Hold, copied: CopiedRows) -> DriveRun:
     )
     _refuse_unrelated(run, where)
     return run
-
-
-def _speed(recording: Recording, step_s: float) -> Floats:
-    """Return the motor's speed [rpm], where it was not recorded that of its angle."""
-    if "motor_speed_rpm" in recording.columns or "motor_angle_rad" not in recording.columns:
-        return _channel(recording, "motor_speed_rpm")
-    angle = _channel(recording, "motor_angle_rad")
-    return np.asarray(np.gradient(angle, step_s) * RPM_PER_RAD_S)
 
 
 def _channel(recording: Recording, name: str) -> Floats:

@@ -134,8 +134,9 @@ def lead_notes(lead: Estimate, sheet: DataSheet, pull_back: Estimate | None = No
     `lead` is the fitted kV [rpm s/mm]; where `pull_back`, the fitted k_p [N/mm], is that of the
     data sheet, the drive's stiffness explains the lead.
     """
-    K = sheet.kinematic_gain
-    if K is None or _explained(pull_back, sheet):
+    K, stated = sheet.kinematic_gain, sheet.pull_back_N_per_mm
+    explained = pull_back and stated and abs(pull_back.value / stated - 1.0) <= TOLERATED
+    if K is None or explained:
         return []
     ratio, low, high = lead.value * K, lead.interval_low, lead.interval_high
     inside = low is not None and high is not None and low <= 1.0 / K <= high
@@ -147,13 +148,6 @@ def lead_notes(lead: Estimate, sheet: DataSheet, pull_back: Estimate | None = No
         f"data sheet, {1.0 / K:.4g} rpm s/mm: {_reason(ratio, sheet)}{follows}."
     )
     return [said]
-
-
-def _explained(pull_back: Estimate | None, sheet: DataSheet) -> bool:
-    """Return whether a resonance was found whose pull-back is that of the data sheet."""
-    if pull_back is None or sheet.pull_back_N_per_mm is None:
-        return False
-    return abs(pull_back.value / sheet.pull_back_N_per_mm - 1.0) <= TOLERATED
 
 
 def _reason(ratio: float, sheet: DataSheet) -> str:

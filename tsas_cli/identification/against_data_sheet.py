@@ -129,7 +129,9 @@ def _deviations(stated: Model, model: Model) -> Iterator[_Deviation]:
         ]
         if not pairs:
             continue
-        logs = np.array([math.log(_apparent(e, model) / known) for e, known in pairs])
+        # Of the tendon's stiffness what it is with the sheath's compliance.
+        softer = 1.0 + (model.value(SHEATH) or 0.0) if name == TENDON else 1.0
+        logs = np.array([math.log(e.value / softer / known) for e, known in pairs])
         between = float(np.std(logs, ddof=1)) if logs.size > 1 else 0.0
         own = float(np.mean([_log_sd(e, model) for e, _ in pairs]))
         value = float(np.exp(np.mean([math.log(known) for _, known in pairs])))
@@ -153,11 +155,6 @@ def _estimated(e: Estimate, model: Model) -> bool:
     if e.name == TENDON and SHEATH in _names(model):  # together they are
         return True
     return e.origin == "fitted" and e.interval_low is not None
-
-
-def _apparent(e: Estimate, model: Model) -> float:
-    """Return a value; of the tendon's stiffness what it is with the sheath's compliance."""
-    return e.value / (1.0 + (model.value(SHEATH) or 0.0)) if e.name == TENDON else e.value
 
 
 def _log_sd(e: Estimate, model: Model) -> float:

@@ -249,11 +249,17 @@ def _zeros_by_laws(model: Model, run: Prepared) -> Model:
     return Model(tuple(Estimate(n, v, "mm", "default", run.run.id) for n, v in zeros.items()))
 
 
-def slopes_of(run: Prepared, segments: list[Segment]) -> list[Slope]:
-    """Return the stiffness km of a run's phases, none where f_in or x_in was not measured."""
-    f_in = run.measured.get("f_in_N")
-    if f_in is None or "x_in_mm" not in run.conditioned:
+def slopes_of(
+    run: Prepared, segments: list[Segment], predicted_N: Floats | None = None
+) -> list[Slope]:
+    """Return the stiffness km of a run's phases, none where f_in or x_in was not measured.
+
+    With `predicted_N`, shape (n,), it is that of a prediction of f_in.
+    """
+    measured = run.measured.get("f_in_N")
+    if measured is None or "x_in_mm" not in run.conditioned:
         return []
+    f_in = measured if predicted_N is None else predicted_N
     return slopes(run.conditioned["x_in_mm"].values, f_in, segments)
 
 

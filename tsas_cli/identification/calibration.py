@@ -1,6 +1,6 @@
 """Calibrate the nominal model on a dataset: phases, stiffness per phase, joint fit."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.transfer import Slope, slopes, tension_transfer
+from tsas_cli.identification.transfer import Slope, tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -75,7 +75,10 @@ def calibrate_runs(
         dynamic = dynamic_fit(model, fit.problem.runs, step)
         model, fitted = dynamic.model, dynamic.fitted
     predictions = [compare(run, model, dynamics) for run in runs]
-    expected = [_predicted_slopes(*each) for each in zip(runs, predictions, segments, strict=True)]
+    expected = [
+        slopes_of(run, parts, predicted.response.f_in_N)
+        for run, parts, predicted in zip(runs, segments, predictions, strict=True)
+    ]
     if dynamic is not None:
         of_runs = [note for predicted in predictions for note in predicted.summary.notes]
         residual_notes = [*dynamic.misfit, MISSING_EFFECTS_NOTE] if dynamic.misfit else []
@@ -85,7 +88,13 @@ def calibrate_runs(
         if residual_notes and fitted is not None:
             wider = widened(fit, step)
             model = Model(wider.estimates)
-            residual_notes.append(_widened_by(wider.effects))
+            residual_notes.append(
+                f"The intervals are widened by the influence of {' or '.join(wider.effects)}, "
+                "which would explain most of the residual; `tsas diagnose` searches for the cause."
+                if wider.effects
+                else "No catalogued effect explains the residual: the intervals may not contain "
+                "the true values."
+            )
     notes = [
         *contradictions(manifest, model),
         *thinned_notes(runs),
@@ -106,40 +115,19 @@ def calibrate_runs(
     )
 
 
-def _widened_by(effects: Sequence[str]) -> str:
-    if not effects:
-        return (
-            "No catalogued effect explains the residual: the intervals may not contain the true "
-            "values."
-        )
-    return (
-        f"The intervals are widened by the influence of {' or '.join(effects)}, which would "
-        "explain most of the residual; `tsas diagnose` searches for the cause."
-    )
-
-
-def _predicted_slopes(run: Prepared, predicted: Compared, segments: list[Segment]) -> list[Slope]:
-    """Return the stiffness by the same linear fit of the model's prediction."""
-    if "f_in_N" not in run.measured or "x_in_mm" not in run.conditioned:
-        return []
-    return slopes(run.conditioned["x_in_mm"].values, predicted.response.f_in_N, segments)
-
-
-def unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
-    """Return a sentence for each condition that the manifest does not state."""
-    out = []
+def unknown_conditions(runs: Sequence[Prepared]) -> Iterator[str]:
+    """Yield a sentence for each condition that the manifest does not state."""
     alike = "; the runs are taken to have the same {}" if len(runs) > 1 else ""
     if any(r.run.total_bend_rad is None for r in runs):
-        out.append(
+        yield (
             "total_bend_rad is not in the manifest: with an assumed 1 rad friction_coefficient is "
             f"the product of friction and bend{alike.format('bend')}."
         )
     if any(r.run.sheath_length_mm is None for r in runs):
-        out.append(
+        yield (
             "sheath_length_mm is not in the manifest: with an assumed 1000 mm tendon_stiffness_N "
             f"is the stiffness of one metre{alike.format('length')}."
         )
-    return out
 
 
 def with_preload_correction(model: Model, runs: Sequence[Prepared]) -> Model:

@@ -119,7 +119,6 @@ def _solved(
 def _solved_again(
     fit: FittedModel, look: ScreenedValue, fixed: Model, further: Sequence[str], step: Steps
 ) -> FittedModel | None:
-    """Return a fit from screened values."""
     initial = _model_of(look.values).over(moved_model(fit, look.moves))
     return _solved(initial, fixed, fit.problem.runs, further, step)
 
@@ -130,7 +129,6 @@ def _further(fit: FittedModel) -> list[str]:
 
 
 def _model_of(values: Mapping[str, float]) -> Model:
-    """Return initial values as a model."""
     return Model(
         tuple(Estimate(name, v, QUANTITIES[name].unit, "default") for name, v in values.items())
     )

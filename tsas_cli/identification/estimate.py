@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import model_validator
 
 from tsas_cli.records.base import check_interval, value_text
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.plausible import AnyNumber, Range, StandardError
+from tsas_cli.support.strict_table import StrictTable
 
 Origin = Literal["fitted", "data sheet", "default", "given"]
 
@@ -32,10 +33,8 @@ class Estimate:
         return value_text(self.value, ends, at_bound=self.at_bound, origin=self.origin)
 
 
-class StoredValue(BaseModel):
+class StoredValue(StrictTable):
     """A value in a file, with its unit, its interval and its origin."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     value: float
     unit: str

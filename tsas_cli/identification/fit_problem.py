@@ -1,6 +1,6 @@
 """One dataset before the joint fit: its runs and its unknowns."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,8 +75,8 @@ def prepare_fit(
     rigs = tuple(initial.rig(run.run) for run, _ in used)
     used_runs = tuple(run for run, _ in used)
     scale = scale_of_forces(fixed, used_runs)
-    unknowns = nominal_unknowns(initial, fixed, used_runs, plausible or {})
-    unknowns = [u for u in unknowns if u.name != scale and (shared or u.run is not None)]
+    nominal = nominal_unknowns(initial, fixed, used_runs, plausible or {})
+    unknowns = [u for u in nominal if u.name != scale and (shared or u.run is not None)]
     unknowns += [further_unknown(name, initial) for name in further]
     notes = [s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)]
     if scale is not None:
@@ -110,12 +110,11 @@ def nominal_unknowns(
     fixed: Model,
     runs: Sequence[Prepared],
     plausible: Mapping[str, tuple[float, float]],
-) -> list[Unknown]:
-    """Return all candidates, in the order of the identifiability check.
+) -> Iterator[Unknown]:
+    """Yield all candidates, in the order of the identifiability check.
 
     With a load other than a spring the preload is equivalent to the zeros: it is fixed.
     """
-    out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
     springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
     for q in NOMINAL:
@@ -134,8 +133,7 @@ def nominal_unknowns(
             stated = fixed.value(q.name, owner) is not None and not but_for_a_factor
             relative = STATED_SCALE.get(q.name, LOG_SCALE) if stated else UNSTATED_SCALE
             scale = relative if q.positive else ZERO_SCALE * travel
-            out.append(Unknown(q.name, k, min(max(scaled, low), high), low, high, scale))
-    return out
+            yield Unknown(q.name, k, min(max(scaled, low), high), low, high, scale)
 
 
 def scale_of_forces(fixed: Model, runs: Sequence[Prepared]) -> str | None:

@@ -13,7 +13,7 @@ from datetime import date
 from typing import Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import Field, model_validator
 
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.conditioning import Conditioned
@@ -22,6 +22,7 @@ from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.units import is_unit
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.plausible import LARGEST, AnyNumber
+from tsas_cli.support.strict_table import StrictTable
 
 MARGIN = 0.1
 CENTRAL_PERCENT = (0.5, 99.5)  # of a tension: single samples are no load
@@ -33,7 +34,7 @@ _WITHOUT_DIMENSION = ("deg", "rad", "percent")
 Range = tuple[AnyNumber, AnyNumber]
 
 
-class FittedTo(BaseModel):
+class FittedTo(StrictTable):
     """Ranges by quantity, with its unit in the name, and the words of conditions that have none.
 
     `f_in_N` and `f_out_N` go over the central 99 % of a run's samples, `f_in_span_N` is its width,
@@ -41,10 +42,8 @@ class FittedTo(BaseModel):
     runs the lowest to the highest.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-    ranges: dict[str, Range] = {}
-    words: dict[str, tuple[str, ...]] = {}
+    ranges: dict[str, Range] = Field(default_factory=dict)
+    words: dict[str, tuple[str, ...]] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _ends_are_in_order(self) -> Self:

@@ -93,8 +93,13 @@ def solve_fit(problem: FitProblem) -> FittedModel:
         fitted = _fit(problem, errors, values, chosen, tolerance=FINE if before else ROUGH)
         values = _fixed_values(problem)
         values[chosen] = fitted.values
-        ends = zip(chosen, fitted.at_bound, strict=True)
-        lost |= {j for j, at_bound in ends if at_bound and _of_either_sign(unknowns[j])}
+        lost |= {
+            j
+            for j, at_bound in zip(chosen, fitted.at_bound, strict=True)
+            if at_bound
+            and not QUANTITIES[unknowns[j].name].positive
+            and unknowns[j].lower < 0.0 < unknowns[j].upper
+        }
         errors = tuple(reweighted(e, problem.rig(k, values)) for k, e in enumerate(errors))
         if chosen == before and not lost & set(chosen):
             break
@@ -152,18 +157,12 @@ def moved_model(fit: FittedModel, moves: Floats) -> Model:
     return Model(tuple(moved)).over(fit.problem.initial)
 
 
-def _of_either_sign(unknown: Unknown) -> bool:
-    quantity = QUANTITIES[unknown.name]
-    return not quantity.positive and unknown.lower < 0.0 < unknown.upper
-
-
 def _finite(values: Floats, unknowns: Sequence[Unknown]) -> Floats:
     """Return the values, with the initial one in place of NaN (critical damping)."""
     return np.where(np.isnan(values), [u.initial for u in unknowns], values)
 
 
 def _residuals(problem: FitProblem, errors: Sequence[RunErrors]) -> Residuals:
-    """Return the residuals of a run at scaled values of all unknowns."""
     return lambda k, values: errors[k].residuals(problem.rig(k, values))
 
 
@@ -195,7 +194,6 @@ def _fit(
 
 
 def _fixed_values(problem: FitProblem) -> Floats:
-    """Return the scaled fixed values of the unknowns, shape (p,)."""
     out = []
     for unknown in problem.unknowns:
         value = problem.fixed.value(unknown.name, problem.owner(unknown))

@@ -118,23 +118,16 @@ class LongRun:
             self.noise,
         )
 
-    def seen(self, rows: Rows) -> Mask:
-        """Return which of some rows a fit uses."""
+    def thin(self, rows: Rows) -> Rows:
+        """Return the rows that a fit uses; reversals become indices into them."""
         numbers = np.arange(rows.start, rows.start + rows.time_s.size)
-        mask: Mask = (numbers % self.every == 0) | (numbers < START_SAMPLES)
+        mask = (numbers % self.every == 0) | (numbers < START_SAMPLES)
         mask |= numbers == self.columns.rows - 1
         for part in rows.cleaned.values():
             mask[part.reversals - rows.start] = True
-        return mask
-
-    def thin(self, rows: Rows) -> Rows:
-        """Return rows thinned for a fit; reversals become indices into the thinned rows."""
-        mask = self.seen(rows)
-        thinned_rows = rows.start + np.flatnonzero(mask)
+        kept = numbers[mask]
         parts = {
-            name: Cleaned(
-                rows.start, part.samples[:, mask], np.searchsorted(thinned_rows, part.reversals)
-            )
+            name: Cleaned(rows.start, part.samples[:, mask], np.searchsorted(kept, part.reversals))
             for name, part in rows.cleaned.items()
         }
         measured = {name: values[mask] for name, values in rows.measured.items()}
@@ -184,14 +177,12 @@ def thinned_notes(runs: Sequence[Prepared]) -> list[str]:
 def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, float]:
     """Return the noise of each channel with any finite value: the median over the pieces."""
     found: dict[str, list[float]] = {name: [] for name in names}
-    has_values = dict.fromkeys(names, False)
     for piece in pieces(run, names) if names else ():
         for name in names:
-            has_values[name] = has_values[name] or bool(np.isfinite(piece.columns[name]).any())
-            noise = noise_of(piece.columns[name])
-            if not math.isnan(noise):
-                found[name].append(noise)
-    return {n: float(np.median(found[n])) if found[n] else math.nan for n in names if has_values[n]}
+            if np.isfinite(piece.columns[name]).any():
+                found[name].append(noise_of(piece.columns[name]))
+    known = {n: [level for level in found[n] if not math.isnan(level)] for n in names if found[n]}
+    return {n: float(np.median(levels)) if levels else math.nan for n, levels in known.items()}
 
 
 def _samples(run: RunColumns, name: str, overlap: int) -> Iterator[Samples]:
@@ -278,12 +269,7 @@ def simulate_long(
             write(table_of({name: columns[name] for name in names}))
             parts.append(summary_of(response, channels, rows.measured))
             thinned.append(long.thin(rows))
-    return _whole(parts), long.thinned(thinned)
-
-
-def _whole(parts: Sequence[RunSummary]) -> RunSummary:
-    """Return the summary of all rows."""
-    return RunSummary(
+    whole = RunSummary(
         parts[-1].solver,
         sum(part.rows for part in parts),
         sum(part.slack for part in parts),
@@ -291,6 +277,7 @@ def _whole(parts: Sequence[RunSummary]) -> RunSummary:
         {name: sum(part.squares[name] for part in parts) for name in parts[0].squares},
         {name: sum(part.samples[name] for part in parts) for name in parts[0].samples},
     )
+    return whole, long.thinned(thinned)
 
 
 def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[DriveInput]:

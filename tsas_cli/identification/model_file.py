@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Literal
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict
+from pydantic import Field
 
 from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.identification.fitted_to import FittedTo
@@ -16,6 +16,7 @@ from tsas_cli.recordings.manifest import Manifest, parse, read_toml
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range
+from tsas_cli.support.strict_table import StrictTable
 
 IN_MEMORY = "in memory"  # in place of a file, for a model passed in Python
 CORRECTIONS_N = Range(-1e5, 1e5, "N")
@@ -67,18 +68,16 @@ def source_of(
 _Value = tuple[str, str | None, StoredValue]  # with its name and its run
 
 
-class _ModelTables(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
+class _ModelTables(StrictTable):
     format: Literal[1]
     kind: Literal["model"] = "model"
     version: str = ""
-    dataset: dict[str, object] = {}
+    dataset: dict[str, object] = Field(default_factory=dict)
     fitted_to: FittedTo | None = None
-    parameters: dict[str, StoredValue] = {}
-    runs: dict[str, dict[str, StoredValue]] = {}
-    bristles: dict[str, StoredValue] = {}
-    effects: dict[str, dict[str, StoredValue]] = {}
+    parameters: dict[str, StoredValue] = Field(default_factory=dict)
+    runs: dict[str, dict[str, StoredValue]] = Field(default_factory=dict)
+    bristles: dict[str, StoredValue] = Field(default_factory=dict)
+    effects: dict[str, dict[str, StoredValue]] = Field(default_factory=dict)
 
 
 def write_model(
@@ -125,7 +124,15 @@ def read_model(path: Path) -> Model:
         for name, v in named.items()
     ]
     where = path / MODEL_FILE if path.is_dir() else path
-    _check_owners(values, where)
+    for_all = {name for name, run, _ in values if run is None}
+    for name, run, _ in values:  # a sweep may set both
+        if run is not None and name in for_all:
+            raise InputError(
+                f"{name} is given for all runs and for run {run}",
+                where=where,
+                expected="one of both",
+                remedy="delete the value that does not hold",
+            )
     return _checked(values, where)
 
 
@@ -140,19 +147,6 @@ def read_fitted_to(path: Path) -> FittedTo | None:
 def _read(path: Path) -> _ModelTables:
     path = path / MODEL_FILE if path.is_dir() else path
     return parse(_ModelTables, read_toml(path), path)
-
-
-def _check_owners(values: Sequence[_Value], where: object) -> None:
-    """Refuse a parameter with a value for all runs and one for a run; a sweep may set it so."""
-    for_all = {name for name, run, _ in values if run is None}
-    for name, run, _ in values:
-        if run is not None and name in for_all:
-            raise InputError(
-                f"{name} is given for all runs and for run {run}",
-                where=where,
-                expected="one of both",
-                remedy="delete the value that does not hold",
-            )
 
 
 def _checked(values: Sequence[_Value], where: object) -> Model:

@@ -145,17 +145,7 @@ def _block_means(values: Floats, step: int) -> Floats:
     """Return means over blocks of `step` samples; the last one may be shorter."""
     edges = np.arange(0, values.size, step)
     sums = np.add.reduceat(values, edges)
-    means: Floats = sums / np.diff(edges, append=values.size)
-    return means
-
-
-def _bases(name: str, travel: Floats) -> tuple[Floats, Floats]:
-    """Return the columns of the dead band's law and of the slip's law for one channel."""
-    one = np.ones_like(travel)
-    line = np.column_stack((one, travel))
-    if name == "f_in_N":
-        return np.column_stack((one, np.sqrt(travel), travel)), line
-    return one[:, None], line
+    return sums / np.diff(edges, append=values.size)
 
 
 def _transition(stroke: _Stroke) -> int | None:
@@ -166,7 +156,10 @@ def _transition(stroke: _Stroke) -> int | None:
     total = np.zeros(n + 1)
     alone = np.zeros(2)
     for name, values in stroke.channels.items():
-        dead, slip = _bases(name, stroke.travel)
+        one = np.ones_like(stroke.travel)
+        slip, dead = np.column_stack((one, stroke.travel)), one[:, None]
+        if name == "f_in_N":
+            dead = np.column_stack((one, np.sqrt(stroke.travel), stroke.travel))
         left = _residual_squares(dead, values)
         right = _residual_squares(slip[::-1], values[::-1])[::-1]
         total += left + right
@@ -198,17 +191,16 @@ def _slopes(stroke: _Stroke, cut: int | None) -> tuple[float, float]:
     n = stroke.travel.size
     if name is None or n < FEWEST:
         return np.nan, np.nan
-    parts = (slice(0, cut), slice(cut or n, n))
-    before, after = (_steepness(stroke.travel[p], stroke.channels[name][p]) for p in parts)
-    if name != "f_in_N":  # the load rests in the dead band: the inverse has the order of f_in
-        before, after = 1.0 / max(before, 1e-12), 1.0 / max(after, 1e-12)
-    return before, after
-
-
-def _steepness(travel: Floats, values: Floats) -> float:
-    spread = travel - travel.mean() if travel.size else travel
-    square = float(np.sum(spread**2))
-    return abs(float(np.sum(spread * values))) / square if square > 0.0 else np.nan
+    found = []
+    for part in (slice(0, cut), slice(cut or n, n)):
+        travel = stroke.travel[part]
+        spread = travel - travel.mean() if travel.size else travel
+        square = float(np.sum(spread**2))
+        along = abs(float(np.sum(spread * stroke.channels[name][part])))
+        slope = along / square if square > 0.0 else np.nan
+        # The load rests in the dead band: the inverse has the order of f_in.
+        found.append(slope if name == "f_in_N" else 1.0 / max(slope, 1e-12))
+    return found[0], found[1]
 
 
 def _border(slopes: Sequence[tuple[float, float]]) -> float | None:

@@ -258,8 +258,7 @@ def nothing_to_compare(run: Run, columns: Sequence[str]) -> InputError:
 
 def _recorded(values: Floats) -> Floats:
     """Return a channel with NaN in place of interpolated samples, which carry no information."""
-    between = interpolated(values)
-    return np.where(between, math.nan, values) if between.any() else np.array(values)
+    return np.where(interpolated(values), math.nan, values)
 
 
 def _in_gap(time_s: Floats, values: Floats) -> Mask:

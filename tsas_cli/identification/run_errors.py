@@ -131,8 +131,7 @@ class RunErrors:
             edges = mean_edges(at.size)
             if channel == name:
                 counts = np.diff(edges, append=at.size)
-                spread: Mask = np.repeat(chosen[start : start + edges.size], counts)
-                return spread
+                return np.repeat(chosen[start : start + edges.size], counts)
             start += edges.size
         raise KeyError(name)
 
@@ -147,8 +146,7 @@ class RunErrors:
         length = max(memory, round(WINDOWS_PER_BLOCK * window / step))
         length = min(length, longest, self.length // 2)
         first = [at[mean_edges(at.size)] for at in self.samples.values()]
-        numbers: Indices = np.unique(np.concatenate(first) // length, return_inverse=True)[1]
-        return numbers
+        return np.unique(np.concatenate(first) // length, return_inverse=True)[1]
 
 
 def _means(errors: Mapping[str, Floats]) -> Floats:

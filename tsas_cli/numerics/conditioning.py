@@ -69,7 +69,12 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     """
     finite = np.flatnonzero(np.isfinite(values))
     if finite.size < values.size:
-        return _with_gaps(condition(time_s[finite], values[finite]), time_s, finite)
+        cleaned = condition(time_s[finite], values[finite])
+        reversals = finite[cleaned.reversals]
+        reversals[0], reversals[-1] = 0, time_s.size - 1
+        series = cleaned.values, cleaned.sd, cleaned.unseen
+        clean, sd, unseen = (np.interp(time_s, time_s[finite], each) for each in series)
+        return replace(cleaned, values=clean, sd=sd, unseen=unseen, reversals=reversals)
     noise, memory = noise_and_memory(values)
     if not noise > 0.0:  # noise-free, or too short for an estimate
         nothing = np.zeros(values.size)
@@ -110,19 +115,6 @@ def smooth_out(
 def smallest_reversal(sd: Floats, noise: float) -> float:
     """Return the amplitude below which a reversal of a cleaned signal counts as noise."""
     return max(REVERSAL_SD * float(np.median(sd)), REVERSAL_NOISE * noise)
-
-
-def _with_gaps(cleaned: Conditioned, time_s: Floats, finite: Indices) -> Conditioned:
-    """Return a signal that was cleaned at finite samples at all of them, interpolated linearly."""
-    reversals = finite[cleaned.reversals]
-    reversals[0], reversals[-1] = 0, time_s.size - 1
-    return replace(
-        cleaned,
-        values=np.interp(time_s, time_s[finite], cleaned.values),
-        sd=np.interp(time_s, time_s[finite], cleaned.sd),
-        unseen=np.interp(time_s, time_s[finite], cleaned.unseen),
-        reversals=reversals,
-    )
 
 
 def remove_overshoot(smooth: Floats, cuts: Indices) -> None:

@@ -108,8 +108,9 @@ def least_squares(
             exact = slopes is None or (reduction < AS_PREDICTED * predicted and not last)
             if exact:
                 J = jacobian(x)
-            elif not last:
-                J = _corrected(J, step, r - before, np.diag(gram))
+            elif not last:  # changed least, by weights of the unknowns, to predict what came
+                along = np.diag(gram) * step
+                J = J + np.outer(r - before - J @ step, along / float(along @ step))
             damping = max(damping / 10.0, 1e-12)
             if last:
                 return found("the last step is within the tolerance")
@@ -143,12 +144,6 @@ def _bounded_step(
         at = at + way[first] * (toward - at)
         at[first], fixed[first] = end[first], True
         toward = at + _step(gradient + gram @ at, gram, fixed, damping)
-
-
-def _corrected(J: Floats, step: Floats, change: Floats, weights: Floats) -> Floats:
-    """Return the slopes changed least, by weights of the unknowns, to predict a step's change."""
-    along = weights * step
-    return np.asarray(J + np.outer(change - J @ step, along / float(along @ step)))
 
 
 def _step(gradient: Floats, gram: Floats, at_bound: Mask, damping: float) -> Floats:

@@ -141,8 +141,7 @@ def _filtered(u: Sampled, numerator: Floats, denominator: Floats) -> Floats:
     else:
         constant -= ramp
     state = np.ascontiguousarray(step[:order, :order])
-    response: Floats = _stepped(state, constant, ramp, numerator, np.ascontiguousarray(u.values))
-    return response
+    return _stepped(state, constant, ramp, numerator, np.ascontiguousarray(u.values))
 
 
 @kernel

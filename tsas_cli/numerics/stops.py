@@ -38,8 +38,7 @@ def widths_with_gaps(longest: float) -> Floats:
 
 def beyond_gap(states: Floats) -> Floats:
     """Return the force of springs with a gap over that at full width, of any shape [1]."""
-    force: Floats = np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
-    return force
+    return np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
 
 
 @kernel
@@ -64,8 +63,7 @@ def states_of(values: Floats, widths: Floats, memory: Floats) -> Floats:
 
 def curve_of(values: Floats, low: float, high: float, heights: Sequence[float]) -> Floats:
     """Return a curve of straight lines between heights at even distances, constant outside."""
-    curve: Floats = np.interp(values, np.linspace(low, high, len(heights)), heights)
-    return curve
+    return np.interp(values, np.linspace(low, high, len(heights)), heights)
 
 
 def speed_curve(speed: Floats, slow: float, fast: float, heights: Sequence[float]) -> Floats:

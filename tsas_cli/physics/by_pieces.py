@@ -28,6 +28,7 @@ from tsas_cli.physics.sensors import new_memory, sensed
 from tsas_cli.support.arrays import Floats
 
 OVERLAP = 3  # samples of a neighbour: for a speed, an acceleration, an interpolation
+SIGNALS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "phase")  # of a prediction
 
 
 def simulate_pieces(
@@ -70,9 +71,13 @@ def simulate_pieces(
         output, state = advanced(rig, ends.part(solved, until), mesh, state)
         motor = None if whole.motor_mm is None else whole.motor_mm[solved:until]
         read = sensed(output, time_s[solved:until], rig, ends.boundary, memory, motor)
-        signals = read if signals is None else _concatenated(signals, read)
+        if signals is not None:
+            pairs = ((getattr(signals, name), getattr(read, name)) for name in Output._fields)
+            read = Output._make(np.concatenate(pair) for pair in pairs)
+        signals = read
         response = readings_of(rig, whole.part(slice(until)), signals, solver_of(mesh))
-        yield _own_samples(response, first, end)
+        own = {name: getattr(response, name)[first:end] for name in SIGNALS}
+        yield replace(response, **own)  # without the samples of the neighbours
         if after is None:
             return
         kept_s = float(time_s[end]) - 2.0 * delay_s
@@ -102,16 +107,3 @@ def _joined(one: DriveInput, other: DriveInput) -> DriveInput:
         time_s=np.append(_times(one), _times(other)),
         motor_mm=motor,
     )
-
-
-def _concatenated(one: Output, other: Output) -> Output:
-    x_in, x_out, f_in, f_out = (
-        np.concatenate(pair) for pair in zip(one[:4], other[:4], strict=True)
-    )
-    return Output(x_in, x_out, f_in, f_out, np.concatenate((one.phase, other.phase)))
-
-
-def _own_samples(response: Prediction, first: int, end: int) -> Prediction:
-    """Return a response without the samples of the neighbours."""
-    names = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "phase")
-    return replace(response, **{name: getattr(response, name)[first:end] for name in names})

@@ -54,8 +54,7 @@ class Output(NamedTuple):
 
 def samples_of(output: Output, within: slice) -> Output:
     """Return some samples of an output."""
-    x_in, x_out, f_in, f_out, phase = output
-    return Output(x_in[within], x_out[within], f_in[within], f_out[within], phase[within])
+    return Output._make(values[within] for values in output)
 
 
 @kernel

@@ -108,7 +108,11 @@ def ends_of(
         x = drive.values - rig.x_in_zero_mm
         at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
         position, speed = at_drive, np.zeros(n)
-        if _follows_speed(rig.effects):
+        if (  # a fit asks thousands of times
+            rig.effects.viscous_friction.coefficient_N_s_per_mm != 0.0
+            or rig.effects.drive_damping.coefficient_N_s_per_mm != 0.0
+            or rig.effects.drive_inertia.mass_kg != 0.0
+        ):
             speed = rate_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
@@ -129,21 +133,11 @@ def ends_of(
     return EndInputs(np.vstack((losses, *of_end)), boundary_of(drive))
 
 
-def _follows_speed(effects: Effects) -> bool:
-    """Return whether a force follows the speed of the drive: a fit asks thousands of times."""
-    return (
-        effects.viscous_friction.coefficient_N_s_per_mm != 0.0
-        or effects.drive_damping.coefficient_N_s_per_mm != 0.0
-        or effects.drive_inertia.mass_kg != 0.0
-    )
-
-
 def rate_of(values: Floats, time_s: Floats | None) -> Floats:
     """Return the rate of a quantity at each sample [1/s], 0 without times."""
     if time_s is None or values.size < 2:
         return np.zeros(values.size)
-    rate: Floats = np.gradient(values, time_s)
-    return rate
+    return np.gradient(values, time_s)
 
 
 def force_of_motion(speed: Floats, time_s: Floats | None, effects: Effects) -> Floats:

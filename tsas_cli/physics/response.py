@@ -94,18 +94,14 @@ class Solver(TypedDict, total=False):
 def simulate(
     rig: Rig, drive: DriveInput, dynamics: Dynamics = "slip", **how: Unpack[Solver]
 ) -> Prediction:
-    """Return the prediction of the distributed model (`slip`), the static or the dynamic one.
-
-    The parameters are those of `solve`, of which this reads the sensors.
-    """
+    """Return the readings of the sensors in the run that `solve` returns for these parameters."""
     return read(rig, drive, solve(rig, drive, dynamics, **how))
 
 
 def read(rig: Rig, drive: DriveInput, solved: SolvedRun) -> Prediction:
     """Return the sensor readings of a solved run."""
-    signals = sensed(
-        solved.output, drive.time_s, rig, boundary_of(drive), new_memory(), drive.motor_mm
-    )
+    boundary, motor_mm = boundary_of(drive), drive.motor_mm
+    signals = sensed(solved.output, drive.time_s, rig, boundary, new_memory(), motor_mm)
     response = readings_of(rig, drive, signals, solved.solver)
     return replace(response, step_ends_s=solved.step_ends_s, frames=solved.frames)
 
@@ -117,8 +113,7 @@ def mechanics_of(rig: Rig, drive: DriveInput) -> Rig:
     """
     if drive.kind != "displacement" or drive.load != "spring" or drive.start_f_in_N is not None:
         return rig
-    effects = rig.effects._replace(**_NEUTRAL_READ)
-    return rig._replace(effects=effects, x_out_zero_mm=0.0)
+    return rig._replace(effects=rig.effects._replace(**_NEUTRAL_READ), x_out_zero_mm=0.0)
 
 
 def solve(
@@ -155,11 +150,7 @@ def nodes_of(rig: Rig, drive: DriveInput, dynamics: Dynamics, nodes: int | None)
 
 
 def _dynamic(
-    rig: Rig,
-    drive: DriveInput,
-    lumps: int,
-    control: StepControl,
-    looked_at: Indices | None,
+    rig: Rig, drive: DriveInput, lumps: int, control: StepControl, looked_at: Indices | None
 ) -> SolvedRun:
     """Return the solution of the dynamic chain, from the slip chain's state of rest."""
     if drive.time_s is None:
@@ -176,9 +167,8 @@ def _dynamic(
     course = ends_of(rig._replace(effects=without_speed), drive).course
     frames = None if looked_at is None else empty_frames(looked_at, lumps)
     output, progress = lugre_chain(course, start, rig, ends.boundary, lumps, control, frames)
-    output = at_drive_sensor(rig, ends, output)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
-    return SolvedRun(output, solver, progress.step_ends_s, frames)
+    return SolvedRun(at_drive_sensor(rig, ends, output), solver, progress.step_ends_s, frames)
 
 
 def solver_of(nodes: int) -> str:
@@ -210,7 +200,6 @@ def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Pr
 
 
 def _solve(rig: Rig, ends: EndInputs, nodes: int, frames: Frames | None = None) -> Output:
-    """Return the output of a quasi-static solver for a motion from rest."""
     return advanced(rig, ends, nodes, at_rest(rig, ends, nodes), frames)[0]
 
 
@@ -245,21 +234,14 @@ def advanced(
 
 def at_drive_sensor(rig: Rig, ends: EndInputs, output: Output) -> Output:
     """Return an output with the force beside the tendon added to f_in, unless f_in is given."""
-    if ends.boundary.drive == FORCE:
-        return output
-    return output._replace(f_in=output.f_in + force_beside_tendon(rig, ends))
-
-
-def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
-    """Return the forces at the drive's sensor parallel to the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-    if friction == 0.0 and stiffness == 0.0 and not ends.course[MOTION].any():
-        return 0.0
-    friction_N = drive_friction_force(friction, 1.0) * ends.course[DIRECTION]
-    beside: Floats = friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
-    beside += ends.course[MOTION]
-    return beside
+    nothing = friction == 0.0 and stiffness == 0.0 and not ends.course[MOTION].any()
+    if nothing or ends.boundary.drive == FORCE:
+        return output
+    beside = drive_friction_force(friction, 1.0) * ends.course[DIRECTION]
+    beside = beside + proximal_spring_force(1.0, stiffness) * ends.drive + ends.course[MOTION]
+    return output._replace(f_in=output.f_in + beside)
 
 
 def first_determined_sample(rig: Rig, drive: DriveInput) -> int | None:

@@ -226,5 +226,4 @@ def backward_rate(values: Floats, time_s: Floats | None, memory: Floats) -> Floa
         return np.zeros(values.size)
     before, memory[0] = memory[0], time_s[-1]
     changes, steps_s = np.diff(values, prepend=memory[1]), np.diff(time_s, prepend=before)
-    rate: Floats = np.nan_to_num(changes / steps_s, nan=0.0, posinf=0.0, neginf=0.0)
-    return rate
+    return np.nan_to_num(changes / steps_s, nan=0.0, posinf=0.0, neginf=0.0)

@@ -17,7 +17,7 @@ from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, pictu
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.simulation import X_IN, diagnosed_models, rms
+from tsas_cli.reporting.simulation import X_IN, channels_of, diagnosed_models, rms
 from tsas_cli.support.arrays import Floats, Indices
 
 _FEWEST = 10  # samples that make a picture
@@ -92,7 +92,10 @@ def _picture(
             f", enlarged where the {'models differ' if loop.models[1:] else 'residual is'} most"
         )
     under = "" if below is None else f" Below: residual of {_short(below.channel)} over time."
-    said = _in_words(below or loop)
+    fit = below or loop
+    sizes = ", ".join(f"{label} {plain(rms(fit.measured - v), 3)}" for label, _, v in fit.models)
+    noise = f"noise level {plain(fit.noise, 3)} {BY_NAME[fit.channel].unit}"
+    said = f"RMS: {sizes}, {noise} (dashed: twice that)."
     channels = dict.fromkeys(fit.channel for fit in (loop, below) if fit is not None)
     words = "; ".join(f"{_short(name)} is the {in_words(name)}" for name in channels)
     return picture(
@@ -107,12 +110,6 @@ def _picture(
 
 def _short(channel: str) -> str:
     return channel.rsplit("_", 1)[0]
-
-
-def _in_words(fit: ShownFit) -> str:
-    unit = BY_NAME[fit.channel].unit
-    sizes = ", ".join(f"{label} {plain(rms(fit.measured - v), 3)}" for label, _, v in fit.models)
-    return f"RMS: {sizes}, noise level {plain(fit.noise, 3)} {unit} (dashed: twice that)."
 
 
 def draw_before_after(
@@ -212,18 +209,15 @@ def _fits(inputs: Inputs, recording: Recording) -> Iterator[ShownFit]:
     driven = models[0].driven(recording) if models else None
     if x is None or driven is None:
         return
-    for channel in CHANNELS:
-        measured, noise = recording.get(channel), inputs.noise.get(channel)
-        simulated = (model.predicted(recording, channel) for model in models)
-        predicted = [values for values in simulated if values is not None]
-        if measured is None or noise is None or len(predicted) < len(models):
-            continue
-        series = [recording.time_s, x, driven, measured, *predicted]
+    for it in channels_of(inputs, recording, models):
+        series = [it.time_s, x, driven, it.measured, *it.by_model.values()]
         there = np.isfinite(np.sum(series, axis=0))
+        if it.noise is None or it.by_model.keys() < set(models):
+            continue
         if np.count_nonzero(there) > _FEWEST:
             time_s, at, moved, felt, *values = (one[there] for one in series)
             named = tuple((m.label, m.role, v) for m, v in zip(models, values, strict=True))
-            yield ShownFit(recording.run.id, channel, noise, time_s, at, moved, felt, named)
+            yield ShownFit(it.run, it.channel, it.noise, time_s, at, moved, felt, named)
 
 
 def _cycles(fit: ShownFit) -> tuple[float, float]:

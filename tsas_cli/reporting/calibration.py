@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import read_model
 from tsas_cli.records.base import ParameterValue
 from tsas_cli.records.calibration import CalibrationFile, Stiffness
@@ -169,7 +168,11 @@ def transfer_section(inputs: Inputs) -> Section:
 
 def parameters_section(inputs: Inputs) -> Section:
     """Return the section of the parameters."""
-    calibration, extended = inputs.get(CalibrationFile), _extended(inputs)
+    calibration, diagnosis = inputs.get(CalibrationFile), inputs.get(DiagnosisFile)
+    extended = None
+    if diagnosis is not None and diagnosis.extended:
+        path = inputs.folders[DiagnosisFile] / EXTENDED_MODEL
+        extended = read_model(path) if path.is_file() else None
     if calibration is None and extended is None:
         return missing("parameters", _PARAMETERS_TITLE, what="calibration", stage="calibrate")
     intro = ["The origin says which values are fitted, and which are taken as given."]
@@ -187,15 +190,6 @@ def parameters_section(inputs: Inputs) -> Section:
     return Section(
         "parameters", _PARAMETERS_TITLE, tuple(intro), tables=tuple(tables), points=notes
     )
-
-
-def _extended(inputs: Inputs) -> Model | None:
-    """Return the extended model of a diagnosis, None without one."""
-    diagnosis = inputs.get(DiagnosisFile)
-    if diagnosis is None or not diagnosis.extended:
-        return None
-    path = inputs.folders[DiagnosisFile] / EXTENDED_MODEL
-    return read_model(path) if path.is_file() else None
 
 
 def _shown(parameters: Sequence[Shown], inputs: Inputs) -> list[Shown]:

@@ -191,7 +191,6 @@ def section(inputs: Inputs) -> Section | None:
 
 
 def _case(case: ClosedCase) -> tuple[str, ...]:
-    """Return what was hidden and what was named in a case."""
     hidden = (f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
     named = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in case.named)
     return case.case, case.title, ", ".join(hidden), case.verdict, ", ".join(named) or "nothing"

@@ -57,21 +57,18 @@ def _sections(it: Comparison) -> Iterator[Section]:
         said = tuple(f"{name}: {side.reason}" for name, side in it.sides.items() if side.reason)
         yield Section("effects", "Effects", said, tables=(printed["effects"],))
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
-        yield Section("errors", "Errors per run", tuple(_held_to(it)), tables=errors)
+        held = "Each side is held to the recordings that it has read."
+        if it.on is not None:
+            held = f"Both models are simulated on the recordings of {it.on.manifest.name}."
+        ratio = "A ratio below 1 means that B is nearer to the measurement than A."
+        yield Section(
+            "errors", "Errors per run", (held, ratio)[: 1 + bool(it.shared)], tables=errors
+        )
     if it.maps:
         yield _maps(it)
     if it.shared:
         yield _residuals(it)
     yield _repeat(it)
-
-
-def _held_to(it: Comparison) -> Iterator[str]:
-    if it.on is None:
-        yield "Each side is held to the recordings that it has read."
-    else:
-        yield f"Both models are simulated on the recordings of {it.on.manifest.name}."
-    if it.shared:
-        yield "A ratio below 1 means that B is nearer to the measurement than A."
 
 
 def _repeat(it: Comparison) -> Section:
@@ -111,7 +108,6 @@ _NOTHING = "Over no signal does the error of either side stand out of the noise.
 
 
 def _maps(it: Comparison) -> Section:
-    """Return the section of the residual maps."""
     panels = [
         Panel(channel, signal, bins, it.maps["b"][channel][signal])
         for channel, signals in it.maps["a"].items()

@@ -165,8 +165,13 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     for stage, path in given:
         if isinstance(stage, OfDataset):
             _check_hashes(stage, dataset, path / stage.FILE)
-        elif isinstance(stage, TrackingFile):
-            _check_own(dataset, path / stage.FILE)
+        elif isinstance(stage, TrackingFile) and dataset.folder.resolve() != path.resolve():
+            raise InputError(
+                f"its runs are not in the dataset {dataset.folder}",
+                where=path / stage.FILE,
+                expected=f"{MANIFEST_FILE} in the same folder",
+                remedy="give this folder alone, or write it again with `tsas track`",
+            )
     return Inputs(dataset, given)
 
 
@@ -235,17 +240,6 @@ def _dataset_of(stage: StageFile, path: Path) -> Location:
             remedy="give the dataset's folder to `tsas report` too",
         )
     return folder
-
-
-def _check_own(dataset: Dataset, path: Path) -> None:
-    """Refuse a stage that writes a dataset, where it is not the one at hand."""
-    if dataset.folder.resolve() != path.parent.resolve():
-        raise InputError(
-            f"its runs are not in the dataset {dataset.folder}",
-            where=path,
-            expected=f"{MANIFEST_FILE} in the same folder",
-            remedy="give this folder alone, or write it again with `tsas track`",
-        )
 
 
 def _conditions(given: Sequence[tuple[StageFile, Path]]) -> dict[str, float]:

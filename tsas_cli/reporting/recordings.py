@@ -122,19 +122,15 @@ def _pictures(
         y = recording.get(column)
         if x is None or y is None or not np.isfinite(x + y).any():
             continue
+        whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
+        shown = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
+        each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in shown)
         yield picture(
             partial(_draw_loop, x=x, y=y, phase=phase, column=column, points=points),
             key=f"loop-{number}-{column}",
-            alt=_alt(recording.run.id, x, y, phase, column),
+            alt=f"Loop of run {recording.run.id}: {whole}. By phase: {each or 'unknown'}.",
             caption=f"{in_words(column).capitalize()} over {in_words(_X)}.",
         )
-
-
-def _alt(run: str, x: Floats, y: Floats, phase: Keys, column: str) -> str:
-    whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
-    shown = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
-    each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in shown)
-    return f"Loop of run {run}: {whole}. By phase: {each or 'unknown'}."
 
 
 def _draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, column: str, points: int) -> None:

@@ -59,7 +59,12 @@ def section(inputs: Inputs) -> Section:
 
 def _intro(inputs: Inputs) -> Iterator[str]:
     yield "These commands make the same page from the same files."
-    if _in_memory(inputs):
+    stages = [stage for stage, _ in inputs.given]
+    files = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
+    files += [s.settings for s in stages if isinstance(s, TrackingFile)]
+    if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages) or any(
+        getattr(one, "file", None) == IN_MEMORY for one in files
+    ):
         yield "They lack what was handed over without a file: a model, settings, or conditions."
     closing = inputs.get(ClosingFile)
     if closing and _own_settings(closing):
@@ -67,16 +72,6 @@ def _intro(inputs: Inputs) -> Iterator[str]:
             f"`{SETTINGS}` is a file with the settings that `{ClosingFile.FILE}` "
             "holds; they are not the defaults."
         )
-
-
-def _in_memory(inputs: Inputs) -> bool:
-    """Say whether a stage was given what no file holds."""
-    stages = [stage for stage, _ in inputs.given]
-    if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
-        return True
-    files = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
-    files += [s.settings for s in stages if isinstance(s, TrackingFile)]
-    return any(getattr(one, "file", None) == IN_MEMORY for one in files)
 
 
 def _commands(inputs: Inputs) -> Iterator[list[str]]:
@@ -166,7 +161,6 @@ def closing_options(closing: ClosingFile) -> Iterator[str]:
 
 
 def _own_settings(closing: ClosingFile) -> bool:
-    """Return whether the settings are others than the defaults."""
     from tsas_cli.tracking.settings import Settings
 
     return closing.settings.content() != Settings().model_dump(mode="json", by_alias=True)

@@ -113,36 +113,27 @@ def manifest(run_ids: Mapping[str, object] | tuple[str, ...], settings: Settings
 
 def run_notes(
     path: DrivePath, known: Known, plant: Plant, results: Sequence[TrackedResult]
-) -> list[str]:
-    """Return what of the runs is not to be trusted or not to be reached, and why."""
-    notes = []
+) -> Iterator[str]:
+    """Yield what of the runs is not to be trusted or not to be reached, and why."""
     if path.missed:
-        notes.append(f"{path.missed} samples of the wanted force are met by no place of the drive")
-    limit = plant.actuator.speed_limit_rpm
-    beyond = np.abs(feedforward(path, known.actuator)) > limit
-    if beyond.any():
-        notes.append(
-            f"the reference asks for more than the motor's {limit:g} rpm in {beyond.sum()} samples,"
-            f" up to {np.abs(feedforward(path, known.actuator)).max():.0f} rpm"
+        yield f"{path.missed} samples of the wanted force are met by no place of the drive"
+    limit, asked = plant.actuator.speed_limit_rpm, np.abs(feedforward(path, known.actuator))
+    if (asked > limit).any():
+        yield (
+            f"the reference asks for more than the motor's {limit:g} rpm in "
+            f"{(asked > limit).sum()} samples, up to {asked.max():.0f} rpm"
         )
     neutral, effects = Effects(), plant.rig.effects
     laws = [law.name for law in LAWS if getattr(effects, law.name) != getattr(neutral, law.name)]
     if laws:
-        notes.append(
-            f"{' and '.join(laws)} of the model describe recordings: the plant moves without them"
-        )
+        yield f"{' and '.join(laws)} of the model describe recordings: the plant moves without them"
     for result in results:
         at_limit = result.scores.at_limit_percent.mean or 0.0
         if at_limit > OFTEN_PERCENT:
-            notes.append(
-                f"{result.run}: the motor is at its limit for {at_limit:.0f} % of the time"
-                + ("; the loop is a relay" if result.relay else "")
-            )
+            relay = "; the loop is a relay" if result.relay else ""
+            yield f"{result.run}: the motor is at its limit for {at_limit:.0f} % of the time{relay}"
         if result.unsettled_steps:
-            notes.append(
-                f"{result.run}: {result.unsettled_steps} steps of the tendon did not settle"
-            )
-    return notes
+            yield f"{result.run}: {result.unsettled_steps} steps of the tendon did not settle"
 
 
 def dynamic_notes(

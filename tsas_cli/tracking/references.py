@@ -85,8 +85,7 @@ def _grid(samples: int, step_s: float, where: object) -> Floats:
             expected=f"at most {MOST_SAMPLES}",
             remedy="shorten it (reference.duration_s), or lower sensor.rate_Hz",
         )
-    at: Floats = np.arange(samples, dtype=np.float64) * step_s
-    return at
+    return np.arange(samples, dtype=np.float64) * step_s
 
 
 def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:

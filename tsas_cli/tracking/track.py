@@ -208,8 +208,7 @@ def _within(true: Mask, width: int) -> npt.NDArray[np.int64]:
     """Return how many are true of each `width` in a row; of a shorter array, of all."""
     total = np.concatenate(([0], np.cumsum(true)))
     width = min(width, true.size)
-    count: npt.NDArray[np.int64] = total[width:] - total[:-width]
-    return count
+    return total[width:] - total[:-width]
 
 
 def score(

@@ -42,7 +42,10 @@ def bic(dataset: Path, out: Path) -> None:
     search = search_of(dataset)
     named, rivals = NOTHING, {}
     while len(named) < MOST_EFFECTS:
-        falls = {e: _fall(*_both(search, named, named | {e})) for e, _ in search.add(named)}
+        falls = {}
+        for effect, _ in search.add(named):
+            before, after = _both(search, named, named | {effect})
+            falls[effect] = information_criterion(before) - information_criterion(after)
         best = max(falls, key=falls.__getitem__, default=None)
         if best is None or falls[best] <= 0.0:
             break
@@ -97,11 +100,6 @@ def _both(search: Search, before: Names, after: Names) -> tuple[HypothesisFit, H
     """Return the fits of two sets of effects, on the mesh that the second one needs."""
     trial = search.trial(after)
     return search.trial(before, on_mesh=trial.on_mesh), trial
-
-
-def _fall(before: HypothesisFit, after: HypothesisFit) -> float:
-    """Return by how much the BIC falls."""
-    return information_criterion(before) - information_criterion(after)
 
 
 def _drop(before: HypothesisFit, after: HypothesisFit) -> float:

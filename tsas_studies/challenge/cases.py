@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tsas_studies.challenge.conditions import Conditions
-from tsas_studies.challenge.faults import FAULTS, drawn_fault
+from tsas_studies.challenge.faults import FAULTS
 from tsas_studies.challenge.near import (
     MIXABLE,
     MIXED,
@@ -22,6 +22,7 @@ from tsas_studies.challenge.near import (
     NEAR_FULL,
     RESERVED,
     drawn_near,
+    drawn_variant,
     stream,
 )
 from tsas_studies.challenge.recording_faults import RECORDING_FAULTS, drawn_recording
@@ -210,7 +211,6 @@ def _all(rng: np.random.Generator) -> Drawn:
 
 
 def _triples(seed: int) -> Drawn:
-    """Yield three effects at once."""
     rng = stream(seed, "triples")
     chosen = [tuple(rng.choice(list(FULL), 3, replace=False)) for _ in range(RANDOM_TRIPLES)]
     for triple in (*TRIPLES, *chosen):
@@ -235,11 +235,10 @@ def _near(seed: int) -> Drawn:
 
 
 def _faults(seed: int) -> Drawn:
-    """Yield small faults of one sensor, at each size."""
     for fault in FAULTS:
         for size in SIZES:
-            hidden = Hidden(fault, drawn_fault(fault, size, seed))
-            yield f"small {fault}, size {size:g}", "fault", size, (hidden,)
+            drawn = drawn_variant(FAULTS[fault], size, stream(seed, f"small {fault} {size:g}"))
+            yield f"small {fault}, size {size:g}", "fault", size, (Hidden(fault, drawn),)
 
 
 def _of_recording(seed: int) -> Drawn:
@@ -261,14 +260,10 @@ def drawn(effect: str, size: float, rng: np.random.Generator) -> Hidden:
         phase = rng.uniform(0.0, 2.0 * np.pi)
         full |= {"cosine_mm": full["sine_mm"] * np.cos(phase)}
         full |= {"sine_mm": full["sine_mm"] * np.sin(phase)}
-    return Hidden(effect, {name: _scaled(name, value, factor) for name, value in full.items()})
-
-
-def _scaled(name: str, full: float, factor: float) -> float:
-    if name in UNSCALED:
-        return full
-    neutral = NEUTRAL.get(name, 0.0)
-    return float(neutral + factor * (full - neutral))
+    for name in full.keys() - UNSCALED:
+        neutral = NEUTRAL.get(name, 0.0)
+        full[name] = float(neutral + factor * (full[name] - neutral))
+    return Hidden(effect, full)
 
 
 def _unknowns(rng: np.random.Generator) -> Iterator[Hidden]:

@@ -64,13 +64,11 @@ def read_entry(
     there = [case for case in cases if (folder / case / FILE).is_file()]
     log = folder / LOG
     reasons = parse(Log, read_json(log), log).no_answer if log.is_file() else {}
-    return Entry(
-        {case: _read_diagnosis(folder / case / FILE, sums.get(case, {})) for case in there},
-        {case: reasons.get(case, f"no {FILE}") for case in cases if case not in there},
-    )
-
-
-def _read_diagnosis(path: Path, sums: Mapping[str, str]) -> SubmittedDiagnosis:
-    content = read_json(path)
-    check_said(content, sums, path)
-    return parse(SubmittedDiagnosis, content, path)
+    diagnoses = {}
+    for case in there:
+        path = folder / case / FILE
+        content = read_json(path)
+        check_said(content, sums.get(case, {}), path)
+        diagnoses[case] = parse(SubmittedDiagnosis, content, path)
+    missing = {case: reasons.get(case, f"no {FILE}") for case in cases if case not in there}
+    return Entry(diagnoses, missing)

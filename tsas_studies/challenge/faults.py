@@ -6,7 +6,7 @@ warn, or say nothing; it may not name something else.
 
 from collections.abc import Mapping
 
-from tsas_studies.challenge.near import PHASE, Size, drawn_variant, sized, stream
+from tsas_studies.challenge.near import PHASE, Size, sized
 
 # A force is read wrong by 0.1 to 0.4 N, a position by 0.02 to 0.06 mm.
 FAULTS: Mapping[str, tuple[Size, ...]] = {
@@ -41,8 +41,3 @@ FAULTS: Mapping[str, tuple[Size, ...]] = {
     "thermal_offset": (sized(amplitude_N=0.2, frequency_Hz=(0.08, 0.2), phase_rad=PHASE),),
     "unsteady_clock": (sized(jitter_s=0.002),),
 }  # fmt: skip
-
-
-def drawn_fault(fault: str, size: float, seed: int) -> dict[str, float]:
-    """Return the parameters of a fault at a size."""
-    return drawn_variant(FAULTS[fault], size, stream(seed, f"small {fault} {size:g}"))

@@ -65,7 +65,6 @@ def figures(judged: Sequence[Judged]) -> list[ScoreRate]:
 
 
 def _under(conditions: str, figure: ScoreRate) -> ScoreRate:
-    """Return a figure of the cases under conditions that are not clean."""
     name, title = f"{conditions}_{figure.name}", f"{conditions}, {figure.title}"
     return replace(figure, name=name, title=title)
 

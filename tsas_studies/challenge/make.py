@@ -53,7 +53,9 @@ def make(
     drawn = {}
     for case in cases:
         rng = np.random.default_rng([case.chance, case.number, RECORDINGS])
-        nuisance = drawn_nuisance(case.conditions, RUNS, _nuisance_stream(case))
+        # A stream of chance that the same case under clean conditions does not have.
+        own = np.random.default_rng([case.chance, case.number, NUISANCE, NUISANCE])
+        nuisance = drawn_nuisance(case.conditions, RUNS, own)
         bench = replace(drawn_bench(rng), nuisance=nuisance)
         drawn[sealed_id(salt, answer(case, bench))] = case, bench, rng
     answers = {}
@@ -73,11 +75,6 @@ def make(
     }
     text = json.dumps(sealed, indent=2, allow_nan=False)
     (out / FILE).write_text(text + "\n", encoding="utf-8")
-
-
-def _nuisance_stream(case: Case) -> np.random.Generator:
-    """Return a stream of chance that the same case under clean conditions does not have."""
-    return np.random.default_rng([case.chance, case.number, NUISANCE, NUISANCE])
 
 
 def _write(

@@ -102,7 +102,6 @@ def _figure(figure: ScoreRate) -> dict[str, Any]:
 
 
 def _effects(cases: list[Judged]) -> list[dict[str, Any]]:
-    """Return how many clean cases of each effect are in each class, by size."""
     clean = [j for j in cases if j.case.conditions == "clean"]
     return [
         {"effect": effect, "size": size, "cases": len(group)}

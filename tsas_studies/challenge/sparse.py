@@ -47,13 +47,11 @@ def _columns(bench: Bench, trial: HypothesisFit) -> tuple[list[str], Floats]:
     """Return the effect and the residual's change, shape (n,), of each term."""
     runs = bench.errors_for(trial)
     listed = [list(terms(run.run)) for run in runs]
-    columns = [
-        np.concatenate(
-            [_seen(run, bench.rig(trial, k), term) for k, (run, term) in enumerate(pairs)]
-        )
-        for pairs in (zip(runs, of_runs, strict=True) for of_runs in zip(*listed, strict=True))
+    of_runs = [
+        [_seen(run, bench.rig(trial, k), term) for term in own]
+        for k, (run, own) in enumerate(zip(runs, listed, strict=True))
     ]
-    return [term.effect for term in listed[0]], np.array(columns).T
+    return [term.effect for term in listed[0]], np.concatenate(of_runs, axis=1).T
 
 
 def _seen(run: RunErrors, rig: Rig, term: Term) -> Floats:

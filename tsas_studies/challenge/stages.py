@@ -81,7 +81,9 @@ def make_set(
     InputError: no case is left, the salt is no number, or `out` exists and `force` is not set.
     """
     first, count = at_least(0, seed, "seed"), at_least(1, seeds, "seeds", most=SEEDS)
-    grain = secrets.randbits(128) if salt is None else _grain(salt)
+    if salt is not None and not re.fullmatch("[0-9a-fA-F]{1,32}", of_kind((str,), salt)):
+        raise InputError(f"salt is {salt!r}", expected="1 to 32 hexadecimal digits")
+    grain = secrets.randbits(128) if salt is None else int(salt, 16)
     listed = [case for each in range(first, first + count) for case in cases.cases(each, grain)]
     if small:
         listed = list(cases.part(listed))
@@ -109,12 +111,6 @@ def make_set(
         "cases": dict(Counter(kind_label(case.kind, case.conditions) for case in listed)),
     }
     return SealedSet(summary, path)
-
-
-def _grain(salt: str) -> int:
-    if not re.fullmatch("[0-9a-fA-F]{1,32}", of_kind((str,), salt)):
-        raise InputError(f"salt is {salt!r}", expected="1 to 32 hexadecimal digits")
-    return int(salt, 16)
 
 
 def run_set(

@@ -35,7 +35,10 @@ def _summary(content: dict[str, Any]) -> Table:
         met = [_MET[f["met"]] for f in figures]
         if any(f["worst"] for f in figures):
             rows.append((title, "", *_beside(map(_rate, figures), blank)))
-            worst = (_worst(f["worst"]) for f in figures)
+            worst = (
+                f"{w['hits']} of {w['cases']}, {w['effect']}" if w else "no cases"
+                for w in (f["worst"] for f in figures)
+            )
             rows.append(("  the worst effect", target, *_beside(worst, met)))
         else:
             rows.append((title, target, *_beside(map(_rate, figures), met)))
@@ -45,12 +48,10 @@ def _summary(content: dict[str, Any]) -> Table:
         ("seconds per case", "", *_beside(map(_seconds, entries), blank)),
     ]
     cases = ", ".join(f"{n} {kind}" for kind, n in content["answers"]["cases"].items())
-    title = f"set of {_seeds(content['answers']['seed'])}: {cases}; rates with 95 % intervals"
+    seed = content["answers"]["seed"]
+    of = f"seed {seed}" if isinstance(seed, int) else f"seeds {', '.join(map(str, seed))}"
+    title = f"set of {of}: {cases}; rates with 95 % intervals"
     return title, ("figure", "target", *columns), rows
-
-
-def _seeds(seed: int | Sequence[int]) -> str:
-    return f"seed {seed}" if isinstance(seed, int) else f"seeds {', '.join(map(str, seed))}"
 
 
 def _beside(cells: Iterable[str], met: Iterable[str]) -> list[str]:
@@ -62,10 +63,6 @@ def _rate(figure: dict[str, Any]) -> str:
         return "no cases"
     low, high = 100 * figure["interval_low"], 100 * figure["interval_high"]
     return f"{100 * figure['share']:.1f} % [{low:.1f}, {high:.1f}] of {figure['cases']}"
-
-
-def _worst(worst: dict[str, Any] | None) -> str:
-    return f"{worst['hits']} of {worst['cases']}, {worst['effect']}" if worst else "no cases"
 
 
 def _rivals(entry: dict[str, Any]) -> str:

@@ -94,10 +94,15 @@ def close(
             ]
             scores[name][model] = over_seeds([one.score for one in runs])
         step()
+    drive = settings.drive  # of which kinematics do not know
+    unknown = {
+        "drive_stiffness_N_per_mm": drive.drive_stiffness_N_per_mm,
+        "motor_lag_s": drive.motor_lag_s,
+    }
     return ClosedCase(
         case=case.name,
         title=case.title,
-        hidden=case.hidden or _of_drive(settings),
+        hidden=case.hidden or unknown,
         verdict=found.verdict,
         reason=found.reason,
         named=[Named(effect=cause.effect, rivals=cause.rivals) for cause in found.named],
@@ -141,15 +146,6 @@ def _find_drive(
     drives = known_drives(identified, settings)
     step()
     return found.diagnosis, tuple(Known(sheet, drive) for drive in drives)
-
-
-def _of_drive(settings: Settings) -> dict[str, float]:
-    """Return what kinematics do not know of the drive."""
-    drive = settings.drive
-    return {
-        "drive_stiffness_N_per_mm": drive.drive_stiffness_N_per_mm,
-        "motor_lag_s": drive.motor_lag_s,
-    }
 
 
 def record(plant: Plant, known: Known, settings: Settings, folder: Path) -> None:

@@ -3,6 +3,7 @@
 "Differs" in these rows is the contradiction; a row that agrees would say that it is gone.
 """
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from tsas_cli.paper import Paper
@@ -28,7 +29,7 @@ CONTROLLERS = {
 
 def contradictions(paper: Paper) -> Group:
     """Return the nine contradictions, numbered."""
-    found = (
+    found: tuple[Iterable[Row], ...] = (
         [_misplaced(paper)],
         [_bore(paper)],
         last_lump(paper),
@@ -85,29 +86,25 @@ def _bore(paper: Paper) -> Row:
     )
 
 
-def _excluded(paper: Paper) -> list[Row]:
+def _excluded(paper: Paper) -> Iterator[Row]:
     """4: Table 4's bounds against what Eq. (37) gives for the chosen kr."""
-    rows = []
     for name, value in phi(paper).items():
         lower, upper = paper[f"adaptation.{name}.lower"], paper[f"adaptation.{name}.upper"]
         start = paper.value(f"adaptation.{name}.initial")
         near = lower if value < lower.value else upper
         side = "below the lower" if near is lower else "above the upper"
-        rows.append(
-            holds(
-                f"{GREEK[name]} of Eq. (37) lies inside the bounds of Table 4",
-                f"{lower.source}, Eq. (37)",
-                true=lower.value <= value <= upper.value,
-                criterion=f"in lying between {lower.value:g} and {upper.value:g}",
-                unit=lower.unit,
-                paper=near.value if not lower.value <= value <= upper.value else start,
-                ours=value,
-                because=f"it is {side} bound of {near.value:g}, {value / near.value:.2g} of it",
-                evidence=f"From kr = {paper.value('stiffness.chosen.kr'):g} N/(s rpm) and the "
-                f"text's J, B and kL; the start, {start:g}, is {start / value:.3g} times that.",
-            )
+        yield holds(
+            f"{GREEK[name]} of Eq. (37) lies inside the bounds of Table 4",
+            f"{lower.source}, Eq. (37)",
+            true=lower.value <= value <= upper.value,
+            criterion=f"in lying between {lower.value:g} and {upper.value:g}",
+            unit=lower.unit,
+            paper=near.value if not lower.value <= value <= upper.value else start,
+            ours=value,
+            because=f"it is {side} bound of {near.value:g}, {value / near.value:.2g} of it",
+            evidence=f"From kr = {paper.value('stiffness.chosen.kr'):g} N/(s rpm) and the "
+            f"text's J, B and kL; the start, {start:g}, is {start / value:.3g} times that.",
         )
-    return rows
 
 
 def _drive_without_reaction(paper: Paper) -> list[Row]:
@@ -139,9 +136,8 @@ def _drive_without_reaction(paper: Paper) -> list[Row]:
     ]
 
 
-def _swapped(paper: Paper) -> list[Row]:
+def _swapped(paper: Paper) -> Iterator[Row]:
     """6: RMS errors fall with the disturbance while the largest errors grow."""
-    rows = []
     for name, words in CONTROLLERS.items():
         rms = [paper.value(f"tracking.{case}.rmse_{name}") for case in ("undisturbed", "disturbed")]
         largest = [
@@ -153,19 +149,16 @@ def _swapped(paper: Paper) -> list[Row]:
         ]
         growth, of_rms = largest[1] / largest[0], rms[1] / rms[0]
         peak = [one / other for one, other in zip(largest, rms, strict=True)]
-        rows.append(
-            holds(
-                f"With the disturbance RMSE and largest error grow together, {words}",
-                "Table 5; Figs. 10 and 11, text",
-                true=(growth > 1.0) == (of_rms > 1.0),
-                criterion="in both being above or both below 1",
-                unit="1",
-                paper=of_rms,
-                ours=growth,
-                because=f"RMSE becomes {of_rms:.2f} times what it was, and the largest error "
-                f"{growth:.2f} times",
-                evidence=f"RMSE {rms[0]:g} to {rms[1]:g} N, largest error {largest[0]:g} to "
-                f"{largest[1]:g} N: {peak[0]:.1f} and {peak[1]:.1f} times RMSE.",
-            )
+        yield holds(
+            f"With the disturbance RMSE and largest error grow together, {words}",
+            "Table 5; Figs. 10 and 11, text",
+            true=(growth > 1.0) == (of_rms > 1.0),
+            criterion="in both being above or both below 1",
+            unit="1",
+            paper=of_rms,
+            ours=growth,
+            because=f"RMSE becomes {of_rms:.2f} times what it was, and the largest error "
+            f"{growth:.2f} times",
+            evidence=f"RMSE {rms[0]:g} to {rms[1]:g} N, largest error {largest[0]:g} to "
+            f"{largest[1]:g} N: {peak[0]:.1f} and {peak[1]:.1f} times RMSE.",
         )
-    return rows

@@ -1,6 +1,7 @@
 """Contradictions 3 and 7 to 9: the last lump, free tendon, the biased line, ill-posed bristles."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.optimize import brentq
@@ -34,7 +35,11 @@ def last_lump(paper: Paper) -> list[Row]:
     L = paper.value("rig.sheath_length")
     k = tendon_stiffness(paper) * n / L
     printed, right = -2.0 * k, -(k + kL)
-    seen = [_stiffness_at_drive(k, n, corner) for corner in (printed, right)]
+    seen = []  # the static stiffness of n lumps without friction, K X = −k x_in e1
+    for corner in (printed, right):
+        K = k * (np.eye(n, k=1) + np.eye(n, k=-1) - 2.0 * np.eye(n))
+        K[-1, -1] = corner
+        seen.append(float(k * (1.0 - np.linalg.solve(K, np.eye(n)[0] * -k)[0])))
     series = 1.0 / (L / tendon_stiffness(paper) + 1.0 / kL)
     return [
         holds(
@@ -52,14 +57,6 @@ def last_lump(paper: Paper) -> list[Row]:
             f"({series:.4f}).",
         )
     ]
-
-
-def _stiffness_at_drive(k: float, n: int, corner: float) -> float:
-    """Return the static stiffness of n lumps without friction, K X = −k x_in e1 [N/mm]."""
-    K = k * (np.diag(np.full(n - 1, 1.0), 1) + np.diag(np.full(n - 1, 1.0), -1) - 2.0 * np.eye(n))
-    K[-1, -1] = corner
-    x = np.linalg.solve(K, np.eye(n)[0] * -k)
-    return float(k * (1.0 - x[0]))
 
 
 def free_tendon(paper: Paper) -> list[Row]:
@@ -96,29 +93,24 @@ def free_tendon(paper: Paper) -> list[Row]:
     ]
 
 
-def biased(paper: Paper) -> list[Row]:
+def biased(paper: Paper) -> Iterator[Row]:
     """8: a straight line through a whole dead band against the secant that (33) takes."""
-    rows = []
     for name, band in bands_of(bench_rig(paper), paper).items():
         printed, slope = paper["stiffness.theory.km_dead_band"], band.slope()
-        rows.append(
-            within(
-                f"A line through the dead band {name.replace('_', '-')} has km of Eq. (29)",
-                printed,
-                slope,
-                percent=PERCENT,
-                because="slip spreads along the sheath, so that the tension is steep after the "
-                "reversal and flat at the end of the band: the line is biased without any noise",
-                evidence=f"Evenly spaced points over {band.width_mm:.3f} mm; secant "
-                f"{band.secant:.1f}, tangent from infinity to {band.last_tangent:.1f} N/mm.",
-            )
+        yield within(
+            f"A line through the dead band {name.replace('_', '-')} has km of Eq. (29)",
+            printed,
+            slope,
+            percent=PERCENT,
+            because="slip spreads along the sheath, so that the tension is steep after the "
+            "reversal and flat at the end of the band: the line is biased without any noise",
+            evidence=f"Evenly spaced points over {band.width_mm:.3f} mm; secant "
+            f"{band.secant:.1f}, tangent from infinity to {band.last_tangent:.1f} N/mm.",
         )
-    return rows
 
 
-def ill_posed(paper: Paper) -> list[Row]:
+def ill_posed(paper: Paper) -> Iterator[Row]:
     """9: steady sliding of the dynamic model as printed, by the eigenvalues of disturbances."""
-    rows = []
     for group in ("a", "b"):
         fastest = paper.value("rig.input_amplitude") * paper.value(
             f"groups.{group}.angular_frequency"
@@ -128,23 +120,20 @@ def ill_posed(paper: Paper) -> list[Row]:
             growth_rate(dynamic_rig(paper, group, as_printed=literal), _contraction(paper, fastest))
             for literal in (True, False)
         ]
-        rows.append(
-            holds(
-                f"Contraction of group {group} is stable as printed",
-                "Eq. (15), Table 1, Fig. 4",
-                true=limit is None or fastest < limit,
-                criterion="with its fastest speed below the limit",
-                unit="mm/s",
-                paper=fastest,
-                ours=limit,
-                because=f"at f_out = {F_OUT_N:g} N sliding is unstable above the limit, and Fig. 4 "
-                "shows a curve all the same",
-                evidence=f"At {fastest:g} mm/s the fastest disturbance grows by "
-                f"{signed(rates[0], 0)}/s as printed, {signed(rates[1], 0)}/s with critically "
-                "damped bristles.",
-            )
+        yield holds(
+            f"Contraction of group {group} is stable as printed",
+            "Eq. (15), Table 1, Fig. 4",
+            true=limit is None or fastest < limit,
+            criterion="with its fastest speed below the limit",
+            unit="mm/s",
+            paper=fastest,
+            ours=limit,
+            because=f"at f_out = {F_OUT_N:g} N sliding is unstable above the limit, and Fig. 4 "
+            "shows a curve all the same",
+            evidence=f"At {fastest:g} mm/s the fastest disturbance grows by "
+            f"{signed(rates[0], 0)}/s as printed, {signed(rates[1], 0)}/s with critically "
+            "damped bristles.",
         )
-    return rows
 
 
 def _contraction(paper: Paper, speed: float) -> Sliding:

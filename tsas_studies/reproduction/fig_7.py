@@ -184,8 +184,7 @@ def _figure(paper: Paper, name: str, band: DeadBand) -> Figure:
     ends = np.array([x[0], x[-1]])
 
     def line(slope: float) -> Floats:
-        along: Floats = middle_f + sign * 1e-3 * slope * (ends - middle_x)
-        return along
+        return middle_f + sign * 1e-3 * slope * (ends - middle_x)
 
     measured = _measured(paper, name).value
     return Figure(

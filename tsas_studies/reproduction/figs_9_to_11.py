@@ -80,8 +80,7 @@ def _smaller_later(reading: Reading) -> Row:
 
 
 def _estimates(run: Tracked) -> Floats:
-    estimates: Floats = run.columns[MEMORY_AT : MEMORY_AT + 3]
-    return estimates
+    return run.columns[MEMORY_AT : MEMORY_AT + 3]
 
 
 def _within_bounds(condition: str, reading: Reading) -> Row:

@@ -1,6 +1,7 @@
 """Table 3: the stiffnesses km and kr of each phase by theory, Eqs. (25) and (29) to (34)."""
 
 import math
+from collections.abc import Iterator
 
 from tsas_cli.paper import Paper
 from tsas_cli.physics.closed_form.capstan import dead_band_stiffness
@@ -60,51 +61,41 @@ def _km_rows(paper: Paper, km: dict[str, float]) -> list[Row]:
     ]
 
 
-def _kr_rows(paper: Paper, km: dict[str, float]) -> list[Row]:
+def _kr_rows(paper: Paper, km: dict[str, float]) -> Iterator[Row]:
     factor = kr_per_km(paper)
-    rows = []
     for phase in PHASES:
         printed, kr = paper[f"stiffness.theory.kr_{phase}"], factor * km[phase]
         times = printed.value / kr
-        rows.append(
-            to_the_digit(
-                f"kr, {phase.replace('_', ' ')}",
-                printed,
-                kr,
-                because=f"the printed number is {times:.4g} times what Eq. (34) gives",
-                evidence=f"km = {km[phase]:.4g} N/mm times {factor:.6f} mm/s per rpm, Eq. (34).",
-            )
+        yield to_the_digit(
+            f"kr, {phase.replace('_', ' ')}",
+            printed,
+            kr,
+            because=f"the printed number is {times:.4g} times what Eq. (34) gives",
+            evidence=f"km = {km[phase]:.4g} N/mm times {factor:.6f} mm/s per rpm, Eq. (34).",
         )
     chosen = paper["stiffness.chosen.km"]
-    rows.append(
-        to_the_digit(
-            "kr, chosen for the controllers",
-            paper["stiffness.chosen.kr"],
-            factor * chosen.value,
-            evidence=f"km = {chosen.value:g} N/mm times {factor:.6f} mm/s per rpm, Eq. (34).",
-        )
+    yield to_the_digit(
+        "kr, chosen for the controllers",
+        paper["stiffness.chosen.kr"],
+        factor * chosen.value,
+        evidence=f"km = {chosen.value:g} N/mm times {factor:.6f} mm/s per rpm, Eq. (34).",
     )
-    return rows
 
 
-def _elastic_rows(paper: Paper, km: dict[str, float]) -> list[Row]:
+def _elastic_rows(paper: Paper, km: dict[str, float]) -> Iterator[Row]:
     """Judge the statement that the stretch of the tendon may be left out of Eqs. (30) and (32)."""
-    rows = []
     for phase, direction in (("contraction", 1.0), ("loosening", -1.0)):
         kept = stiffness_in_slip(bench_rig(paper), direction)
         off = 100.0 * (km[phase] / kept - 1.0)
-        rows.append(
-            holds(
-                f"km, {phase}: the elastic term may be neglected",
-                "text, Eq. (30)",
-                true=abs(off) <= NEGLIGIBLE_PERCENT,
-                criterion=f"to {NEGLIGIBLE_PERCENT:g} % of km",
-                unit="N/mm",
-                paper=km[phase],
-                ours=kept,
-                because=f"without the term km is {signed(off, 1)} % off",
-                evidence=f"With the term km is {kept:.4f}, without it {km[phase]:.4f} N/mm, "
-                f"{signed(off, 2)} %.",
-            )
+        yield holds(
+            f"km, {phase}: the elastic term may be neglected",
+            "text, Eq. (30)",
+            true=abs(off) <= NEGLIGIBLE_PERCENT,
+            criterion=f"to {NEGLIGIBLE_PERCENT:g} % of km",
+            unit="N/mm",
+            paper=km[phase],
+            ours=kept,
+            because=f"without the term km is {signed(off, 1)} % off",
+            evidence=f"With the term km is {kept:.4f}, without it {km[phase]:.4f} N/mm, "
+            f"{signed(off, 2)} %.",
         )
-    return rows

@@ -1,6 +1,7 @@
 """Tables 1, 2 and 4: whether their numbers agree with each other and with the text."""
 
 import math
+from collections.abc import Iterator
 
 from tsas_cli.paper import Paper
 from tsas_cli.physics.closed_form.capstan import dead_band_width
@@ -24,10 +25,7 @@ def tables_1_2_4(paper: Paper) -> Group:
         "Tables 1, 2 and 4: their numbers among each other",
         ("Numbers that follow from others of the tables or of the text.",),
         (
-            _length(paper),
-            _lead(paper),
-            _preload(paper),
-            _friction(paper),
+            *_geometry(paper),
             *_tendon(paper),
             _bristles(paper),
             *_bounds(paper),
@@ -47,18 +45,16 @@ def phi(paper: Paper) -> dict[str, float]:
     }
 
 
-def _length(paper: Paper) -> Row:
-    return to_the_digit(
+def _geometry(paper: Paper) -> Iterator[Row]:
+    """Yield what length, drive, preload and friction say of each other."""
+    yield to_the_digit(
         "Sheath's length L = R θ of groups a and b",
         paper["rig.sheath_length"],
         sheath_length_mm(paper, "a"),
         evidence=f"R = {paper.value('groups.a.radius_of_curvature'):g} mm and "
         f"θ = {paper['groups.a.total_bend'].value:g} π of Table 2.",
     )
-
-
-def _lead(paper: Paper) -> Row:
-    return within(
+    yield within(
         "Leading term of the drive's inverse against kinematics, 60 im/(2π r1)",
         paper["feedforward.lead"],
         1.0 / kr_per_km(paper),
@@ -67,20 +63,14 @@ def _lead(paper: Paper) -> Row:
         f"for im = {paper.value('rig.gear_ratio'):g} and r1 = "
         f"{paper.value('rig.turntable_radius'):g} mm, Eq. (48).",
     )
-
-
-def _preload(paper: Paper) -> Row:
-    lowest = paper.value("reference.mean") - paper.value("reference.amplitude")
-    return to_the_digit(
+    mean, amplitude = paper.value("reference.mean"), paper.value("reference.amplitude")
+    yield to_the_digit(
         "The reference of Figs. 9 to 11 begins at the preload",
         paper["rig.preload"],
-        lowest,
-        evidence=f"{paper.value('reference.mean'):g} − {paper.value('reference.amplitude'):g} N.",
+        mean - amplitude,
+        evidence=f"{mean:g} − {amplitude:g} N.",
     )
-
-
-def _friction(paper: Paper) -> Row:
-    return to_the_digit(
+    yield to_the_digit(
         "Friction coefficient of the static model is that of the dynamic one in motion",
         paper["rig.friction_coefficient"],
         paper.value("rig.dynamic_friction_coefficient"),
@@ -119,7 +109,8 @@ def _tendon(paper: Paper) -> list[Row]:
 def _bristles(paper: Paper) -> Row:
     """Say where σ1 comes from: √(σ0 m) of a block of 1 kg, in N s/mm."""
     sigma0, sigma1 = paper.value("rig.bristle_stiffness"), paper["rig.micro_damping"]
-    lump_kg = lump_mass_kg(paper)
+    per_mm = paper.value("rig.linear_density") * 1e-5
+    lump_kg = per_mm * sheath_length_mm(paper, "a") / paper.value("rig.microelements")
     critical = 2.0 * math.sqrt(1e-3 * sigma0 * lump_kg)
     return within(
         f"Damping of the bristles is √(σ0 · {BLOCK_KG:g} kg)",
@@ -131,30 +122,20 @@ def _bristles(paper: Paper) -> Row:
     )
 
 
-def lump_mass_kg(paper: Paper) -> float:
-    """Return the mass of one of the lumps of Table 1."""
-    per_mm = paper.value("rig.linear_density") * 1e-5
-    return per_mm * sheath_length_mm(paper, "a") / paper.value("rig.microelements")
-
-
-def _bounds(paper: Paper) -> list[Row]:
-    rows = []
+def _bounds(paper: Paper) -> Iterator[Row]:
     for name, value in phi(paper).items():
         initial, lower, upper = (
             paper[f"adaptation.{name}.{kind}"].value for kind in ("initial", "lower", "upper")
         )
         low, high = lower / initial, upper / initial
-        rows.append(
-            holds(
-                f"{GREEK[name]}: the bounds are a tenth and ten times the start",
-                "Table 4",
-                true=math.isclose(low, 0.1) and math.isclose(high, 10.0),
-                criterion="exactly",
-                because=f"they are {low:g} and {high:g} times the start",
-                evidence=f"{lower:g}, {initial:g} and {upper:g}; Eq. (37) gives {value:.3g}.",
-            )
+        yield holds(
+            f"{GREEK[name]}: the bounds are a tenth and ten times the start",
+            "Table 4",
+            true=math.isclose(low, 0.1) and math.isclose(high, 10.0),
+            criterion="exactly",
+            because=f"they are {low:g} and {high:g} times the start",
+            evidence=f"{lower:g}, {initial:g} and {upper:g}; Eq. (37) gives {value:.3g}.",
         )
-    return rows
 
 
 def _gains(paper: Paper) -> list[Row]:
@@ -180,21 +161,17 @@ def _gains(paper: Paper) -> list[Row]:
     ]
 
 
-def _widths(paper: Paper) -> list[Row]:
+def _widths(paper: Paper) -> Iterator[Row]:
     """Return how far the drive goes in a dead band of the inverse model, at either end."""
     rig, mean = bench_rig(paper), paper.value("reference.mean")
-    rows = []
     for tension in (rig.preload_N, mean + paper.value("reference.amplitude")):
         width = dead_band_width(tension, wrap_of(rig), rig.sheath_length_mm, rig.tendon_stiffness_N)
         share = 100.0 * width / (2.0 * paper.value("rig.input_amplitude"))
-        rows.append(
-            undetermined(
-                f"Width of the dead band at f_out = {tension:g} N",
-                "Eqs. (22), (27) to (29)",
-                unit="mm",
-                ours=width,
-                because="the paper prints none",
-                evidence=f"F L (e^a + e^−a − 2)/(a EA); {share:.1f} % of the stroke of Fig. 4.",
-            )
+        yield undetermined(
+            f"Width of the dead band at f_out = {tension:g} N",
+            "Eqs. (22), (27) to (29)",
+            unit="mm",
+            ours=width,
+            because="the paper prints none",
+            evidence=f"F L (e^a + e^−a − 2)/(a EA); {share:.1f} % of the stroke of Fig. 4.",
         )
-    return rows

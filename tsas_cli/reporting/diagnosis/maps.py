@@ -1,7 +1,7 @@
 """Where the residual was and is now: its mean and scatter over the strongest signals."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -41,7 +41,14 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     if not maps.before:
         return None
     title = "Where the residual was, and is now" if diagnosis.named else "Where the residual is"
-    shown = pictures(list(_panels(diagnosis)), key="diagnosis-map")
+    after = maps.after if diagnosis.named else {}
+    panels = [
+        Panel(channel, signal, bins, after.get(channel, {}).get(signal, ()))
+        for channel, signals in maps.before.items()
+        for signal, bins in signals.items()
+        if bins
+    ]
+    shown = pictures(panels, key="diagnosis-map")
     if not shown:
         nothing = "Over no signal does the residual stand out of the noise."
         return Section("diagnosis-maps", title, (nothing,))
@@ -64,14 +71,6 @@ def pictures(
         _picture([p for p in panels if p.signal == signal], signal, key, names)
         for signal in strongest
     )
-
-
-def _panels(diagnosis: DiagnosisFile) -> Iterator[Panel]:
-    after = diagnosis.residual_map.after if diagnosis.named else {}
-    for channel, signals in diagnosis.residual_map.before.items():
-        for signal, bins in signals.items():
-            if bins:
-                yield Panel(channel, signal, bins, after.get(channel, {}).get(signal, ()))
 
 
 def _strength(panel: Panel) -> float:
@@ -135,27 +134,21 @@ def draw_residual_map(
         for bins, role, name, side in series:
             if bins:
                 shift = side * spread * bool(panel.after)
-                style = {"color": STAND_IN[role], "label": name, "linestyle": joined}
-                _series(axes, bins, shift=shift, by_label=by_label, **style)
+                at = [place + shift for place in _places(bins, by_label=by_label)]
+                look = {"marker": "o", "markersize": 4, "elinewidth": 0.9, "linestyle": joined}
+                means, yerr = [b.mean for b in bins], [b.sd for b in bins]
+                axes.errorbar(at, means, yerr=yerr, color=STAND_IN[role], label=name, **look)
         axes.set_ylabel(f"{panel.channel.rsplit('_', 1)[0]} / noise")
         axes.margins(x=0.04)
-    if by_label:
-        _name_bins(rows[-1], panels[0].before)
+    if by_label:  # every second or third where they are many
+        named = panels[0].before
+        shown = range(0, len(named), -(-len(named) // _MOST_LABELS))
+        labels = [label_of(named[place].label).replace(" ", "\n") for place in shown]
+        rows[-1].set_xticks(list(shown), labels)
+        rows[-1].set_xlim(-0.5, len(named) - 0.5)
     rows[-1].set_xlabel(label)
     figure.align_ylabels()
     legend(figure, rows[0], ncols=3)
-
-
-def _series(axes: Any, bins: Sequence[Bin], *, shift: float, by_label: bool, **style: Any) -> None:
-    axes.errorbar(
-        [place + shift for place in _places(bins, by_label=by_label)],
-        [b.mean for b in bins],
-        yerr=[b.sd for b in bins],
-        marker="o",
-        markersize=4,
-        elinewidth=0.9,
-        **style,
-    )
 
 
 def _places(bins: Sequence[Bin], *, by_label: bool) -> list[float]:
@@ -163,12 +156,3 @@ def _places(bins: Sequence[Bin], *, by_label: bool) -> list[float]:
     if by_label:
         return [float(number) for number in range(len(bins))]
     return [((b.low or 0.0) + (b.high or 0.0)) / 2 for b in bins]
-
-
-def _name_bins(axes: Any, bins: Sequence[Bin]) -> None:
-    """Write the bins' labels, every second or third where they are many."""
-    step = -(-len(bins) // _MOST_LABELS)
-    places = range(0, len(bins), step)
-    labels = [label_of(bins[place].label).replace(" ", "\n") for place in places]
-    axes.set_xticks(list(places), labels)
-    axes.set_xlim(-0.5, len(bins) - 0.5)

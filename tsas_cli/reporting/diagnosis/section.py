@@ -130,8 +130,13 @@ def gains_part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Sec
     """Return the part, None where no channel was judged."""
     if not channels:
         return None
-    named = diagnosis.extended
-    alt = "; ".join(_in_words(name, c, named=named) for name, c in channels.items())
+    named, how = diagnosis.extended, diagnosis.evidence.sentence
+    alt = "; ".join(
+        f"{in_words(name)}: nominal model {plain(c.rmse_before, 3)}"
+        + (f", extended model {plain(c.rmse_after, 3)}" if named else "")
+        + f", attainable {plain(c.attainable, 3)}, noise level {plain(c.noise_floor, 3)} {c.unit}"
+        for name, c in channels.items()
+    )
     shown = picture(
         partial(draw_gains, channels=channels, named=named),
         key="diagnosis-gains",
@@ -142,15 +147,10 @@ def gains_part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Sec
     return Section(
         "diagnosis-gains",
         "Residual on held-out data",
-        tuple(text for text in (_judged(diagnosis), _BOUNDS) if text),
+        tuple(filter(None, (how[:1].upper() + how[1:], _BOUNDS))),
         tables=(gains_table(channels, named=named),),
         pictures=(shown,),
     )
-
-
-def _judged(diagnosis: DiagnosisFile) -> str:
-    how = diagnosis.evidence.sentence
-    return how[:1].upper() + how[1:]
 
 
 def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
@@ -169,15 +169,6 @@ def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
         for name, c in channels.items()
     )
     return table_by_column("RMS of the residual on held-out data", rows)
-
-
-def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
-    after = f", extended model {plain(channel.rmse_after, 3)}" if named else ""
-    return (
-        f"{in_words(name)}: nominal model {plain(channel.rmse_before, 3)}"
-        f"{after}, attainable {plain(channel.attainable, 3)}, noise level "
-        f"{plain(channel.noise_floor, 3)} {channel.unit}"
-    )
 
 
 def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> None:

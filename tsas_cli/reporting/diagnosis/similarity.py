@@ -99,14 +99,25 @@ def draw_similarity(
     Of `similarity`, from 0 to 1, shape (n, n), only what is below the diagonal is read; from
     `alike` on a square is in the loud colour.
     """
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
     axes = figure.add_subplot()
     n = len(effects)
     for role, low, high, label in (
         ("alike", alike, np.inf, f"alike, {alike} or more"),
         ("muted", _FAINT, alike, f"less than {alike}"),
     ):
-        pairs = [(i, j) for i in range(n) for j in range(i) if low <= similarity[i, j] < high]
-        _squares(axes, pairs, [float(similarity[pair]) for pair in pairs], role=role, label=label)
+        squares = [
+            Path(_CORNERS * 0.94 * similarity[i, j] + (j, i), closed=True)
+            for i in range(n)
+            for j in range(i)
+            if low <= similarity[i, j] < high
+        ]
+        if squares:  # all of one colour as one path
+            patch = PathPatch(Path.make_compound_path(*squares), linewidth=0, label=label)
+            patch.set_facecolor(STAND_IN[role])
+            axes.add_patch(patch)
     for place, name in enumerate(effects):
         axes.text(place - 0.4, place, name, va="center", fontsize=9)
         axes.plot([-0.5, place - 0.5], [place + 0.5] * 2, color=STAND_IN["line"], linewidth=0.6)
@@ -115,21 +126,3 @@ def draw_similarity(
     axes.set(xlim=(-0.6, WIDTH_IN / cell_in), ylim=(n - 0.4, -0.6))
     axes.set_axis_off()
     legend(figure, handlelength=1.0)
-
-
-def _squares(
-    axes: Any, pairs: Sequence[tuple[int, int]], sides: Sequence[float], *, role: str, label: str
-) -> None:
-    """Draw all squares of one colour as one path."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
-    if not pairs:
-        return
-    squares = [
-        Path(_CORNERS * 0.94 * side + (column, row), closed=True)
-        for (row, column), side in zip(pairs, sides, strict=True)
-    ]
-    patch = PathPatch(Path.make_compound_path(*squares), linewidth=0, label=label)
-    patch.set_facecolor(STAND_IN[role])
-    axes.add_patch(patch)

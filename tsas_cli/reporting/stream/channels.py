@@ -5,7 +5,7 @@ the series are not. In the viewer's plane scales are equal and y points downward
 scaled to a frame, and ticks say what they were.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Self
@@ -16,7 +16,6 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from tsas_cli.recordings.quality.finding import Finding
-from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import dark, role_of_controller
 from tsas_cli.reporting.drawing import kept_samples
@@ -224,23 +223,17 @@ def record_phases(recorder: Recorder, run: SeenRun) -> None:
         labels=[phase.label for phase in PHASES],
         colors=[dark(phase.colour) for phase in PHASES],
     )
-    starts, keys = _changes(run.segments)
+    starts: list[float] = []
+    keys: list[str] = []
+    for segment, after in zip(run.segments, (*run.segments[1:], None), strict=True):
+        starts.append(segment.start_s)
+        keys.append(segment.phase if segment.phase in BY_KEY else "unknown")
+        if after is None or after.start_s > segment.end_s:  # a stretch in none has no name
+            starts.append(segment.end_s)
+            keys.append("")
     recorder.static(run.entity("phase"), look)
     states = rr.StateChange.columns(state=keys)
     recorder.columns(run.entity("phase"), run.at(np.array(starts)), states)
-
-
-def _changes(segments: Sequence[PhaseSegment]) -> tuple[list[float], list[str]]:
-    """Return when which phase begins [s]; a stretch in none begins with an empty name."""
-    starts: list[float] = []
-    keys: list[str] = []
-    for segment, after in zip(segments, (*segments[1:], None), strict=True):
-        starts.append(segment.start_s)
-        keys.append(segment.phase if segment.phase in BY_KEY else "unknown")
-        if after is None or after.start_s > segment.end_s:
-            starts.append(segment.end_s)
-            keys.append("")
-    return starts, keys
 
 
 def axis_of(values: Floats, end: float) -> Axis:

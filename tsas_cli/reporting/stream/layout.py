@@ -110,7 +110,6 @@ def _over_phases(
 
 
 def _all_runs(runs: Sequence[SeenRun]) -> Part | None:
-    """Return the loops of several runs beside each other."""
     loops = [(run, run.loops[0]) for run in runs if run.loops]
     if not 2 <= len(loops) <= ALL_RUNS:
         return None

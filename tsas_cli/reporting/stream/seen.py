@@ -137,6 +137,7 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     given, tracking, folders = tuple(_sources(inputs)), inputs.get(TrackingFile), inputs.folders
     stages = dict.fromkeys(source.stage for source in given)
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
+    parted = inputs.get(CalibrationFile), inputs.get(DiagnosisFile), inputs.get(SimulationFile)
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
         written = {stage: written_in(folders[stage], run.id) for stage in stages}
@@ -148,7 +149,8 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
             for name in BY_NAME
             if name in file.names and name != TIME
         )
-        yield SeenRun(inputs, file, channels, _segments(inputs, run.id), tracked.get(run.id))
+        phases = (s.segments[run.id] for s in parted if s is not None and run.id in s.segments)
+        yield SeenRun(inputs, file, channels, next(phases, ()), tracked.get(run.id))
 
 
 def _sources(inputs: Inputs) -> Iterator[Source]:
@@ -180,11 +182,3 @@ def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
     taken = {name for names in chosen for name in names or ()}
     every = not chosen or None in chosen
     return [run for run in dataset.runs if (every or run.id in taken) and run.id not in broken]
-
-
-def _segments(inputs: Inputs, run: str) -> Sequence[PhaseSegment]:
-    stages = inputs.get(CalibrationFile), inputs.get(DiagnosisFile), inputs.get(SimulationFile)
-    for stage in stages:
-        if stage is not None and run in stage.segments:
-            return stage.segments[run]
-    return ()

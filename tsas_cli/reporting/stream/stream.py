@@ -94,7 +94,6 @@ def plain_text(text: str) -> str:
 
 
 def _first_screen(inputs: Inputs) -> Iterator[str]:
-    """Yield the first screen of the page."""
     first = glance(inputs)
     if first is None:
         return

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 import rerun as rr
 import rerun.blueprint as rrb
 
@@ -116,6 +115,8 @@ def record_tendons(
     tendons: Mapping[Source, tuple[Rig, Frames]],
 ) -> None:
     """Record tendons behind each other, and above each the tension along it, to one scale."""
+    from matplotlib import colormaps
+
     every = np.concatenate([frames.tension_N.ravel() for _, frames in tendons.values()])
     low, high = float(np.nanmin(every)), float(np.nanmax(every))
     size = _size([rig for rig, _ in tendons.values()])
@@ -131,7 +132,11 @@ def record_tendons(
         text = f"{source.label}, {low:.3g} to {high:.3g} N"
         name = rr.Points3D([line[0]], labels=[text], colors=colour, radii=0.0, show_labels=True)
         recorder.static((*mine, "name"), name)
-        shades = _shades(0.5 * (tension[:, 1:] + tension[:, :-1]), low, high)
+        # A map that is even to the eye and never lost on black; colours as 0xRRGGBBAA.
+        middles = 0.5 * (tension[:, 1:] + tension[:, :-1])
+        share = 0.18 + 0.79 * (middles - low) / ((high - low) or 1.0)
+        packed = np.ascontiguousarray(colormaps["plasma"](share, bytes=True)).view(">u4")
+        shades = packed[..., 0].astype(np.uint32)
         # The tendon in pieces, thick where they slip.
         pieces = np.stack((line[:-1], line[1:]), axis=1).astype(np.float32)
         recorder.static((*mine, "tendon"), rr.LineStrips3D(pieces))
@@ -189,12 +194,3 @@ def sheath_of(length_mm: float, bend_rad: float, elements: int) -> Floats:
 def _size(rigs: Sequence[Rig]) -> float:
     """Return how large the scene is [mm]: half a turn of the longest sheath is as wide."""
     return 2.0 / math.pi * max(rig.sheath_length_mm for rig in rigs)
-
-
-def _shades(tension_N: Floats, low: float, high: float) -> npt.NDArray[np.uint32]:
-    """Return 0xRRGGBBAA of tensions, of a map that is even to the eye and never lost on black."""
-    from matplotlib import colormaps
-
-    share = 0.18 + 0.79 * (tension_N - low) / ((high - low) or 1.0)
-    packed = np.ascontiguousarray(colormaps["plasma"](share, bytes=True)).view(">u4")
-    return packed[..., 0].astype(np.uint32)

@@ -193,7 +193,6 @@ def _picture(
 
 
 def _panels_in(condition: RunsUnderCondition) -> float:
-    """Return the height in inches that a panel for each run needs."""
     panels = len(condition.runs)
     return 0.6 + (1.15 * panels if panels > 1 else 2.4)
 

@@ -75,39 +75,33 @@ def section(inputs: Inputs) -> Section | None:
     )
 
 
-def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -> list[str]:
-    said = [_wanted(tracking, conditions[0]), _loop(tracking)]
-    said += [_change(condition) for condition in conditions if condition.changes]
-    if tracking.gains != "default":
-        said.append(f"The gains are {tracking.gains}.")
-    said.append(
-        "Errors are wanted less true force at the load; outside 2 % is the time in which they are "
-        "beyond 2 % of the wanted force's range. Plots show the runs with the first seed."
-    )
-    return [*said, "Keep in mind:"] if tracking.notes else said
-
-
-def _wanted(tracking: TrackingFile, condition: RunsUnderCondition) -> str:
-    run = condition.runs[0]
+def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -> Iterator[str]:
+    run = conditions[0].runs[0]
     wanted = run.columns[WANTED]
     low, high = plain(float(wanted.min()), 3), plain(float(wanted.max()), 3)
     what = tracking.reference.shape or tracking.reference.file
-    return (
+    yield (
         f"The wanted force at the load ({what}) goes from {low} to {high} N, for "
         f"{plain(float(np.ptp(run.time_s)), 3)} s. Simulated, not measured."
     )
-
-
-def _loop(tracking: TrackingFile) -> str:
     sensor = tracking.settings.sensor
     same = tracking.model == tracking.plant
     tendon = ", with the dynamic chain as its tendon" if tracking.dynamics == "lugre" else ""
     rig = "the same model is the plant" if same else f"the plant is {_name(tracking.plant)}"
-    return (
+    yield (
         f"A controller sees x_in alone, {sensor.rate_Hz:g} times a second, with noise of "
         f"{sensor.noise_mm:g} mm and steps of {sensor.step_mm:g} mm. It knows "
         f"{_name(tracking.model)}, and of the drive {tracking.drive.file}; {rig}{tendon}."
     )
+    yield from (_change(condition) for condition in conditions if condition.changes)
+    if tracking.gains != "default":
+        yield f"The gains are {tracking.gains}."
+    yield (
+        "Errors are wanted less true force at the load; outside 2 % is the time in which they are "
+        "beyond 2 % of the wanted force's range. Plots show the runs with the first seed."
+    )
+    if tracking.notes:
+        yield "Keep in mind:"
 
 
 def _name(model: ModelFile) -> str:

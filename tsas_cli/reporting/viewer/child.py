@@ -109,8 +109,14 @@ def viewer_child(arguments: Sequence[str], *, port: int) -> Iterator[Child]:
         try:
             _await_response(child, port)
             yield child
-        finally:
-            _end(process)
+        finally:  # with whatever it has started
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGTERM)
+                try:
+                    process.wait(END_S)
+                except subprocess.TimeoutExpired:
+                    os.killpg(process.pid, signal.SIGKILL)
+                    process.wait()
 
 
 def _await_response(child: Child, port: int) -> None:
@@ -124,18 +130,6 @@ def _await_response(child: Child, port: int) -> None:
         f"the viewer does not answer on port {port} after {START_S:g} s",
         remedy="`tsas doctor` says what the viewer can do here",
     )
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ask the viewer and whatever it has started to end; end them where they do not."""
-    if process.poll() is not None:
-        return
-    os.killpg(process.pid, signal.SIGTERM)
-    try:
-        process.wait(END_S)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
 
 
 def free_ports(count: int, first: int | None = None) -> tuple[int, ...]:

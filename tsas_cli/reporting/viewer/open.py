@@ -104,21 +104,15 @@ def _page(file: Path | None, port: int | None) -> Iterator[Viewer]:
         viewer_child(call, port=inside) as child,
         served_page(own, inside=inside, file=file, data=data),
     ):
-        yield Viewer(child, page=_address(own, shown), proxy=shown)
+        # WebGL is what every browser draws; dark is what a window is by itself, and what the
+        # colours are chosen for.
+        query = {"url": shown, "renderer": "webgl", "theme": "dark", "hide_welcome_screen": "true"}
+        address = f"http://{LOOPBACK}:{own}/?{urlencode(query)}"
+        yield Viewer(child, page=address, proxy=shown)
 
 
 def _proxy(port: int) -> str:
     return f"rerun+http://{LOOPBACK}:{port}/proxy"
-
-
-def _address(page: int, shown: str) -> str:
-    """Return the page's address with what it shows.
-
-    WebGL is what every browser draws; dark is what a window is by itself, and what the colours are
-    chosen for.
-    """
-    query = {"url": shown, "renderer": "webgl", "theme": "dark", "hide_welcome_screen": "true"}
-    return f"http://{LOOPBACK}:{page}/?{urlencode(query)}"
 
 
 @contextmanager

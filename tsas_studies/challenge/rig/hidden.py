@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from tsas_studies.challenge.rig.near import NEAR
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
-from tsas_studies.challenge.rig.unknowns import UNKNOWNS, Place
+from tsas_studies.challenge.rig.unknowns import UNKNOWNS, Place, places
 
 Parameters = Mapping[str, Any]
 Record = TypeVar("Record", Rig, Sensors)
@@ -16,56 +16,42 @@ Record = TypeVar("Record", Rig, Sensors)
 # Every effect of the catalogue, with its parameters' names and units there. A place that begins
 # with a channel is an option of that sensor, any other one of the rig.
 CATALOGUE: Mapping[str, Mapping[str, Place]] = {
-    "backlash": {"play_mm": ("drive_end", "play_mm")},
-    "drive_friction": {"friction_N": ("drive_end", "friction_N")},
-    "drive_ripple": {
-        "sine_mm": ("drive_end", "ripple_sine_mm"),
-        "cosine_mm": ("drive_end", "ripple_cosine_mm"),
-        "period_mm": ("drive_end", "ripple_period_mm"),
-    },
-    "drive_compliance": {"compliance_mm_per_N": ("drive_end", "compliance_mm_per_N")},
-    "proximal_spring": {"stiffness_N_per_mm": ("drive_end", "spring_N_per_mm")},
+    "backlash": places("drive_end", "play_mm"),
+    "drive_friction": places("drive_end", "friction_N"),
+    "drive_ripple": places(
+        "drive_end",
+        sine_mm="ripple_sine_mm",
+        cosine_mm="ripple_cosine_mm",
+        period_mm="ripple_period_mm",
+    ),
+    "drive_compliance": places("drive_end", "compliance_mm_per_N"),
+    "proximal_spring": places("drive_end", stiffness_N_per_mm="spring_N_per_mm"),
     "free_tendon": {
         "proximal_length_mm": ("proximal_length_mm",),
         "distal_length_mm": ("distal_length_mm",),
     },
     "sheath_compression": {"compliance_ratio": ("sheath_compliance_ratio",)},
-    "antagonist": {
-        "preload_N": ("antagonist", "preload_N"),
-        "friction_ratio": ("antagonist", "friction_ratio"),
-        "f_in_share": ("antagonist", "f_in_share"),
-    },
-    "direction_dependent_friction": {"asymmetry": ("friction", "asymmetry")},
-    "stribeck_friction": {
-        "excess": ("friction", "stribeck_excess"),
-        "velocity_mm_per_s": ("friction", "stribeck_velocity_mm_per_s"),
-    },
-    "viscous_friction": {"coefficient_N_s_per_mm": ("friction", "viscous_N_s_per_mm")},
-    "load_dependent_friction": {"exponent": ("friction", "load_exponent")},
-    "presliding": {"length_mm": ("friction", "presliding_mm")},
-    "bend_drift": {
-        "rate_rad_per_s": ("friction", "bend_rate_rad_per_s"),
-        "settling_per_s": ("friction", "bend_settling_per_s"),
-    },
-    "friction_drift": {
-        "rate_per_s": ("friction", "rate_per_s"),
-        "settling_per_s": ("friction", "settling_per_s"),
-        "session_rate_per_s": ("friction", "session_rate_per_s"),
-    },
-    "preload_loss": {
-        "rate_N_per_s": ("load_end", "anchor_rate_N_per_s"),
-        "settling_per_s": ("load_end", "anchor_settling_per_s"),
-    },
-    "load_spring_nonlinearity": {
-        "quadratic_per_mm": ("load_end", "quadratic_per_mm"),
-        "cubic_per_mm2": ("load_end", "cubic_per_mm2"),
-    },
-    "load_friction": {
-        "after_sensor_N": ("load_end", "friction_after_N"),
-        "before_sensor_N": ("load_end", "friction_before_N"),
-    },
-    "load_inertia": {"mass_kg": ("load_end", "mass_kg")},
-    "force_sensor_gain": {"f_out_gain": ("f_out_N", "gain")},
+    "antagonist": places("antagonist", "preload_N", "friction_ratio", "f_in_share"),
+    "direction_dependent_friction": places("friction", "asymmetry"),
+    "stribeck_friction": places(
+        "friction", excess="stribeck_excess", velocity_mm_per_s="stribeck_velocity_mm_per_s"
+    ),
+    "viscous_friction": places("friction", coefficient_N_s_per_mm="viscous_N_s_per_mm"),
+    "load_dependent_friction": places("friction", exponent="load_exponent"),
+    "presliding": places("friction", length_mm="presliding_mm"),
+    "bend_drift": places(
+        "friction", rate_rad_per_s="bend_rate_rad_per_s", settling_per_s="bend_settling_per_s"
+    ),
+    "friction_drift": places("friction", "rate_per_s", "settling_per_s", "session_rate_per_s"),
+    "preload_loss": places(
+        "load_end", rate_N_per_s="anchor_rate_N_per_s", settling_per_s="anchor_settling_per_s"
+    ),
+    "load_spring_nonlinearity": places("load_end", "quadratic_per_mm", "cubic_per_mm2"),
+    "load_friction": places(
+        "load_end", after_sensor_N="friction_after_N", before_sensor_N="friction_before_N"
+    ),
+    "load_inertia": places("load_end", "mass_kg"),
+    "force_sensor_gain": places("f_out_N", f_out_gain="gain"),
     "force_sensor_offset": {
         "f_in_offset_N": ("f_in_N", "offset"),
         "f_out_offset_N": ("f_out_N", "offset"),
@@ -75,30 +61,25 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "f_out_rate_N_per_s": ("f_out_N", "rate_per_s"),
         "settling_per_s": ("forces", "settling_per_s"),
     },
-    "position_sensor_gain": {"x_out_gain": ("x_out_mm", "gain")},
+    "position_sensor_gain": places("x_out_mm", x_out_gain="gain"),
     "channel_delay": {
         "f_in_delay_s": ("f_in_N", "delay_s"),
         "f_out_delay_s": ("f_out_N", "delay_s"),
         "x_out_delay_s": ("x_out_mm", "delay_s"),
     },
-    "position_dependent_friction": {"slope_per_mm": ("friction", "slope_per_mm")},
-    "uneven_friction": {"slope": ("friction", "slope_along")},
-    "load_damping": {"coefficient_N_s_per_mm": ("restraint", "damping_N_s_per_mm")},
-    "load_hysteresis": {
-        "force_N": ("restraint", "hysteresis_N"),
-        "travel_mm": ("restraint", "hysteresis_mm"),
-    },
-    "load_relaxation": {
-        "share": ("restraint", "relaxing_share"),
-        "time_s": ("restraint", "relaxing_s"),
-    },
-    "load_ripple": {
-        "sine_mm": ("restraint", "ripple_sine_mm"),
-        "cosine_mm": ("restraint", "ripple_cosine_mm"),
-        "period_mm": ("restraint", "ripple_period_mm"),
-    },
-    "drive_inertia": {"mass_kg": ("drive_end", "mass_kg")},
-    "drive_damping": {"coefficient_N_s_per_mm": ("drive_end", "damping_N_s_per_mm")},
+    "position_dependent_friction": places("friction", "slope_per_mm"),
+    "uneven_friction": places("friction", slope="slope_along"),
+    "load_damping": places("restraint", coefficient_N_s_per_mm="damping_N_s_per_mm"),
+    "load_hysteresis": places("restraint", force_N="hysteresis_N", travel_mm="hysteresis_mm"),
+    "load_relaxation": places("restraint", share="relaxing_share", time_s="relaxing_s"),
+    "load_ripple": places(
+        "restraint",
+        sine_mm="ripple_sine_mm",
+        cosine_mm="ripple_cosine_mm",
+        period_mm="ripple_period_mm",
+    ),
+    "drive_inertia": places("drive_end", "mass_kg"),
+    "drive_damping": places("drive_end", coefficient_N_s_per_mm="damping_N_s_per_mm"),
     "force_sensor_gain_drift": {
         "f_in_rate_per_s": ("f_in_N", "gain_rate_per_s"),
         "f_out_rate_per_s": ("f_out_N", "gain_rate_per_s"),
@@ -120,16 +101,18 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "f_in_of_f_out": ("f_in_of_f_out",),
         "f_out_of_f_in": ("f_out_of_f_in",),
     },
-    "position_sensor_ripple": {
-        "sine_mm": ("x_out_mm", "wave"),
-        "cosine_mm": ("x_out_mm", "wave_cosine"),
-        "period_mm": ("x_out_mm", "wave_period"),
-    },
+    "position_sensor_ripple": places(
+        "x_out_mm", sine_mm="wave", cosine_mm="wave_cosine", period_mm="wave_period"
+    ),
     "sensor_lag": {
         "f_in_lag_s": ("f_in_transducer", "lag_s"),
         "f_out_lag_s": ("f_out_transducer", "lag_s"),
         "x_out_lag_s": ("x_out_transducer", "lag_s"),
     },
+}
+SEVERAL = {
+    "forces": ("f_in_N", "f_out_N"),
+    "transducers": ("f_in_transducer", "f_out_transducer"),
 }
 
 
@@ -141,22 +124,19 @@ def hide(name: str, parameters: Parameters, rig: Rig, sensors: Sensors) -> tuple
 
     KeyError: the cause or a parameter does not exist.
     """
-    places = {**CATALOGUE, **NEAR, **UNKNOWNS}[name]
+    known = {**CATALOGUE, **NEAR, **UNKNOWNS}[name]
     for parameter, value in parameters.items():
-        match places[parameter]:
-            case ("forces", option):
-                sensors = _set(_set(sensors, "f_in_N", option, value), "f_out_N", option, value)
-            case ("transducers", option):
-                for group in ("f_in_transducer", "f_out_transducer"):
+        *groups, option = known[parameter]
+        if groups:
+            for group in SEVERAL.get(groups[0], groups):
+                if hasattr(sensors, group):
                     sensors = _set(sensors, group, option, value)
-            case (group, option) if hasattr(sensors, group):
-                sensors = _set(sensors, group, option, value)
-            case (option,) if hasattr(sensors, option):
-                sensors = replace(sensors, **{option: value})
-            case (group, option):
-                rig = _set(rig, group, option, value)
-            case (option,):
-                rig = replace(rig, **{option: value})
+                else:
+                    rig = _set(rig, group, option, value)
+        elif hasattr(sensors, option):
+            sensors = replace(sensors, **{option: value})
+        else:
+            rig = replace(rig, **{option: value})
     return rig, sensors
 
 

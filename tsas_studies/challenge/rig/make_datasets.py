@@ -6,7 +6,7 @@ python -m tsas_studies.challenge.rig.make_datasets --out DIR
 import argparse
 import math
 from pathlib import Path
-from typing import TypedDict
+from typing import Any
 
 import numpy as np
 import tomlkit
@@ -28,14 +28,7 @@ GROUPS = {
 }
 
 
-class FreeTendon(TypedDict):
-    """Lengths of tendon outside the sheath, as options of the rig."""
-
-    proximal_length_mm: float
-    distal_length_mm: float
-
-
-FREE_TENDON: FreeTendon = {"proximal_length_mm": 150.0, "distal_length_mm": 60.0}
+FREE_TENDON: Any = {"proximal_length_mm": 150.0, "distal_length_mm": 60.0}
 SENSORS = Sensors(
     x_in_mm=Sensor(noise=0.005, step=0.002),
     x_out_mm=Sensor(noise=0.008, step=0.002),

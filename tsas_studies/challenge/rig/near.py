@@ -5,71 +5,64 @@ They act where effects of the catalogue act, by another law, and are easily take
 
 from collections.abc import Mapping
 
-from tsas_studies.challenge.rig.unknowns import Place
+from tsas_studies.challenge.rig.unknowns import Place, places
 
 NEAR: Mapping[str, Mapping[str, Place]] = {
-    "rational_stribeck": {  # friction that falls with speed, with a long tail
-        "excess": ("surface", "rational_excess"),
-        "velocity_mm_per_s": ("surface", "rational_velocity_mm_per_s"),
-        "power": ("surface", "rational_power"),
-    },
-    "root_stribeck": {  # friction that falls with speed, with a sharp peak
-        "excess": ("surface", "root_excess"),
-        "velocity_mm_per_s": ("surface", "root_velocity_mm_per_s"),
-    },
-    "log_speed_friction": {  # friction that grows with the logarithm of the speed
-        "share": ("surface", "log_share"),
-        "velocity_mm_per_s": ("surface", "log_velocity_mm_per_s"),
-    },
-    "ageing_friction": {  # friction that grows with the time at rest
-        "share": ("surface", "ageing_share"),
-        "time_s": ("surface", "ageing_s"),
-        "length_mm": ("surface", "ageing_mm"),
-    },
-    "breakaway_friction": {  # a tendon that sticks after each rest
-        "excess": ("surface", "breakaway_excess"),
-        "length_mm": ("surface", "breakaway_mm"),
-    },
-    "round_presliding": {"length_mm": ("friction", "round_mm")},  # presliding of Bouc and Wen
-    "friction_cycles": {  # friction that follows a temperature up and down
-        "share": ("friction", "cycle_share"),
-        "period_s": ("friction", "cycle_s"),
-        "phase_rad": ("friction", "cycle_phase_rad"),
-    },
+    # Friction that falls with speed, with a long tail.
+    "rational_stribeck": places(
+        "surface",
+        excess="rational_excess",
+        velocity_mm_per_s="rational_velocity_mm_per_s",
+        power="rational_power",
+    ),
+    # Friction that falls with speed, with a sharp peak.
+    "root_stribeck": places(
+        "surface", excess="root_excess", velocity_mm_per_s="root_velocity_mm_per_s"
+    ),
+    # Friction that grows with the logarithm of the speed.
+    "log_speed_friction": places(
+        "surface", share="log_share", velocity_mm_per_s="log_velocity_mm_per_s"
+    ),
+    # Friction that grows with the time at rest.
+    "ageing_friction": places(
+        "surface", share="ageing_share", time_s="ageing_s", length_mm="ageing_mm"
+    ),
+    # A tendon that sticks after each rest.
+    "breakaway_friction": places("surface", excess="breakaway_excess", length_mm="breakaway_mm"),
+    # Presliding of Bouc and Wen.
+    "round_presliding": places("friction", length_mm="round_mm"),
+    # Friction that follows a temperature up and down.
+    "friction_cycles": places(
+        "friction", share="cycle_share", period_s="cycle_s", phase_rad="cycle_phase_rad"
+    ),
     # Friction that grows with the travel.
-    "wearing_friction": {"per_mm": ("friction", "wear_per_mm")},
-    "strand_roll": {  # friction that is periodic in the displacement
-        "share": ("surface", "roll_share"),
-        "period_mm": ("surface", "roll_mm"),
-        "phase_rad": ("surface", "roll_phase_rad"),
-    },
+    "wearing_friction": places("friction", per_mm="wear_per_mm"),
+    # Friction that is periodic in the displacement.
+    "strand_roll": places(
+        "surface", share="roll_share", period_mm="roll_mm", phase_rad="roll_phase_rad"
+    ),
     # A sheath whose bend grows with the tension.
-    "shifting_sheath": {"per_N": ("friction", "shift_per_N")},
+    "shifting_sheath": places("friction", per_N="shift_per_N"),
     # A tendon that gets stiffer as it stretches.
     "stiffening_tendon": {"per_N": ("stiffening_per_N",)},
     # Friction of a pulley at the drive, by the tension on it.
-    "pulley_friction": {"share": ("drive_end", "pulley_share")},
-    "slotted_clamp": {  # an anchor of the load's spring that slides in a slot
-        "play_mm": ("restraint", "clamp_play_mm"),
-        "up_N": ("restraint", "clamp_up_N"),
-        "down_N": ("restraint", "clamp_down_N"),
-    },
-    "force_sensor_creep": {  # a force sensor that reads part of a change late
-        "share": ("f_in_transducer", "creep_share"),
-        "time_s": ("f_in_transducer", "creep_s"),
-    },
-    "thermal_offset": {  # an offset of f_in that follows a temperature up and down
-        "amplitude_N": ("f_in_N", "hum"),
-        "frequency_Hz": ("f_in_N", "hum_Hz"),
-        "phase_rad": ("f_in_N", "hum_phase_rad"),
-    },
-    "eccentric_encoder": {  # an encoder of the drive that turns off its centre
-        "amplitude_mm": ("x_in_mm", "wave"),
-        "period_mm": ("x_in_mm", "wave_period"),
-        "phase_rad": ("x_in_mm", "wave_phase_rad"),
-    },
+    "pulley_friction": places("drive_end", share="pulley_share"),
+    # An anchor of the load's spring that slides in a slot.
+    "slotted_clamp": places(
+        "restraint", play_mm="clamp_play_mm", up_N="clamp_up_N", down_N="clamp_down_N"
+    ),
+    # A force sensor that reads part of a change late.
+    "force_sensor_creep": places("f_in_transducer", share="creep_share", time_s="creep_s"),
+    # An offset of f_in that follows a temperature up and down.
+    "thermal_offset": places(
+        "f_in_N", amplitude_N="hum", frequency_Hz="hum_Hz", phase_rad="hum_phase_rad"
+    ),
+    # An encoder of the drive that turns off its centre.
+    "eccentric_encoder": places(
+        "x_in_mm", amplitude_mm="wave", period_mm="wave_period", phase_rad="wave_phase_rad"
+    ),
     # A position sensor whose gain changes along its travel.
-    "skewed_laser": {"per_mm": ("x_out_mm", "curvature")},
+    "skewed_laser": places("x_out_mm", per_mm="curvature"),
     "encoder_play": {  # play between the load, or the drive, and its encoder
         "play_mm": ("x_out_transducer", "play"),
         "x_in_play_mm": ("x_in_transducer", "play"),

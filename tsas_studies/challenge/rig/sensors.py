@@ -39,12 +39,7 @@ class Sensor:
     wave_cosine: float = 0.0
 
 
-def _position() -> Sensor:
-    return Sensor(noise=0.005, step=0.002)
-
-
-def _force() -> Sensor:
-    return Sensor(noise=0.08, step=0.01)
+_POSITION, _FORCE = Sensor(noise=0.005, step=0.002), Sensor(noise=0.08, step=0.01)
 
 
 @dataclass(frozen=True)
@@ -60,10 +55,10 @@ class Sensors:
 
     rate_Hz: float = 1000.0
     jitter_s: float = 0.0
-    x_in_mm: Sensor = field(default_factory=_position)
-    x_out_mm: Sensor = field(default_factory=_position)
-    f_in_N: Sensor = field(default_factory=_force)
-    f_out_N: Sensor = field(default_factory=_force)
+    x_in_mm: Sensor = _POSITION
+    x_out_mm: Sensor = _POSITION
+    f_in_N: Sensor = _FORCE
+    f_out_N: Sensor = _FORCE
     motor_speed_rpm: Sensor = field(default_factory=Sensor)
     f_in_of_f_out: float = 0.0
     f_out_of_f_in: float = 0.0

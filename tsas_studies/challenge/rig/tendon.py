@@ -118,7 +118,6 @@ def simulate(
 
 
 def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> CleanRun:
-    """Return the recording of a rig with two tendons."""
     if rig.load != "spring" or rig.give != Give():
         raise ValueError("an antagonist needs a spring at the load and a firm path")
     t, other, F0 = motion.time_s, rig.antagonist, rig.preload_N
@@ -146,14 +145,12 @@ def _with_antagonist(rig: Rig, motion: Motion, position: Floats, mu: Floats) -> 
 
 
 def _refuse_failed(t: Floats, t_in: Floats, solved: int) -> None:
-    """Raise ValueError where not every sample was solved."""
     if solved < t.size:
         what = "the tendon is slack" if np.isfinite(t_in[solved]) else "the step fails"
         raise ValueError(f"{what} at {t[solved]:.6g} s")
 
 
 def _tendon(rig: Rig) -> continuum.Tendon:
-    """Return the rig for the solver."""
     EA, f = rig.axial_stiffness, rig.friction
     s = continuum.nodes(rig.sheath_length_mm, rig.cells)
     c_out, kL = rig.distal_length_mm / EA, rig.load_stiffness_N_per_mm

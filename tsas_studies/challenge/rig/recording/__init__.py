@@ -16,7 +16,6 @@ from tsas_studies.challenge.rig.recording import (
     wrong_numbers,
 )
 from tsas_studies.challenge.rig.recording.recorded import STEPS, Runs
-from tsas_studies.challenge.rig.recordings import Run
 from tsas_studies.challenge.rig.sensors import quantised
 
 _FUNCTIONS: tuple[Callable[..., Runs], ...] = (
@@ -35,8 +34,7 @@ def recorded_with(
     runs: Runs, fault: str, parameters: Mapping[str, object], rng: np.random.Generator
 ) -> Runs:
     """Return the runs with a fault, each channel in the steps of its converter again."""
-    return {name: _in_steps(run) for name, run in FAULTS[fault](runs, rng, **parameters).items()}
-
-
-def _in_steps(run: Run) -> Run:
-    return run.having(**{c: quantised(run.columns[c], step) for c, step in STEPS.items()})
+    return {
+        name: run.having(**{c: quantised(run.columns[c], step) for c, step in STEPS.items()})
+        for name, run in FAULTS[fault](runs, rng, **parameters).items()
+    }

@@ -1,6 +1,10 @@
 """The runs of a case as they were recorded, and how a fault changes some channels of some runs."""
 
 from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any
+
+import numpy as np
 
 from tsas_studies.challenge.rig.motions import Floats
 from tsas_studies.challenge.rig.recordings import Run
@@ -11,19 +15,40 @@ FORCES = ("f_in_N", "f_out_N")
 Runs = Mapping[str, Run]
 
 
-def changed(
-    runs: Runs,
-    channels: tuple[str, ...],
-    change: Callable[[Floats, Floats], Floats],
-    run: str | None = None,
-) -> Runs:
-    """Return the runs with `change(time_s, values)` in the place of each of these channels.
+def of_runs(change: Callable[..., Run]) -> Callable[..., Runs]:
+    """Return the fault of `change(old, rng, **parameters)`, in one `run` alone if it is named."""
 
-    In one run alone where it is named, else in all.
+    @wraps(change)
+    def fault(
+        runs: Runs, rng: np.random.Generator, *, run: str | None = None, **parameters: Any
+    ) -> Runs:
+        return {
+            name: change(old, rng, **parameters) if run in (None, name) else old
+            for name, old in runs.items()
+        }
+
+    return fault
+
+
+def of_channels(change: Callable[..., Floats]) -> Callable[..., Runs]:
+    """Return the fault of `change(time_s, values, rng, **parameters)`, of `channels` or `channel`.
+
+    In one `run` alone if it is named.
     """
-    return {
-        name: old.having(**{c: change(old.time_s, old.columns[c]) for c in channels})
-        if run in (None, name)
-        else old
-        for name, old in runs.items()
-    }
+
+    @of_runs
+    @wraps(change)
+    def fault(
+        old: Run,
+        rng: np.random.Generator,
+        *,
+        channels: tuple[str, ...] = (),
+        channel: str | None = None,
+        **parameters: Any,
+    ) -> Run:
+        names = channels if channel is None else (channel,)
+        return old.having(
+            **{c: change(old.time_s, old.columns[c], rng, **parameters) for c in names}
+        )
+
+    return fault

@@ -4,23 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsas_studies.challenge.rig.recording.recorded import Runs, changed
+from tsas_studies.challenge.rig.motions import Floats
+from tsas_studies.challenge.rig.recording.recorded import of_channels, of_runs
+from tsas_studies.challenge.rig.recordings import Run
 
 
-def scaled(
-    runs: Runs, _rng: np.random.Generator, *, channels: tuple[str, ...], factor: float
-) -> Runs:
-    """Return channels by a factor: another unit, or the radius of a wheel for its diameter."""
-    return changed(runs, channels, lambda _t, v: factor * v)
+@of_channels
+def scaled(_time_s: Floats, values: Floats, _rng: np.random.Generator, *, factor: float) -> Floats:
+    """Return a channel by a factor: another unit, or the radius of a wheel for its diameter."""
+    return factor * values
 
 
-def wrong_condition(
-    runs: Runs, _rng: np.random.Generator, *, run: str | None, key: str, factor: float
-) -> Runs:
-    """Return runs of which the manifest says another value; one of them, or all for None."""
-    return {
-        name: replace(old, conditions={**old.conditions, key: factor * old.conditions[key]})
-        if run in (None, name)
-        else old
-        for name, old in runs.items()
-    }
+@of_runs
+def wrong_condition(old: Run, _rng: np.random.Generator, *, key: str, factor: float) -> Run:
+    """Return a run of which the manifest says another value."""
+    return replace(old, conditions={**old.conditions, key: factor * old.conditions[key]})
