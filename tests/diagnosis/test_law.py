@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis import law as law_module
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
 from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe, priors_of
@@ -97,6 +98,18 @@ def test_a_parameter_that_does_as_much_as_the_residual_costs_a_tenth_of_a_block(
     assert cost("load_law.compliance_mm_per_N", 0.0025) == pytest.approx(2.5)
     assert cost("tendon_law.start_1", -0.3) == pytest.approx(2.5)
     assert not any(QUANTITIES[name].given for name in priors)
+
+
+def test_a_cost_that_holds_the_law_back_is_lowered_while_held_out_runs_gain(tmp_path, monkeypatch):
+    sensors = replace(Sensors(rate_Hz=50.0), x_out_transducer=Transducer(play=PLAY_MM))
+    monkeypatch.setattr(law_module, "PRIOR", 10.0)
+    lowered = described(tmp_path / "lowered", sensors)
+    monkeypatch.setattr(law_module, "LIGHTER", 0)
+    held_back = described(tmp_path / "held-back", sensors)
+    assert held_back.after.rmse["x_out_mm"] > 2.0 * NOISE_MM
+    assert lowered.after.rmse["x_out_mm"] < NOISE_MM
+    name = "load_law.lost_1_mm"
+    assert lowered.bench.priors[name] == pytest.approx(held_back.bench.priors[name] * 0.3**2)
 
 
 def test_a_sound_rig_has_no_law(tmp_path):

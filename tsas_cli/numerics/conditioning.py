@@ -134,9 +134,11 @@ def remove_overshoot(smooth: Floats, cuts: Indices) -> None:
 def follow_corners(values: Floats, smooth: Floats, sd: Floats, half: Floats, noise: float) -> None:
     """Set, in place, the values that a fit of few samples misses by far to the measured ones.
 
-    At coarse rates neither a cut nor a polynomial follows a rounded corner.
+    At coarse rates neither a cut nor a polynomial follows a rounded corner. A jump at the start of
+    a run is no corner: what rings after it would be reversals of the tendon.
     """
     missed = (half <= COARSE) & (np.abs(values - smooth) > MISSED * noise)
+    missed[: 2 * COARSE] = False
     smooth[missed] = values[missed]
     sd[missed] = noise
 
