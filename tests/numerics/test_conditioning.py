@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import clean
-from tsas_cli.numerics.conditioning import condition, monotone_between, with_turning_points
+from tsas_cli.numerics.conditioning import (
+    condition,
+    follow_corners,
+    monotone_between,
+    with_turning_points,
+)
 from tsas_cli.numerics.local_polynomial import corners
 from tsas_cli.physics.response import DriveInput, simulate
 from tsas_cli.physics.rig import Rig
@@ -223,3 +228,13 @@ def test_a_rounded_corner_of_few_samples_is_followed(rad_per_s, turn_ms):
     for seed in range(5):
         missed = np.abs(condition(t, noisy(true_mm, seed, sd=0.005)).values - true_mm)
         assert missed.max() < 8.0 * 0.005
+
+
+def test_what_rings_is_left_to_the_fit():
+    values, noise = np.linspace(0.0, 6.0, 60), 0.01
+    values[20:32] += np.resize([0.3, -0.3], 12)
+    values[45:] += 0.2
+    smooth, half = np.linspace(0.0, 6.0, 60), np.full(60, 4)
+    follow_corners(values, smooth, np.full(60, noise), half, noise)
+    assert np.all(smooth[22:30] == np.linspace(0.0, 6.0, 60)[22:30])
+    assert np.all(smooth[45:] == values[45:])

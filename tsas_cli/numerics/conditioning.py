@@ -134,11 +134,12 @@ def remove_overshoot(smooth: Floats, cuts: Indices) -> None:
 def follow_corners(values: Floats, smooth: Floats, sd: Floats, half: Floats, noise: float) -> None:
     """Set, in place, the values that a fit of few samples misses by far to the measured ones.
 
-    At coarse rates neither a cut nor a polynomial follows a rounded corner. A jump at the start of
-    a run is no corner: what rings after it would be reversals of the tendon.
+    At coarse rates neither a cut nor a polynomial follows a rounded corner. What alternates is
+    left to the fit: it rings, as after a jump, and each turn would be a reversal of the tendon.
     """
-    missed = (half <= COARSE) & (np.abs(values - smooth) > MISSED * noise)
-    missed[: 2 * COARSE] = False
+    turns = np.pad(np.diff(np.sign(np.diff(values))) != 0, 1)
+    alternates = np.convolve(turns, np.ones(5), "same") > 1  # turns of five samples
+    missed = (half <= COARSE) & (np.abs(values - smooth) > MISSED * noise) & ~alternates
     smooth[missed] = values[missed]
     sd[missed] = noise
 
