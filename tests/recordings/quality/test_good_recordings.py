@@ -80,6 +80,19 @@ def test_an_encoder_that_waits_for_the_load_at_the_start_is_not_clipped():
     assert "clipped" not in complaints(measured, "force")
 
 
+def test_a_drive_at_rest_whose_load_swings_on_is_not_clipped():
+    """A mass at the load goes on by a tenth of the travel, and slackens the tendon."""
+    measured = columns(Bench(shape="dwells", rate_Hz=500.0, noise_mm=0.0, step_mm=0.004))
+    at_rest = measured["x_in_mm"] == measured["x_in_mm"].max()
+    stops = np.flatnonzero(np.diff(at_rest.astype(int)) == 1)
+    for first, end in zip(stops, np.flatnonzero(np.diff(at_rest.astype(int)) == -1), strict=False):
+        since = measured["time_s"][first:end] - measured["time_s"][first]
+        swing = np.exp(-4.0 * since) * np.sin(9.0 * since)
+        measured["x_out_mm"][first:end] += 2.5 * swing
+        measured["f_in_N"][first:end] -= 3.0 * swing
+    assert "clipped" not in complaints(measured)
+
+
 def test_a_force_that_falls_with_the_speed_at_the_end_of_a_stroke_is_not_clipped():
     measured = columns(Bench())
     speed = np.gradient(motion(Bench(), measured["time_s"]), measured["time_s"])

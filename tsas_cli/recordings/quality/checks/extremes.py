@@ -149,16 +149,21 @@ def _end_of_stroke(
 
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
-    """Return whether the motion continues beyond its position at the start of the plateau."""
+    """Return whether the motion continues beyond its position at the start of the plateau.
+
+    Of the drive at rest a load that swings tells nothing: where it moves on, all channels follow.
+    """
     coarse = 4.0 * trial.sizes[name].step / max(trial.sizes[name].span, 1e-300)
+    further, returns = [], []
     for other in trial.references(name):
         moved = sign * (trial.channels[other][rows] - trial.channels[other][rows.start])
-        further = float(np.nanmax(moved, initial=0.0))
-        needed = max(_TRAVEL, coarse) * trial.sizes[other].span + trial.visible(other)
-        back = float(np.nanmin(moved, initial=0.0))
-        if further > needed and -back < 0.6 * trial.sizes[other].span:
-            return True
-    return False
+        span = trial.sizes[other].span
+        needed = max(_TRAVEL, coarse) * span + trial.visible(other)
+        further.append(float(np.nanmax(moved, initial=0.0)) > needed)
+        returns.append(-float(np.nanmin(moved, initial=0.0)) >= 0.6 * span)
+    if name == "x_in_mm":
+        return bool(further) and all(further) and not all(returns)
+    return any(f and not r for f, r in zip(further, returns, strict=True))
 
 
 _FEWEST_UPDATES = 20
