@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.proof import failures, may_be_zero, split_in_words
+from tsas_cli.diagnosis.proof import failures, may_be_zero, of_one_size, split_in_words
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.identification.estimate import Estimate
 
@@ -181,3 +181,19 @@ def test_a_size_that_is_known_at_each_shape_is_not_zero():
     assert may_be_zero("load_relaxation", known)
     assert may_be_zero("load_relaxation", known, np.array([[1.0, 0.5], [0.5, 1.0]]))
     assert not may_be_zero("load_relaxation", known, np.array([[1.0, 0.99], [0.99, 1.0]]))
+
+
+@pytest.mark.parametrize(
+    ("parameter", "values", "of_one"),
+    [
+        ("load_inertia.mass_kg", (1.33, 0.76, 0.48), False),
+        ("drive_friction.friction_N", (27.5, 36.6, 45.6), True),
+        ("force_sensor_offset.f_in_offset_N", (-25.0, -23.5, -21.7), True),
+        ("force_sensor_offset.f_in_offset_N", (-0.1, 0.1, 0.11), False),
+        ("position_sensor_gain.x_out_gain", (0.95, 0.99), False),  # from 1: 5 % and 1 %
+        ("stribeck_friction.velocity_mm_per_s", (5.1, 7.4, 9.1), True),  # its size is the excess
+    ],
+)
+def test_an_effect_of_another_law_is_about_as_large_everywhere(parameter, values, of_one):
+    parts = tuple(zip("abc", values, strict=False))
+    assert of_one_size(Split(parameter, "speed", CLEAR, parts)) == of_one

@@ -100,6 +100,7 @@ FEW = np.array([1.0, *np.full(19, 10.01)])  # one block of twenty gains
         # A law differs where a twentieth is left of the 100 that 200 squares are beyond the noise.
         (0.1 * EVEN, {"split": "s", "structure": 4.9}, (), "over s", False),
         (0.1 * EVEN, {"split": "s", "structure": 5.1}, ("is not constant over s",), "", False),
+        (0.1 * EVEN, {"split": "s", "apart": True}, ("is not constant over s",), "", False),
         (0.1 * EVEN, {"structure": 9.0}, (), "", False),
         (0.1 * EVEN, {"tolerance": True}, ("is no more than a tolerance",), "", True),
         (0.1 * EVEN, {"scatter": True}, ("is no more than a friction",), "", True),
@@ -125,6 +126,7 @@ def test_what_an_effect_proves(monkeypatch, after, told, failed, law, negligible
         monkeypatch.setattr(p, function.__name__, function)
     monkeypatch.setattr(p, "worst_split", lambda *_: told["split"])
     monkeypatch.setattr(p, "split_in_words", lambda split: f"over {split}")
+    monkeypatch.setattr(p, "of_one_size", lambda split: "apart" not in told)
     monkeypatch.setattr(p, "_within_interval", lambda split, own: False)
     monkeypatch.setattr(p, "within_scatter", lambda *_: "scatter" in told)
     monkeypatch.setattr(p, "_of_another_law", lambda *_: ())

@@ -3,7 +3,8 @@
 It has one value wherever the recordings determine it, which is not that of a rig without the
 effect and not the limit of what is plausible, and it makes no channel worse on held-out data. An
 effect that gains and fails one of these stands in for something that the catalogue does not have.
-One that explains nearly all and is not constant is there, with another law than the catalogue's.
+One that explains nearly all, and is about as large everywhere, is there with another law than the
+catalogue's.
 """
 
 import math
@@ -23,6 +24,7 @@ from tsas_cli.records.base import TWO_SIDED, number_text
 from tsas_cli.support.arrays import Floats
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
+MOST_APART = 2.0  # factor between its sizes in the parts of a split; of right names at most 1.8
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 MOST_PARTS = 4  # of a split that a sentence lists
@@ -166,6 +168,16 @@ def may_be_zero(
     precision = np.linalg.pinv(related, hermitian=True)[np.ix_(rows, rows)]
     z = TWO_SIDED * np.array(deviations)
     return float(z @ precision @ z) <= float(chdtri(len(rows), 0.05))
+
+
+def of_one_size(split: Split) -> bool:
+    """Return whether an effect is about as large in each part of a split as in the others."""
+    effect, _, name = split.parameter.partition(".")
+    (parameter,) = (p for p in BY_NAME[effect].parameters if p.name == name)
+    neutral = 0.0 if parameter.shape else parameter.neutral
+    sizes = sorted(value - neutral for _, value in split.values)
+    nearest, farthest = sorted((sizes[0], sizes[-1]), key=abs)
+    return nearest * farthest > 0.0 and abs(farthest) <= MOST_APART * abs(nearest)
 
 
 def split_in_words(split: Split) -> str:

@@ -19,6 +19,7 @@ from tsas_cli.diagnosis.proof import (
     failures,
     may_be_of_the_law_of,
     may_be_zero,
+    of_one_size,
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
@@ -143,7 +144,8 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     failed = (*failed, *_of_another_law(last, name))
     law = "" if split is None or _within_interval(split, own) else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
-    if split is not None and last.structure > ANOTHER_LAW * excess:
+    much_left = last.structure > ANOTHER_LAW * excess
+    if split is not None and (much_left or (law and not of_one_size(split))):
         failed, law = (f"is not constant {split_in_words(split)}", *failed), ""
     interval = gains[1], gains[2]
     negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
