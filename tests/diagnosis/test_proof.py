@@ -120,6 +120,15 @@ def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refus
     assert bool(said) == refused
 
 
+@pytest.mark.parametrize(("low", "high", "refused"), [(-1.9, -0.9, True), (-1.8, -0.9, False)])
+def test_a_size_that_is_known_up_to_the_limit_alone_is_refused(low, high, refused):
+    slope = estimate("uneven_friction.slope", -1.5, low, high, unit="1")
+    said = failures("uneven_friction", (slope,), CLEAR, SAME, SAME)
+    assert said == (
+        ("has slope up to the limit of what is plausible: -1.5 [-1.9, -0.9]",) * refused
+    )
+
+
 @pytest.mark.parametrize(("f_out", "refused"), [(1.09, True), (1.12, False), (-1.0, False)])
 def test_an_offset_that_is_the_same_for_both_sensors_may_be_friction(f_out, refused):
     """A friction of μ(T + c) is the capstan's with c added to both forces."""

@@ -104,6 +104,11 @@ def failures(
         for name, e in sizes.items()
         if e.at_bound and not _is_near_neutral(e.value, parameters[name])
     ]
+    out += [
+        f"has {name} up to the limit of what is plausible: {e.text()} {_unit(e.unit)}".rstrip()
+        for name, e in sizes.items()
+        if _reaches_a_limit(e, parameters[name])
+    ]
     if zero:
         values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
         out.append(f"may be zero: {', '.join(values)}")
@@ -196,6 +201,14 @@ def split_in_words(split: Split) -> str:
 def _unit(unit: str) -> str:
     """Return a unit as a text has it: nothing for a number."""
     return "" if unit == "1" else unit
+
+
+def _reaches_a_limit(e: Estimate, parameter: Parameter) -> bool:
+    """Return whether an interval without the neutral value ends at a limit, and the value not."""
+    low, high = e.interval_low, e.interval_high
+    if e.at_bound or low is None or high is None or low <= parameter.neutral <= high:
+        return False
+    return math.isclose(low, parameter.lower) or math.isclose(high, parameter.upper)
 
 
 def _is_near_neutral(value: float, parameter: Parameter) -> bool:
