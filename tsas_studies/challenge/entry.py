@@ -64,11 +64,13 @@ def read_entry(
     there = [case for case in cases if (folder / case / FILE).is_file()]
     log = folder / LOG
     reasons = parse(Log, read_json(log), log).no_answer if log.is_file() else {}
-    diagnoses = {}
-    for case in there:
-        path = folder / case / FILE
-        content = read_json(path)
-        check_said(content, sums.get(case, {}), path)
-        diagnoses[case] = parse(SubmittedDiagnosis, content, path)
+    diagnoses = {case: read_diagnosis(folder / case / FILE, sums.get(case, {})) for case in there}
     missing = {case: reasons.get(case, f"no {FILE}") for case in cases if case not in there}
     return Entry(diagnoses, missing)
+
+
+def read_diagnosis(path: Path, sums: Mapping[str, str]) -> SubmittedDiagnosis:
+    """Read what a tool says about a case; InputError: it is malformed or of other recordings."""
+    content = read_json(path)
+    check_said(content, sums, path)
+    return parse(SubmittedDiagnosis, content, path)

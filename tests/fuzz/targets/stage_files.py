@@ -33,7 +33,7 @@ def one(data):
     if which == len(STAGES):
         answer(truth.read_truth, path.parent)
     elif which > len(STAGES):
-        answer(entry._read_diagnosis, path, {"dataset.toml": "0" * 64})
+        answer(entry.read_diagnosis, path, {"dataset.toml": "0" * 64})
     else:
         kind = STAGES[which]
         answer(read_stage, kind, path.parent)
