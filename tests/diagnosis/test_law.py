@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import law as law_module
+from tsas_cli.diagnosis import law_bench
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
-from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe, priors_of
+from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe
+from tsas_cli.diagnosis.law_bench import priors_of
 from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.remainder import LATE, remainder
@@ -102,7 +104,7 @@ def test_a_parameter_that_does_as_much_as_the_residual_costs_a_tenth_of_a_block(
 
 def test_a_cost_that_holds_the_law_back_is_lowered_while_held_out_runs_gain(tmp_path, monkeypatch):
     sensors = replace(Sensors(rate_Hz=50.0), x_out_transducer=Transducer(play=PLAY_MM))
-    monkeypatch.setattr(law_module, "PRIOR", 10.0)
+    monkeypatch.setattr(law_bench, "PRIOR", 10.0)
     lowered = described(tmp_path / "lowered", sensors)
     monkeypatch.setattr(law_module, "LIGHTER", 0)
     held_back = described(tmp_path / "held-back", sensors)

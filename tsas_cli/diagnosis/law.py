@@ -6,7 +6,6 @@ taken where it predicts held-out runs: it lowers the squares significantly, by a
 exceeds the noise, and makes no run and no channel worse. Nothing of it is a cause.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -17,28 +16,20 @@ from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.friction_scatter import scatter_is_no_effect
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.refitted import HeldOutFit, refitted, rms_of
-from tsas_cli.effects.laws import FOLLOWS
+from tsas_cli.diagnosis.law_bench import CHANGES, in_channel_units, priors_of, ranges_of
+from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import estimates_of
-from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.run_errors import ReversalShapes, RunErrors
 from tsas_cli.numerics.covariance import jackknife
-from tsas_cli.physics.rig import with_values
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-# The channel that shows each law.
-CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"}
-# Longest width over the longest stroke: an element as wide as half of it only adds a straight line.
-WIDEST = {"drive_law": 0.25, "tendon_law": 0.125, "load_law": 0.25}
 AT_NOISE = 1.1  # of the noise level, below which a channel's RMS needs no further law
 AS_WELL = 0.1  # share by which the squares of a set exceed those of the best one at most
-REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
 SETS: tuple[tuple[str, ...], ...] = (
     ("drive_law",),
     ("load_law",),
@@ -48,9 +39,7 @@ SETS: tuple[tuple[str, ...], ...] = (
     ("drive_law", "tendon_law", "load_law"),
 )
 LEAST_TAKEN = 1.0 / 3.0  # of what exceeds the noise, by a law: one that takes less describes little
-PRIOR = 0.1  # of a block's squares, the cost of a parameter that does as much as the residual
 LIGHTER, LOWER = 2, 0.3  # times that a chosen law's cost is lowered; the factor of its root
-PLAUSIBLE_FACTOR = 0.3  # of a law that changes the friction
 WORSE = 0.03  # relative rise of the RMS of a held-out run, or of a channel, that refuses a law
 
 
@@ -169,94 +158,10 @@ def _at_lower_cost(
     return bench, best
 
 
-def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
-    """Return the given parameters of each law whose displacement was recorded, by its name."""
-    out = {}
-    for law, column in FOLLOWS.items():
-        values = [run.channel(column) for run in runs]
-        recorded = [v[np.isfinite(v)] for v in values if v is not None]
-        if not recorded:
-            continue
-        whole = np.concatenate(recorded)
-        longest = max(float(np.ptp(v)) for v in recorded)
-        out[law] = {
-            f"{law}.travel_mm": WIDEST[law] * longest,
-            f"{law}.low_mm": float(whole.min()),
-            f"{law}.high_mm": float(whole.max()),
-        }
-        if law != "load_law":
-            slow, fast = speeds_of(runs)
-            out[law] |= {f"{law}.slow_mm_per_s": slow, f"{law}.fast_mm_per_s": fast}
-    return out
-
-
-def speeds_of(runs: Sequence[Prepared]) -> tuple[float, float]:
-    """Return a low and a high speed of the drive: quantiles over all runs [mm/s]."""
-    speed = np.concatenate([np.abs(np.gradient(r.drive.values, r.time_s)) for r in runs])
-    moving = speed[speed > REST * np.quantile(speed, FAST)]
-    slow, fast = np.quantile(moving, (1.0 - FAST, FAST))
-    return float(slow), float(max(fast, 1.1 * slow))
-
-
-def in_channel_units(
-    bench: Bench, trial: HypothesisFit, ranges: Mapping[str, Mapping[str, float]]
-) -> Bench:
-    """Return the bench with each channel's residual over its RMS, and the ranges of the laws."""
-    raw: dict[str, list[Floats]] = {}
-    for k, run in enumerate(bench.errors_for(trial)):
-        for name, errors in run.raw(bench.rig(trial, k)).items():
-            raw.setdefault(name, []).append(errors)
-    rms = {name: rms_of(parts) for name, parts in raw.items()}
-    given = {name: value for law in ranges.values() for name, value in law.items()}
-    return replace(
-        bench,
-        rigs=tuple(with_values(rig, given) for rig in bench.rigs),
-        closed=tuple(_over_rms(run, rms) for run in bench.closed),
-        meshed=tuple(_over_rms(run, rms) for run in bench.meshed),
-    )
-
-
-def priors_of(bench: Bench, without: HypothesisFit, folds: Folds) -> dict[str, float]:
-    """Return the priors of the laws' parameters, from the residuals without a law.
-
-    A parameter that changes its channel by the RMS costs a tenth of a block's squares: few runs do
-    not determine all of them, and without a cost they fail in a run that no fit has seen.
-    """
-    block = float(np.sum(without.solution.residual**2)) / folds.blocks
-    forces = [
-        np.abs(values)
-        for run in bench.closed
-        for name in ("f_in_N", "f_out_N")
-        if (values := run.run.channel(name)) is not None
-    ]
-    tension = float(np.nanmean(np.concatenate(forces))) if forces else 1.0
-    priors = {}
-    for name, quantity in QUANTITIES.items():
-        law, _, parameter = name.partition(".")
-        channel = CHANGES.get(law)
-        if channel not in bench.channels or quantity.given:
-            continue
-        rms = next(float(e.weights[channel][0]) for e in bench.closed if channel in e.samples)
-        of_tension = "share" in parameter or quantity.unit == "mm/N"
-        factor = PLAUSIBLE_FACTOR if quantity.unit == "1" else rms
-        size = rms / tension if of_tension else factor
-        priors[name] = math.sqrt(PRIOR * block) * quantity.size / size
-    return priors
-
-
 def _without_slopes(trial: HypothesisFit) -> HypothesisFit:
     """Return a trial as a start for fits with other weights: its values alone."""
     unknown = np.full_like(trial.solution.jacobian, np.nan)
     return replace(trial, solution=replace(trial.solution, jacobian=unknown))
-
-
-def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
-    weights = {name: np.full(run.run.time_s.size, rms[name]) for name in run.samples}
-    turns = {
-        name: ReversalShapes(np.zeros(at.size), np.array([0]), np.array([at.size]))
-        for name, at in run.samples.items()
-    }
-    return replace(run, weights=weights, turns=turns)
 
 
 def _excess(noise: Mapping[str, float], before: HeldOutFit) -> float:

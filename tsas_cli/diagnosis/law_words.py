@@ -5,7 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from tsas_cli.diagnosis.law import CHANGES, Law
+from tsas_cli.diagnosis.law import Law
+from tsas_cli.diagnosis.law_bench import CHANGES
 from tsas_cli.effects import LAWS
 from tsas_cli.effects.laws.drive_law import DriveLaw
 from tsas_cli.effects.laws.tendon_law import STARTS
