@@ -177,9 +177,8 @@ def may_be_zero(
 
 def of_one_size(split: Split) -> bool:
     """Return whether an effect is about as large in each part of a split as in the others."""
-    effect, _, name = split.parameter.partition(".")
-    (parameter,) = (p for p in BY_NAME[effect].parameters if p.name == name)
-    neutral = 0.0 if parameter.shape else parameter.neutral
+    quantity = QUANTITIES[split.parameter]
+    neutral = 0.0 if quantity.shape else quantity.default
     sizes = sorted(value - neutral for _, value in split.values)
     nearest, farthest = sorted((sizes[0], sizes[-1]), key=abs)
     return nearest * farthest > 0.0 and abs(farthest) <= MOST_APART * abs(nearest)
@@ -205,10 +204,9 @@ def _unit(unit: str) -> str:
 
 def _reaches_a_limit(e: Estimate, parameter: Parameter) -> bool:
     """Return whether an interval without the neutral value ends at a limit, and the value not."""
-    low, high = e.interval_low, e.interval_high
-    if e.at_bound or low is None or high is None or low <= parameter.neutral <= high:
-        return False
-    return math.isclose(low, parameter.lower) or math.isclose(high, parameter.upper)
+    ends = (e.interval_low, parameter.lower), (e.interval_high, parameter.upper)
+    touches = any(end is not None and math.isclose(end, limit) for end, limit in ends)
+    return touches and not e.at_bound and not e.holds(parameter.neutral)
 
 
 def _is_near_neutral(value: float, parameter: Parameter) -> bool:

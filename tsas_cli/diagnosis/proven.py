@@ -164,10 +164,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
 def _within_interval(split: Split, estimates: Sequence[Estimate]) -> bool:
     """Return whether the values of all parts lie in the parameter's interval: none differs."""
     (whole,) = (e for e in estimates if e.name == split.parameter)
-    if whole.interval_low is None or whole.interval_high is None:
-        return False
-    low, high = whole.interval_low, whole.interval_high
-    return all(low <= value <= high for _, value in split.values)
+    return whole.holds(*(value for _, value in split.values))
 
 
 def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:

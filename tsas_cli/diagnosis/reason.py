@@ -110,12 +110,7 @@ def _dependence(after: Remainder) -> list[str]:
 def _only_together(cause: FoundCause) -> bool:
     """Return whether the interval of each of several parameters holds the neutral value."""
     sizes = [e for e in cause.parameters if not QUANTITIES[e.name].shape]
-    return len(sizes) > 1 and all(
-        e.interval_low is not None
-        and e.interval_high is not None
-        and e.interval_low <= QUANTITIES[e.name].default <= e.interval_high
-        for e in sizes
-    )
+    return len(sizes) > 1 and all(e.holds(QUANTITIES[e.name].default) for e in sizes)
 
 
 def _title(effect: str) -> str:

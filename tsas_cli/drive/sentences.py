@@ -138,9 +138,8 @@ def lead_notes(lead: Estimate, sheet: DataSheet, pull_back: Estimate | None = No
     explained = pull_back and stated and abs(pull_back.value / stated - 1.0) <= TOLERATED
     if K is None or explained:
         return []
-    ratio, low, high = lead.value * K, lead.interval_low, lead.interval_high
-    inside = low is not None and high is not None and low <= 1.0 / K <= high
-    if inside or abs(ratio - 1.0) <= TOLERATED:
+    ratio = lead.value * K
+    if lead.holds(1.0 / K) or abs(ratio - 1.0) <= TOLERATED:
         return []
     follows = "" if pull_back is None else "; the drive's stiffness follows from it"
     said = (

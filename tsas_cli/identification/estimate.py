@@ -32,6 +32,11 @@ class Estimate:
         ends = self.interval_low, self.interval_high
         return value_text(self.value, ends, at_bound=self.at_bound, origin=self.origin)
 
+    def holds(self, *values: float) -> bool:
+        """Return whether there is an interval, and each of some values lies in it."""
+        low, high = self.interval_low, self.interval_high
+        return low is not None and high is not None and all(low <= v <= high for v in values)
+
 
 class StoredValue(StrictTable):
     """A value in a file, with its unit, its interval and its origin."""

@@ -103,12 +103,13 @@ def smooth_out(
     # Corners spoil the blocks that they lie in; the smooth blocks give the window of the search.
     alone = best_half_windows(time_s, values, whole, noise, memory, degree=2, pooled=1)
     beside = max(SHORTEST_BESIDE_CORNER, int(np.percentile(alone, 75)))
-    cuts = corners(time_s, values, beside, noise * math.sqrt(memory))
+    of_mean = noise * math.sqrt(memory)  # white noise whose means scatter as much
+    cuts = corners(time_s, values, beside, of_mean)
     half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
-    smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
+    smooth, sd = smoothed(time_s, values, cuts, half, of_mean)
     remove_overshoot(smooth, cuts)
-    follow_corners(values, smooth, sd, half, noise * math.sqrt(memory))
-    flatten_rests(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
+    follow_corners(values, smooth, sd, half, of_mean)
+    flatten_rests(time_s, values, smooth, sd, cuts, int(np.median(half)), of_mean)
     return smooth, sd, float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
 
 

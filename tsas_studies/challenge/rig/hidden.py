@@ -13,17 +13,14 @@ from tsas_studies.challenge.rig.unknowns import UNKNOWNS, Place, places
 Parameters = Mapping[str, Any]
 Record = TypeVar("Record", Rig, Sensors)
 
+RIPPLE = {f"{name}_mm": f"ripple_{name}_mm" for name in ("sine", "cosine", "period")}
+
 # Every effect of the catalogue, with its parameters' names and units there. A place that begins
 # with a channel is an option of that sensor, any other one of the rig.
 CATALOGUE: Mapping[str, Mapping[str, Place]] = {
     "backlash": places("drive_end", "play_mm"),
     "drive_friction": places("drive_end", "friction_N"),
-    "drive_ripple": places(
-        "drive_end",
-        sine_mm="ripple_sine_mm",
-        cosine_mm="ripple_cosine_mm",
-        period_mm="ripple_period_mm",
-    ),
+    "drive_ripple": places("drive_end", **RIPPLE),
     "drive_compliance": places("drive_end", "compliance_mm_per_N"),
     "proximal_spring": places("drive_end", stiffness_N_per_mm="spring_N_per_mm"),
     "free_tendon": {
@@ -72,12 +69,7 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
     "load_damping": places("restraint", coefficient_N_s_per_mm="damping_N_s_per_mm"),
     "load_hysteresis": places("restraint", force_N="hysteresis_N", travel_mm="hysteresis_mm"),
     "load_relaxation": places("restraint", share="relaxing_share", time_s="relaxing_s"),
-    "load_ripple": places(
-        "restraint",
-        sine_mm="ripple_sine_mm",
-        cosine_mm="ripple_cosine_mm",
-        period_mm="ripple_period_mm",
-    ),
+    "load_ripple": places("restraint", **RIPPLE),
     "drive_inertia": places("drive_end", "mass_kg"),
     "drive_damping": places("drive_end", coefficient_N_s_per_mm="damping_N_s_per_mm"),
     "force_sensor_gain_drift": {

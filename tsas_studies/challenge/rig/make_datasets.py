@@ -5,8 +5,8 @@ python -m tsas_studies.challenge.rig.make_datasets --out DIR
 
 import argparse
 import math
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import tomlkit
@@ -28,7 +28,7 @@ GROUPS = {
 }
 
 
-FREE_TENDON: Any = {"proximal_length_mm": 150.0, "distal_length_mm": 60.0}
+RIG = Rig(proximal_length_mm=150.0, distal_length_mm=60.0)
 SENSORS = Sensors(
     x_in_mm=Sensor(noise=0.005, step=0.002),
     x_out_mm=Sensor(noise=0.008, step=0.002),
@@ -42,7 +42,7 @@ def paper_groups(folder: Path) -> None:
     """Write the four groups of Table 2 with a tendon that also stretches outside the sheath."""
     runs = []
     for seed, (name, (omega, radius, bend)) in enumerate(GROUPS.items(), start=1):
-        rig = Rig(total_bend_rad=bend, sheath_length_mm=radius * bend, **FREE_TENDON)
+        rig = replace(RIG, total_bend_rad=bend, sheath_length_mm=radius * bend)
         columns = record(rig, sine(omega_rad_s=omega), sensors=SENSORS, seed=seed)
         runs.append(Run(name, columns, conditions(rig)))
     write_dataset(
@@ -98,10 +98,10 @@ _RAMP_RPM = [0.0, 300.0, 300.0, 0.0, 0.0, -300.0, -300.0, 0.0]
 
 def truth() -> dict[str, dict[str, float]]:
     """Return what the rig and the drive were really made of, by dataset."""
-    rig, drive = Rig(**FREE_TENDON), Drive()
+    drive = Drive()
     return {
         "paper-groups": {
-            **{key: getattr(rig, key) for key in _TRUE_OF_RIG},
+            **{key: getattr(RIG, key) for key in _TRUE_OF_RIG},
             **noise("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"),
         },
         "drive-chirp": {
