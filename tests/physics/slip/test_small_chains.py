@@ -31,7 +31,7 @@ SPRINGY = GROUP_A._replace(
     tendon_stiffness_N=5e3, load_stiffness_N_per_mm=30.0, sheath_length_mm=300.0
 )
 UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 1.47, 1.1, 0.5, -0.1, -0.7, -0.6])
-MASS_TAKES_UP_S = 0.01  # documented in `slip.ends`
+MASS_TAKES_UP_S = 0.004  # documented in `slip.ends`
 FRICTION_LAGS_S = 0.01  # documented in `slip.nodes`
 ROUNDING = 1e-6  # [N, mm]
 FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
@@ -173,10 +173,34 @@ class BesideSpring:
         return damped + self.element + stiffness * (share * self.stretch + wave)
 
 
+class Mass:
+    """A mass whose speed follows that of its place late, both by parabolas over three samples."""
+
+    def __init__(self):
+        self.places, self.speeds, self.times = [0.0], [0.0], [0.0]
+
+    def force(self, x, step_s, mass_kg):
+        if step_s == math.inf:
+            self.places, self.speeds, self.times = [x], [0.0], [0.0]
+            return 0.0
+        times = [*self.times[-2:], self.times[-1] + step_s]
+
+        def rate(values, newest):
+            parabola = np.polynomial.Polynomial.fit(times, [*values[-2:], newest], len(times) - 1)
+            return parabola.deriv()(times[-1])
+
+        speed = rate(self.places, x)
+        still, per_speed = rate(self.speeds, 0.0), rate(self.speeds, 1.0) - rate(self.speeds, 0.0)
+        taken_up = (speed - MASS_TAKES_UP_S * still) / (1.0 + MASS_TAKES_UP_S * per_speed)
+        for past, newest in ((self.places, x), (self.speeds, taken_up), (self.times, times[-1])):
+            past.append(newest)
+        return 1e-3 * mass_kg * (speed - taken_up) / MASS_TAKES_UP_S
+
+
 def hold_everywhere(course, rig, boundary):
     """Hold every state of a run against all laws; return how the nodes went, shape (m, n + 2)."""
     F0, effects, give = rig.preload_N, rig.effects, gives(rig)
-    nodes, x_before, speed = Nodes(rig), np.zeros(N + 2), 0.0
+    nodes, x_before, mass = Nodes(rig), np.zeros(N + 2), Mass()
     ways, beside = [], BesideSpring(rig)
     for now, (x, T) in zip(moments(course), states(course, rig, boundary), strict=True):
         drive, load, losses, step_s = now
@@ -200,11 +224,7 @@ def hold_everywhere(course, rig, boundary):
                 pull, guide = F0 - losses.preload_N, guide + after
                 pull += rig.load_stiffness_N_per_mm * x[-1] * bent
                 pull += beside.force(x[-1], way[-1], step_s)
-                if effects.load_inertia.mass_kg > 0.0:
-                    faster = way[-1] / step_s - speed
-                    faster *= step_s / (step_s + MASS_TAKES_UP_S)
-                    pull += effects.load_inertia.mass_kg * 1e-3 * faster / step_s
-                    speed += faster
+                pull += mass.force(x[-1], step_s, effects.load_inertia.mass_kg)
             assert rubs(T[-1] - pull, way[-1], guide)
         x_before = x
         ways.append(way)

@@ -111,7 +111,7 @@ def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
     laws, chain = slip_laws(GROUP_A, 3, LOADED_BY_SPRING), chain_at_rest(GROUP_A, 3)
     x, T = row(chain, rows.POSITION), row(chain, rows.TENSION)
     x[:] = -40.0, 1.0, 2.0, 3.0, 0.4
-    for each in (rows.SLIP, rows.END_SPEED, rows.SHARE_BEFORE, rows.TENSION_RISE):
+    for each in (rows.SLIP, rows.SPEED_BEFORE, rows.SHARE_BEFORE, rows.TENSION_RISE):
         row(chain, each)[:] = -3.0
     go_slack(chain, NOW, at(laws, boundary))
     load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.losses.preload_N) / KL
@@ -120,7 +120,7 @@ def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
     assert x[0] == -40.0  # where the drive is
     assert not T[:4].any()
     assert row(chain, rows.SLIP).tolist() == [-3.0, 1.0, 1.0, 1.0, 1.0]  # as the next pull finds it
-    assert chain[rows.END_SPEED + 4] == 0.0
+    assert chain[rows.SPEED_BEFORE + 4] == 0.0
     assert row(chain, rows.SHARE_BEFORE).tolist() == [1.0] * 5
     assert not row(chain, rows.TENSION_RISE).any()
     np.testing.assert_array_equal(row(chain, rows.POSITION_BEFORE), x)

@@ -29,7 +29,7 @@ def step_plant(
     p = chain[at.POSITION]
     spring = spring_of(table, p, rig, step)
     converged, now, x, f_in = True, before, spring.x, table.f_in
-    mass_speed = chain[at.END_SPEED]
+    mass_speed = chain[at.SPEED_BEFORE]
     if spring.touches:
         losses = losses_at(step.time_s, p, table.speed, 0.0, rig)
         now = Moment(spring.force, 0.0, losses, step.h)
@@ -39,7 +39,7 @@ def step_plant(
         converged = advance(chain, before, now, driven)
         if chain[at.TENSION] < 0.0:
             go_slack(chain, now, laws)
-            chain[at.POSITION_BEFORE], chain[at.END_SPEED] = p, mass_speed
+            chain[at.POSITION_BEFORE], chain[at.SPEED_BEFORE] = p, mass_speed
             slope, value = drive_tangent(chain, now, driven)
             friction_N = chain[at.SLIP] * drive.friction_N
             chain[at.POSITION] = (spring.force - friction_N - value) / slope

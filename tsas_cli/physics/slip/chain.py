@@ -36,6 +36,7 @@ from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import (
+    stop_ends,
     update_end_speeds,
     update_load_state,
 )
@@ -239,7 +240,8 @@ def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
             )
             chain[at.SLIP + j] = 1.0
     chain[at.SLIP + last] = 1.0
-    chain[at.END_SPEED] = chain[at.END_SPEED + last] = chain[at.STRETCH] = 0.0
+    stop_ends(chain, laws.n)
+    chain[at.STRETCH] = 0.0
     accept(chain, laws)
     for j in range(laws.n + 2):
         chain[at.SHARE_BEFORE + j], chain[at.TRAVEL + j], chain[at.TENSION_RISE + j] = 1.0, 0.0, 0.0

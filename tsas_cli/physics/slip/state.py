@@ -1,5 +1,6 @@
 """The slip chain's state: its rows, the rig's constants, the inputs, and the nodes at rest."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +60,7 @@ FACTOR = PITCH * 5  # where it slips, T[i] = FACTOR T[i−1] − DROP − DROP_S
 DROP, DROP_SLOPE = PITCH * 6, PITCH * 7
 COMPLIANCE = PITCH * 8  # of the segment [mm/N]
 SWEEP_P, SWEEP_Q, SWEEP_R = (PITCH * row for row in range(9, 12))  # segment's T = (P x + Q)/R
-END_SPEED = PITCH * 12  # of the masses of drive and load, before [mm/s]
+SPEED_BEFORE = PITCH * 12  # of the masses of drive and load [mm/s]
 RATIO_PULLED, RATIO_RELEASED = PITCH * 13, PITCH * 14  # of both tensions in full slip, e^(−a/n)
 SHARE_BEFORE = PITCH * 15  # with presliding, SHARE at the end of the last step
 TRAVEL = PITCH * 16  # since the last step, the point of the tangents FACTOR to DROP_SLOPE [mm]
@@ -71,12 +72,14 @@ WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign
 ELEMENT, STRETCH = PITCH * 24, PITCH * 24 + 1  # force of the load's hysteresis, before [N], and
 # stretch of its relaxing spring [mm]
 SPEED = PITCH * 25  # at which the node has slid within the frictional lag [mm/s]
-ROWS = 26
+POSITION_EARLIER, SPEED_EARLIER = PITCH * 26, PITCH * 27  # of the masses, a step before "before"
+STEP_BEFORE = PITCH * 24 + 2  # length of the last step [s]
+ROWS = 28
 # An antagonist's rows follow, with node 0 at the load and n + 1 at the drive: the pair is one loop,
 # on which the load pulls, and x and the directions of slip are those of the first tendon.
 SECOND = PITCH * ROWS
 IS_SLACK, WAS_SLACK = PITCH * 24, PITCH * 24 + 1  # of the second tendon, which has no load
-FIRST_IS_SLACK, FIRST_WAS_SLACK = SECOND + END_SPEED, SECOND + END_SPEED + 1
+FIRST_IS_SLACK, FIRST_WAS_SLACK = SECOND + SPEED_BEFORE, SECOND + SPEED_BEFORE + 1
 
 
 @kernel
@@ -90,6 +93,7 @@ def chain_at_rest(rig: Rig, n: int) -> Floats:
             chain[PITCH * row + j] = 0.0
     for j in range(n + 2):
         chain[TENSION + j] = chain[TENSION_BEFORE + j] = rig.preload_N + second_N
+    chain[STEP_BEFORE] = math.inf
     set_compliances(chain, rig, n)
     if second_N > 0.0:
         second = chain[SECOND:]
