@@ -207,15 +207,16 @@ def test_the_reason_of_each_verdict():
 
 
 def test_the_reason_names_causes_rivals_and_the_rest():
-    spring = cause("drive_compliance", rivals=("b", "a"))
-    delay = cause("channel_delay", "pure delay", ("a",))
+    spring = cause("drive_compliance", rivals=("backlash", "drive_ripple"))
+    delay = cause("channel_delay", "pure delay", ("backlash",))
     found = verdict("ambiguous", spring, delay, unexplained=True, depends=("time_s",))
     assert reason(found) == (
         f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level. It lacks: the compliance "
         "of the drive, whose stiffness reacts on the position and a pure delay of the motor. With "
-        "it the residual RMS is 1.2 × the noise level. Indistinguishable from it in these "
-        "recordings: a, b. No catalogued effect explains the remaining residual. It depends on "
-        "time_s."
+        "it the residual RMS is 1.2 × the noise level. These recordings do not distinguish the "
+        "compliance of the drive, whose stiffness reacts on the position from backlash or "
+        "drive_ripple. These recordings do not distinguish a pure delay of the motor from "
+        "backlash. No catalogued effect explains the remaining residual. It depends on time_s."
     )
     plain = reason(verdict("named", cause("backlash")))
     assert f"It lacks: the {TITLE['backlash'].lower()}. With" in plain

@@ -28,6 +28,7 @@ from tsas_cli.records.base import Value, number_text
 from tsas_cli.records.diagnosis import HeldOut, RemainingResidual, Verdict
 from tsas_cli.records.drive import DriveCause, DriveDiagnosis, DriveEvidence
 from tsas_cli.support.arrays import Floats, Indices
+from tsas_cli.support.wording import listed
 
 EQUATION = frozenset({"stated"})
 MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave
@@ -236,9 +237,10 @@ def reason_of(found: DriveDiagnosis, start: float, left: float) -> str:
     text = (
         f"{residual}. It lacks: {causes}. With it the residual RMS is {times[1]} × the noise level."
     )
-    rivals = sorted({r for c in found.named for r in c.rivals})
-    if rivals:
-        text += f" Indistinguishable from it in these recordings: {', '.join(rivals)}."
+    for cause in found.named:
+        if cause.rivals:
+            others = listed(cause.rivals, " or ")
+            text += f" These recordings do not distinguish {_spoken(cause)} from {others}."
     rest = f" No catalogued effect explains the remaining residual.{depends}"
     return text + rest if found.remainder.unexplained else text
 
