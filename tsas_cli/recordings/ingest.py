@@ -41,10 +41,7 @@ class Ingested:
 
 
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
-    """Return the source files, and those below the source folders that fit a pattern ("*.csv").
-
-    InputError: a source does not exist, or a folder holds no such file.
-    """
+    """Return the source files, and those below the source folders that fit a pattern ("*.csv")."""
     found: list[Path] = []
     for source in sources:
         files = _files_in(source, pattern) if source.is_dir() else [source]
@@ -77,8 +74,6 @@ def ingest_files(
 
     `step` is called twice per file: when it is opened and when its run is written. Text tables and
     Parquet are read, converted and written in parts.
-
-    InputError: a file does not match the map, or two files have the same run id.
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}

@@ -175,10 +175,7 @@ class Manifest(_ManifestTable):
 
 
 def read_manifest(folder: Location) -> Manifest:
-    """Return the validated `dataset.toml` of a folder.
-
-    InputError: the manifest is missing, is not TOML, or violates format 1.
-    """
+    """Return the validated `dataset.toml` of a folder."""
     path = folder / MANIFEST_FILE
     if not path.is_file():
         raise InputError(
@@ -192,10 +189,7 @@ def read_manifest(folder: Location) -> Manifest:
 
 
 def read_toml(path: Location) -> Raw:
-    """Return the content of a TOML file.
-
-    InputError: the file cannot be read, is not TOML, or exceeds a limit.
-    """
+    """Return the content of a TOML file."""
     try:
         text = (
             limits.decoded(path.read_bytes(0, limits.TOML_BYTES + 1), path, limits.TOML_BYTES)
@@ -215,10 +209,7 @@ def read_toml(path: Location) -> Raw:
 
 
 def parse(model: type[T], content: Raw, path: object) -> T:
-    """Return the validated content of a file; all its errors become one line.
-
-    InputError: a key is missing, unknown or invalid.
-    """
+    """Return the validated content of a file; all its errors become one line."""
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:

@@ -49,10 +49,7 @@ class Piece:
 
 
 def long_run(folder: Location, run: Run) -> RunColumns | None:
-    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet.
-
-    InputError: its file, columns or units violate the manifest or format 1.
-    """
+    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet."""
     if isinstance(folder, Path) and not _is_long(folder / run.file):
         return None
     opened = open_run(folder, run)
@@ -83,9 +80,6 @@ def pieces(
     """Yield columns in pieces of `MOST_ROWS` rows; consecutive pieces share `overlap` rows.
 
     With `strict=False`, time may stop or decrease, and values may be implausible.
-
-    InputError: the file cannot be read, a column is not numeric or holds an implausible value, or
-    time does not increase.
     """
     buffered: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0

@@ -28,10 +28,7 @@ class Opened:
 
 
 def open_file(path: Path) -> Opened:
-    """Return a file of any supported format, opened with the options that it requires.
-
-    InputError: the format is unknown, or the file is damaged or does not hold exactly one table.
-    """
+    """Return a file of any supported format, opened with the options that it requires."""
     required, asked = _table(path)
     try:
         return _opened(path, dict(required), asked)

@@ -96,10 +96,7 @@ class Report:
 
 
 def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
-    """Return the findings of `check_runs`, and those on the whole dataset.
-
-    InputError: no run can be read.
-    """
+    """Return the findings of `check_runs`, and those on the whole dataset."""
     of_runs = check_runs(dataset, step)
     of_all = [
         _attributed(result, check.code, result.run)
@@ -113,8 +110,6 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     """Return the findings on the manifest and on each run by itself; `step` counts runs.
 
     An unreadable run is a finding (`unreadable`), as long as another run can be read.
-
-    InputError: no run can be read.
     """
     results = [
         _attributed(result, check.code, None)

@@ -20,8 +20,6 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     It is a list of rows, a list of records, or an object of columns, under the key `table` of the
     map (nested with dots). A key `columns` beside the rows names their columns; else they are
     numbered. Records in records are named by their paths.
-
-    InputError: it is no such table.
     """
     above, content = _descend(read_json(path), options.table, path)
     names, column = _columns(content, above.get("columns"), path)
@@ -32,10 +30,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the keys of rows, records or columns, nested with dots.
-
-    InputError: the file is not JSON, or nested too deep.
-    """
+    """Return the keys of rows, records or columns, nested with dots."""
     return list(_tables(read_json(path), ""))
 
 
@@ -90,10 +85,7 @@ def _is_column(value: Any) -> bool:
 
 
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
-    """Write the lines as one JSON list into a folder; return its path.
-
-    InputError: the file is not UTF-8.
-    """
+    """Write the lines as one JSON list into a folder; return its path."""
     made = folder / "lines.json"
     before = "["
     try:

@@ -13,10 +13,7 @@ _SEPARATORS = {"Tab": "\t", "Comma": ","}
 
 
 def convert(path: Path, folder: Path, options: ReadOptions) -> Path:
-    """Write the samples with names and units as text with tabs into a folder; return its path.
-
-    InputError: it is no such file, or its segments have different channels.
-    """
+    """Write the samples with names and units as text with tabs into a folder; return its path."""
     made = folder / "samples.tsv"
     with (
         path.open(encoding=_encoding(path), errors="replace") as lines,

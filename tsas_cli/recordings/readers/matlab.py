@@ -37,8 +37,6 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     A vector is a column with its name, those of a matrix are as in `columns_in`, and a member of a
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
     `table` in the map, names are relative to that variable.
-
-    InputError: the file is damaged, or there are several captures.
     """
     content = _inside(_content(path), options.table, path)
     capture = find_capture(content, path)
@@ -166,10 +164,7 @@ def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 
 def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
-    """Return the channels of a capture, with their clocks in s.
-
-    InputError: a channel, when it is loaded, differs in length from its clock.
-    """
+    """Return the channels of a capture, with their clocks in s."""
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
     channels = [
         Column(

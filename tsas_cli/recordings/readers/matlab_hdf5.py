@@ -15,7 +15,6 @@ from tsas_cli.support.files import Raw
 def variables(path: Path) -> Raw:
     """Return the variables of a file: structs as dictionaries, struct arrays and cells as lists.
 
-    InputError: h5py is not installed, or the file links to another one or exceeds a limit.
     OSError: the file is damaged.
     """
     h5py = optional("h5py", extra="mat")
