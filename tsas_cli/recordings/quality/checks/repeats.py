@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings
 from tsas_cli.recordings.quality.samples import is_held, rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
@@ -15,7 +15,7 @@ _MORE, _MOST = 2.0, 0.3  # times the share by chance, and share beyond that
 _ONE_STEP, _DEVIATIONS = 1.2, 4.0  # times the share of changes by one step, and its deviations
 
 
-def repeated_values(trial: RunSignals) -> Remarks:
+def repeated_values(trial: RunSignals) -> Findings:
     """A channel repeats its value far more often than its noise would: a median filter before it.
 
     A median keeps one sample of its window until another one is in the middle. Reported where a
@@ -35,12 +35,12 @@ def repeated_values(trial: RunSignals) -> Remarks:
             where, (share, chance) = "", _beside_one_step(values[fresh], size.step)
             if share <= chance:
                 continue
-        yield Remark(
+        yield Finding(
             "warning",
+            name,
             f"{name} repeats its value in {100.0 * share:.2g} % of the rows{where}, its noise "
             f"would in {100.0 * chance:.2g} %: as behind a median filter",
             "record the channel without the filter",
-            name,
         )
 
 
@@ -79,7 +79,7 @@ def _repeats_more(steps: Floats) -> bool:
     return bool(0.0 < one < min(repeats / _ONE_STEP, repeats - _DEVIATIONS * deviation))
 
 
-def slow_channel(trial: RunSignals) -> Remarks:
+def slow_channel(trial: RunSignals) -> Findings:
     """A channel is updated less often than the rows are written.
 
     Its sensor updates at a lower rate and the logger repeats the last value (zero-order hold), so
@@ -93,9 +93,9 @@ def slow_channel(trial: RunSignals) -> Remarks:
         change = np.abs(np.diff(values))
         if np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values):
             rows = rows_between_changes(values[fresh])
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
                 "record the channel at its own rate, or correct for half an update of delay",
-                name,
             )
