@@ -164,7 +164,12 @@ def run_conditions(
                 where=path,
                 remedy='set decimal = "," under [read] of the map, or the value itself under [run]',
             )
-    name = _filled(run_map.id, {"stem": stem(path), "folder": folder} | groups)
+    words = {"stem": stem(path), "folder": folder} | groups
+    for word in re.findall(r"\{(\w+)\}", run_map.id):
+        if word not in words:
+            hint = nearest(word, words)
+            raise InputError(f"run.id: {{{word}}} is unknown", remedy=hint)
+    name = re.sub(r"\{(\w+)\}", lambda word: words[word[1]], run_map.id)
     converted = {
         condition: _converted(condition, rule, groups, path)
         for condition, rule in run_map.conditions.items()
@@ -210,16 +215,6 @@ def _groups(rule: FromText | None, text: str, path: Path) -> dict[str, str]:
             f"the pattern {rule.pattern.pattern!r} does not match {shown!r}", where=path
         )
     return {key: value for key, value in found.groupdict().items() if value is not None}
-
-
-def _filled(template: str, words: dict[str, str]) -> str:
-    def word(match: re.Match[str]) -> str:
-        if match[1] not in words:
-            hint = nearest(match[1], words)
-            raise InputError(f"run.id: {{{match[1]}}} is unknown", remedy=hint)
-        return words[match[1]]
-
-    return re.sub(r"\{(\w+)\}", word, template)
 
 
 def _plain(text: str) -> float | int | str:

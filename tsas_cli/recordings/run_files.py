@@ -142,18 +142,14 @@ def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
             )
         unit = unit_of(field)
         expected = BY_NAME[field.name].unit
-        if unit.strip() and not _is_same(unit, expected):
+        try:
+            same = not unit.strip() or conversion(unit, expected) == (1.0, 0.0)
+        except InputError:
+            same = False
+        if not same:
             raise InputError(
                 f"column {field.name} has the unit {unit[:80]}", where=path, expected=expected
             )
-
-
-def _is_same(unit: str, expected: str) -> bool:
-    """Return whether a unit is the expected one, in any spelling."""
-    try:
-        return conversion(unit, expected) == (1.0, 0.0)
-    except InputError:
-        return False
 
 
 def floats_of(table: pa.Table, name: str, path: Location, *, first_row: int = 0) -> Floats:

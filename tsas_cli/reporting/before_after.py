@@ -241,10 +241,9 @@ def near(fit: ShownFit) -> Box:
     more = max((end - start) // 2, n // 100)
     span = slice(max(start - more, 0), min(end + more, n))
     curves = np.array([fit.measured[span], *(values[span] for _, _, values in fit.models)])
-    (left, right), (bottom, top) = (_padded(part) for part in (fit.x[span], curves))
+    ends = []
+    for values in (fit.x[span], curves):
+        room = 0.08 * float(np.ptp(values)) or 1.0
+        ends += [float(values.min()) - room, float(values.max()) + room]
+    left, right, bottom, top = ends
     return left, right, bottom, top
-
-
-def _padded(values: Floats) -> tuple[float, float]:
-    more = 0.08 * float(np.ptp(values)) or 1.0
-    return float(values.min()) - more, float(values.max()) + more

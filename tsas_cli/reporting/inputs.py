@@ -155,7 +155,15 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     dataset = read_dataset(folder).under(**_conditions(given))
     for stage, path in given:
         if isinstance(stage, OfDataset):
-            _check_hashes(stage, dataset, path / stage.FILE)
+            then, now = stage.dataset.hashes, dataset.hashes()
+            for file in sorted(now.keys() | then.keys()):
+                if now.get(file, "").lower() != then.get(file, "").lower():
+                    raise InputError(
+                        f"{file} of {dataset.folder} has changed since this stage read it",
+                        where=path / stage.FILE,
+                        expected=f"SHA-256 {then[file]}" if file in then else "no such file",
+                        remedy="run the stage again, or give the dataset that it has read",
+                    )
         elif isinstance(stage, TrackingFile) and dataset.folder.resolve() != path.resolve():
             raise InputError(
                 f"its runs are not in the dataset {dataset.folder}",
@@ -241,15 +249,3 @@ def _conditions(given: Sequence[tuple[StageFile, Path]]) -> dict[str, float]:
                 remedy="write a page for each",
             )
     return stated[0][0] if stated else {}
-
-
-def _check_hashes(stage: OfDataset, dataset: Dataset, path: Path) -> None:
-    then, now = stage.dataset.hashes, dataset.hashes()
-    for file in sorted(now.keys() | then.keys()):
-        if now.get(file, "").lower() != then.get(file, "").lower():
-            raise InputError(
-                f"{file} of {dataset.folder} has changed since this stage read it",
-                where=path,
-                expected=f"SHA-256 {then[file]}" if file in then else "no such file",
-                remedy="run the stage again, or give the dataset that it has read",
-            )

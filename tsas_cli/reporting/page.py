@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from tsas_cli.records.base import OfDataset
 from tsas_cli.records.calibration import CalibrationFile
-from tsas_cli.records.check import CheckFile
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
@@ -78,7 +77,10 @@ def _sentences(inputs: Inputs) -> Iterator[str]:
     manifest = inputs.dataset.manifest
     many = count_of(len(manifest.run), "recording")
     yield f"{manifest.name} holds {many}, {manifest.kind}."
-    yield _findings(inputs.check)
+    severities = [finding.severity for finding in inputs.check.findings]
+    counts = {name: severities.count(name) for name in ("error", "warning", "note")}
+    said = ", ".join(count_of(n, name) for name, n in counts.items() if n)
+    yield f"The checks report {said}." if said else "The checks found nothing."
     of_data = [stage for stage, _ in inputs.given if isinstance(stage, OfDataset)]
     yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)
@@ -87,12 +89,3 @@ def _sentences(inputs: Inputs) -> Iterator[str]:
         yield f"Keep in mind: {notes[0]}"
         if notes[1:]:
             yield f"{count_of(len(notes) - 1, 'more note')} on the estimates: see Parameters."
-
-
-def _findings(check: CheckFile) -> str:
-    counts = {
-        severity: sum(f.severity == severity for f in check.findings)
-        for severity in ("error", "warning", "note")
-    }
-    said = [count_of(n, name) for name, n in counts.items() if n]
-    return f"The checks report {', '.join(said)}." if said else "The checks found nothing."

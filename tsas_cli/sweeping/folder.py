@@ -55,7 +55,13 @@ def _locked_journal(out: Path) -> TextIO:
             )
         out.mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
-        _lock(journal, out)
+        try:  # the lock ends with the process, however it ends
+            fcntl.flock(journal.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            journal.close()
+            raise InputError(
+                "another sweep is writing here", where=out, remedy="wait for it, or stop it"
+            ) from error
     return journal
 
 
@@ -74,17 +80,6 @@ def _writing(out: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise unwritable(out, error) from error
-
-
-def _lock(journal: TextIO, out: Path) -> None:
-    """Lock the folder; the lock ends with the process, however it ends."""
-    try:
-        fcntl.flock(journal.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError as error:
-        journal.close()
-        raise InputError(
-            "another sweep is writing here", where=out, remedy="wait for it, or stop it"
-        ) from error
 
 
 def _clear(tasks: Path) -> None:

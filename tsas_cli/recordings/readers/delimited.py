@@ -162,5 +162,5 @@ def _cell(
         raise not_a_number(text, source, path, row)
     if options.decimal is None:
         question = f"column {source} holds {text!r}: are thousands separated in it?"
-        raise DoubtfulMarkError(question, path, layout.decimal, row)
+        raise DoubtfulMarkError(question, f"{path}, row {row}", layout.decimal)
     return value

@@ -38,7 +38,12 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
     `table` in the map, names are relative to that variable.
     """
-    content = _inside(_content(path), options.table, path)
+    content = _content(path)
+    for name in options.table.split(".") if options.table else ():
+        structs = [key for key, value in content.items() if isinstance(value, dict)]
+        if name not in structs:
+            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
+        content = content[name]
     capture = find_capture(content, path)
     if capture is not None:
         yield channels_of(capture, path)
@@ -68,15 +73,6 @@ def _content(path: Path) -> Raw:
         warnings.simplefilter("error", MatReadWarning)  # duplicate variables
         content = loadmat(path, simplify_cells=True)
     return {name: value for name, value in content.items() if not name.startswith("__")}
-
-
-def _inside(content: Raw, table: str | None, path: Path) -> Raw:
-    for name in table.split(".") if table else ():
-        structs = [key for key, value in content.items() if isinstance(value, dict)]
-        if name not in structs:
-            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
-        content = content[name]
-    return content
 
 
 def _columns(content: Raw, prefix: str = "") -> Iterator[Column]:

@@ -74,17 +74,12 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
             ]
             header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
             yield Offered(columns, header)
-    except Exception as error:
-        _discard_half_made(error)
+    except Exception as error:  # the clean-up of half-made objects prints errors to stderr
+        hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
+        traceback.clear_frames(error.__traceback__)
+        gc.collect()
+        sys.unraisablehook = hook
         raise
-
-
-def _discard_half_made(error: Exception) -> None:
-    """Collect the half-made objects of a damaged file, whose clean-up prints errors to stderr."""
-    hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
-    traceback.clear_frames(error.__traceback__)
-    gc.collect()
-    sys.unraisablehook = hook
 
 
 def _clock(file: Any, group: int) -> str:

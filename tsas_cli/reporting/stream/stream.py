@@ -80,26 +80,21 @@ def overview(inputs: Inputs) -> str:
     manifest = None if inputs.dataset is None else inputs.dataset.manifest
     title = "Recordings" if manifest is None else manifest.name
     about = "" if manifest is None else manifest.description
-    said = (f"- {plain_text(point)}" for point in _points(inputs))
-    lines = [f"# {plain_text(title)}", plain_text(about), *_first_screen(inputs), *said]
+    lines = [f"# {plain_text(title)}", plain_text(about)]
+    if first := glance(inputs):
+        lines.append(f"**{plain_text(first.kind)}: {plain_text(first.verdict)}**")
+        lines.append(plain_text(first.numbers))
+        for fact in first.facts:
+            number = " → ".join(filter(None, (fact.before, fact.value)))
+            note = f" ({plain_text(fact.note)})" if fact.note else ""
+            lines.append(f"- {plain_text(f'{fact.label}: {number}')}{note}")
+    lines += (f"- {plain_text(point)}" for point in _points(inputs))
     return "\n\n".join(filter(None, lines))
 
 
 def plain_text(text: str) -> str:
     """Return text of which no letter is read as Markdown or HTML."""
     return _SPECIAL.sub(r"\\\1", printable(text))
-
-
-def _first_screen(inputs: Inputs) -> Iterator[str]:
-    first = glance(inputs)
-    if first is None:
-        return
-    yield f"**{plain_text(first.kind)}: {plain_text(first.verdict)}**"
-    yield plain_text(first.numbers)
-    for fact in first.facts:
-        number = " → ".join(filter(None, (fact.before, fact.value)))
-        note = f" ({plain_text(fact.note)})" if fact.note else ""
-        yield f"- {plain_text(f'{fact.label}: {number}')}{note}"
 
 
 def _points(inputs: Inputs) -> Iterator[str]:

@@ -93,7 +93,15 @@ def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -
         f"{sensor.noise_mm:g} mm and steps of {sensor.step_mm:g} mm. It knows "
         f"{_name(tracking.model)}, and of the drive {tracking.drive.file}; {rig}{tendon}."
     )
-    yield from (_change(condition) for condition in conditions if condition.changes)
+    for condition in conditions:
+        changes = ", ".join(
+            f"`{c.quantity}` = {c.value:g} "
+            + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")
+            for c in condition.changes
+        )
+        if changes:
+            name = condition.name.capitalize()
+            yield f"{name}: the plant has {changes}, which no controller knows."
     if tracking.gains != "default":
         yield f"The gains are {tracking.gains}."
     yield (
@@ -106,15 +114,6 @@ def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -
 
 def _name(model: ModelFile) -> str:
     return "the data sheet" if model.sha256 is None else model.file
-
-
-def _change(condition: RunsUnderCondition) -> str:
-    changes = ", ".join(
-        f"`{c.quantity}` = {c.value:g} "
-        + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")
-        for c in condition.changes
-    )
-    return f"{condition.name.capitalize()}: the plant has {changes}, which no controller knows."
 
 
 _COLUMNS = (

@@ -59,13 +59,24 @@ def unit(trial: RunSignals) -> Findings:
     dead band also reduces the distal travel, but then the distal path is no scaled copy of the
     proximal one.
     """
-    yield from _time(trial)
+    interval = trial.step_s
+    if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
+        yield Finding(
+            "error",
+            "time_s",
+            f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
+            f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
+            "check the unit of time_s and set it at ingest",
+        )
     tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
     driven = trial.recording.run.load == "displacement"
     travel = None
     if trial.strokes and not driven and "x_out_mm" in trial.channels:
         travel = _slope(trial, "x_in_mm", "x_out_mm")
-    farther = 0.0 if driven else _times_as_far(trial)
+    x_in, x_out = (trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm"))
+    farther = 0.0
+    if x_in and x_out and trial.strokes and not driven:
+        farther = x_out.span / x_in.span
     if travel is None and tension is None and stiffness is None and farther <= _FARTHER:
         yield NotChecked("no two channels whose sizes must agree were recorded and move")
     moves = "x_out_mm moves {:.4g} mm per mm of x_in_mm"
@@ -91,13 +102,6 @@ def unit(trial: RunSignals) -> Findings:
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
         )
-
-
-def _times_as_far(trial: RunSignals) -> float:
-    """Return the travel of the load's end over that of the drive's; 0 without strokes or one."""
-    ends = [trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm")]
-    x_in, x_out = (0.0 if end is None else end.span for end in ends)
-    return x_out / x_in if trial.strokes and x_in > 0.0 else 0.0
 
 
 def _halved(trial: RunSignals, travel: float | None) -> Iterator[Finding]:
@@ -180,18 +184,6 @@ def _slope(trial: RunSignals, x: str, y: str) -> float | None:
     return float(np.std(b) / np.std(a))
 
 
-def _time(trial: RunSignals) -> Iterator[Finding]:
-    interval = trial.step_s
-    if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
-        yield Finding(
-            "error",
-            "time_s",
-            f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
-            f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
-            "check the unit of time_s and set it at ingest",
-        )
-
-
 _MOST_CYCLES = 100  # evenly spread; more would not improve the estimate
 _ROUNDS = 20
 _ROWS = 40  # least number of independent rows of a smoothed cycle
@@ -229,7 +221,10 @@ def delay(trial: RunSignals) -> Findings:
 
     mean, quantile = float(delays.mean()), float(stdtrit(delays.size - 1, 0.975))
     half = quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)  # each cycle is one
-    if abs(mean) - half > _smallest(trial):
+    force = trial.channels["f_out_N"]
+    rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
+    matters_s = max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
+    if abs(mean) - half > matters_s:
         yield Finding(
             "warning",
             "f_out_N",
@@ -238,13 +233,6 @@ def delay(trial: RunSignals) -> Findings:
             "use the same filter and clock for both channels, or shift one at the source (offset_s "
             "in a .join list), unless the load relaxes, or has a damper or a mass",
         )
-
-
-def _smallest(trial: RunSignals) -> float:
-    """Return the shortest delay that matters [s]."""
-    force = trial.channels["f_out_N"]
-    rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
-    return max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
 
 
 def _delay(trial: RunSignals, rows: slice) -> float:

@@ -65,18 +65,14 @@ def _beside_one_step(values: Floats, step: float) -> tuple[float, float]:
         return 0.0, 0.0
     steps = np.rint(np.diff(values) / step)
     high = values[1:] > 0.5 * (np.nanmin(values) + np.nanmax(values))
-    if all(_repeats_more(steps[half]) for half in (high, ~high)):
-        return float(np.mean(steps == 0.0)), 0.5 * float(np.mean(np.abs(steps) == 1.0))
-    return 0.0, 0.0
-
-
-def _repeats_more(steps: Floats) -> bool:
-    """Return whether changes by nothing are far more than those by one step."""
-    if steps.size == 0:
-        return False
-    repeats, one = np.mean(steps == 0.0), 0.5 * np.mean(np.abs(steps) == 1.0)
-    deviation = math.sqrt((repeats + 0.5 * one) / steps.size)
-    return bool(0.0 < one < min(repeats / _ONE_STEP, repeats - _DEVIATIONS * deviation))
+    for half in (steps[high], steps[~high]):
+        if half.size == 0:
+            return 0.0, 0.0
+        repeats, one = np.mean(half == 0.0), 0.5 * np.mean(np.abs(half) == 1.0)
+        deviation = math.sqrt((repeats + 0.5 * one) / half.size)
+        if not 0.0 < one < min(repeats / _ONE_STEP, repeats - _DEVIATIONS * deviation):
+            return 0.0, 0.0
+    return float(np.mean(steps == 0.0)), 0.5 * float(np.mean(np.abs(steps) == 1.0))
 
 
 def slow_channel(trial: RunSignals) -> Findings:
