@@ -55,13 +55,7 @@ def _locked_journal(out: Path) -> TextIO:
             )
         out.mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
-        try:  # the lock ends with the process, however it ends
-            fcntl.flock(journal.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            journal.close()
-            raise InputError(
-                "another sweep is writing here", where=out, remedy="wait for it, or stop it"
-            ) from error
+        _lock(journal, out)
     return journal
 
 
@@ -80,6 +74,17 @@ def _writing(out: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise unwritable(out, error) from error
+
+
+def _lock(journal: TextIO, out: Path) -> None:
+    """Lock the folder; the lock ends with the process, however it ends."""
+    try:
+        fcntl.flock(journal.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        journal.close()
+        raise InputError(
+            "another sweep is writing here", where=out, remedy="wait for it, or stop it"
+        ) from error
 
 
 def _clear(tasks: Path) -> None:
