@@ -136,10 +136,13 @@ def run_query(
 
     problems = _opened(connection, index)
     runs = connection.table("runs")
-    chosen = tuple(_known(name, runs.columns) for name in columns) or tuple(runs.columns)
+    for name in (*columns, *(key.removeprefix("-") for key in sort)):
+        if name not in runs.columns:
+            hint = nearest(name, runs.columns)
+            raise InputError(f"there is no column {name!r}", remedy=hint)
+    chosen = tuple(columns) or tuple(runs.columns)
     order = ", ".join(
-        f'"{_known(key.removeprefix("-"), runs.columns)}" '
-        f"{'DESC' if key.startswith('-') else 'ASC'} NULLS LAST"
+        f'"{key.removeprefix("-")}" {"DESC" if key.startswith("-") else "ASC"} NULLS LAST'
         for key in (*sort, "folder", "run")
     )
     picked = ", ".join(f'"{name}"' for name in (*chosen, "folder"))
@@ -205,12 +208,6 @@ def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
     )
     in_files = [f"{Path(folder) / file}: {problem}" for folder, file, problem in problems]
     return [*index.problems, *in_files]
-
-
-def _known(name: str, columns: Sequence[str]) -> str:
-    if name not in columns:
-        raise InputError(f"there is no column {name!r}", remedy=nearest(name, columns))
-    return name
 
 
 def _query_error(

@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
+from tsas_cli.recordings.manifest import Manifest, RigSheet
 from tsas_cli.recordings.pieces import known_columns, long_run, pieces
 from tsas_cli.recordings.quality.checks import (
     clock,
@@ -88,6 +88,14 @@ class Report:
     findings: tuple[Finding, ...]
     not_checked: tuple[NotChecked, ...]
 
+    @classmethod
+    def of(cls, results: Sequence[Finding | NotChecked]) -> Self:
+        """Return results, sorted by kind."""
+        return cls(
+            tuple(r for r in results if isinstance(r, Finding)),
+            tuple(r for r in results if isinstance(r, NotChecked)),
+        )
+
 
 def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     """Return the findings of `check_runs`, and those on the whole dataset."""
@@ -95,7 +103,7 @@ def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     of_all = [
         replace(one, code=check.code) for check in DATASET_CHECKS for one in check.find(dataset)
     ]
-    return _report((*of_runs.findings, *of_runs.not_checked, *of_all))
+    return Report.of((*of_runs.findings, *of_runs.not_checked, *of_all))
 
 
 def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
@@ -113,15 +121,21 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     step.ahead(len(dataset.runs))
     for run in dataset.runs:
         try:
-            results += _check_run(dataset, run)
+            if (long := long_run(dataset.folder, run)) is not None:
+                found = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
+            else:
+                recording = read_recording(dataset.folder, run, strict=False)
+                trial = RunSignals(recording, dataset.manifest.rig)
+                found = {check.code: look(check, trial) for check in RUN_CHECKS}
+            results += [replace(o, code=code, run=run.id) for code, of in found.items() for o in of]
         except InputError as error:
             failures.append(error)
-            broken = Finding("error", None, error.line(), "restore the file or ingest again")
-            results.append(replace(broken, code="unreadable", run=run.id))
+            said = error.line(), "restore the file or ingest again"
+            results.append(Finding("error", None, *said, code="unreadable", run=run.id))
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
-    return _report(_weighed(results, len(dataset.runs)))
+    return Report.of(_weighed(results, len(dataset.runs)))
 
 
 def _weighed(results: Results, runs: int) -> Results:
@@ -137,23 +151,6 @@ def _weighed(results: Results, runs: int) -> Results:
         else one
         for one in results
     ]
-
-
-def _report(results: Sequence[Finding | NotChecked]) -> Report:
-    return Report(
-        tuple(r for r in results if isinstance(r, Finding)),
-        tuple(r for r in results if isinstance(r, NotChecked)),
-    )
-
-
-def _check_run(dataset: Dataset, run: Run) -> Results:
-    long = long_run(dataset.folder, run)
-    if long is not None:
-        results = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
-    else:
-        trial = RunSignals(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
-        results = {check.code: look(check, trial) for check in RUN_CHECKS}
-    return [replace(o, code=code, run=run.id) for code, each in results.items() for o in each]
 
 
 _NUMBER = r"-?\d[\d.,e+-]*( \w+)?"
