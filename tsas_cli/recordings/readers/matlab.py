@@ -65,7 +65,7 @@ def _content(path: Path) -> Raw:
     with path.open("rb") as stream:
         head = stream.read(520)
     if _HDF5 in (head[:8], head[512:]):
-        from tsas_cli.recordings.readers.matlab_hdf5 import variables
+        from tsas_cli.recordings.readers.hdf5 import variables
 
         return variables(path)
     check_unpacked(path)
