@@ -44,7 +44,11 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
             )
     roots = [folder.resolve() for folder in folders]
     found, problems = files_below(roots)
-    file = _file_for(roots)
+    import platformdirs
+
+    cache = Path(os.environ.get("TSAS_CACHE_DIR") or platformdirs.user_cache_dir("tsas"))
+    named = hashlib.sha256("\0".join(map(str, roots)).encode("utf-8", "surrogateescape"))
+    file = cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
     try:
         intact = file.with_suffix(SUM).read_bytes() == sha256_of(file).encode()
     except OSError:
@@ -62,14 +66,6 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     if (problem := _stored(table, file)) is not None:
         return Index(folders, None, table, [*problems, problem])
     return Index(folders, file, None, problems)
-
-
-def _file_for(roots: Sequence[Path]) -> Path:
-    import platformdirs
-
-    cache = Path(os.environ.get("TSAS_CACHE_DIR") or platformdirs.user_cache_dir("tsas"))
-    named = hashlib.sha256("\0".join(map(str, roots)).encode("utf-8", "surrogateescape"))
-    return cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
 
 
 def _renewed(

@@ -42,8 +42,6 @@ class SqlQuery:
 def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     """Return a query as SQL, with `2026-01` as a time and `f_out in channels` with the full name.
 
-    InputError: no run has such a channel.
-
     >>> to_sql("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
     "started >= TIMESTAMP '2026-01-01' and 'f_out_N' in channels"
     """
@@ -133,18 +131,18 @@ def run_query(
     """Return the matching runs with the requested columns, or with all.
 
     A minus before a name in `sort` reverses its order; missing values come last.
-
-    InputError: the query is no condition on these columns, a column does not exist, or it takes
-    too long.
     """
     import duckdb
 
     problems = _opened(connection, index)
     runs = connection.table("runs")
-    chosen = tuple(_known(name, runs.columns) for name in columns) or tuple(runs.columns)
+    for name in (*columns, *(key.removeprefix("-") for key in sort)):
+        if name not in runs.columns:
+            hint = nearest(name, runs.columns)
+            raise InputError(f"there is no column {name!r}", remedy=hint)
+    chosen = tuple(columns) or tuple(runs.columns)
     order = ", ".join(
-        f'"{_known(key.removeprefix("-"), runs.columns)}" '
-        f"{'DESC' if key.startswith('-') else 'ASC'} NULLS LAST"
+        f'"{key.removeprefix("-")}" {"DESC" if key.startswith("-") else "ASC"} NULLS LAST'
         for key in (*sort, "folder", "run")
     )
     picked = ", ".join(f'"{name}"' for name in (*chosen, "folder"))
@@ -210,12 +208,6 @@ def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
     )
     in_files = [f"{Path(folder) / file}: {problem}" for folder, file, problem in problems]
     return [*index.problems, *in_files]
-
-
-def _known(name: str, columns: Sequence[str]) -> str:
-    if name not in columns:
-        raise InputError(f"there is no column {name!r}", remedy=nearest(name, columns))
-    return name
 
 
 def _query_error(

@@ -2,7 +2,7 @@
 
 import shlex
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,8 +15,7 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
 
 if TYPE_CHECKING:
-    from tsas_cli.installation.machine import Ability
-    from tsas_cli.installation.packages import Extra, Package
+    from tsas_cli.installation.packages import Extra
 
 
 def init(
@@ -68,8 +67,24 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
         ],
         "machine": [asdict(ability) for ability in machine],
     }
-    title = f"tsas {__version__} on Python {python}, {sys.executable}"
-    show(summary, _tables(title, core, more, machine), quiet=quiet, as_json=as_json)
+    tables = [
+        (
+            f"tsas {__version__} on Python {python}, {sys.executable}",
+            ("package", "required", "found", "state"),
+            [(p.name, p.asked, p.found or "", p.problem or "installed") for p in core],
+        ),
+        (
+            "extras",
+            ("extra", "for", "missing", "install it with"),
+            [(e.name, e.purpose, ", ".join(e.missing) or "none", _install(e)) for e in more],
+        ),
+        (
+            "this machine",
+            ("capability", "available", "found", "remedy"),
+            [(a.name, "yes" if a.works else "no", a.found, a.remedy) for a in machine],
+        ),
+    ]
+    show(summary, tables, quiet=quiet, as_json=as_json)
     sys.stdout.flush()
     if wrong := [package for package in core if package.problem]:
         problems = ", ".join(
@@ -78,17 +93,6 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
         required = [f"{p.name}{p.asked}" for p in wrong if p.name != "Python"]
         remedy = _pip(required) if required else f"use Python {wrong[0].asked}"
         raise InputError(f"required packages are missing or wrong: {problems}", remedy=remedy)
-
-
-def _tables(
-    title: str, core: Sequence["Package"], more: Sequence["Extra"], machine: Sequence["Ability"]
-) -> Iterator[tuple[str, tuple[str, ...], Sequence[tuple[str, ...]]]]:
-    rows = [(p.name, p.asked, p.found or "", p.problem or "installed") for p in core]
-    yield title, ("package", "required", "found", "state"), rows
-    rows = [(e.name, e.purpose, ", ".join(e.missing) or "none", _install(e)) for e in more]
-    yield "extras", ("extra", "for", "missing", "install it with"), rows
-    rows = [(a.name, "yes" if a.works else "no", a.found, a.remedy) for a in machine]
-    yield "this machine", ("capability", "available", "found", "remedy"), rows
 
 
 def _install(extra: "Extra") -> str:

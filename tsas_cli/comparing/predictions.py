@@ -87,8 +87,14 @@ class Predictions:
             if key not in self._prepared:
                 self._prepared[key] = prepare(dataset[run.id], dataset.manifest.session_start)
             ready = self._prepared[key]
-            if side.model is None:
-                out.append(_written(side, ready))
+            if side.model is None:  # what `tsas simulate` has written
+                path = result_file(side.path, run.id)
+                columns = columns_of(path, names_of(path))
+                for values in columns.values():
+                    check_rows(path, values.size, ready.time_s.size, stage="`tsas simulate`")
+                f_in = columns.get("f_in_N", ready.channel("f_in_N"))
+                unknown = np.full(ready.time_s.size, np.nan)
+                out.append(ComparedRun(ready, unknown if f_in is None else f_in, columns))
             else:
                 model = _for_run(side.model, side.recordings, run)
                 model = with_own_values(model, ready) if fit_own else model
@@ -159,13 +165,3 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
             if e.run in (None, owner)
         )
     )
-
-
-def _written(side: Side, run: Prepared) -> ComparedRun:
-    """Return what `tsas simulate` has written of a run."""
-    path = result_file(side.path, run.run.id)
-    columns = columns_of(path, names_of(path))
-    for values in columns.values():
-        check_rows(path, values.size, run.time_s.size, stage="`tsas simulate`")
-    f_in = columns.get("f_in_N", run.channel("f_in_N"))
-    return ComparedRun(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, columns)

@@ -17,7 +17,13 @@ ALIKE = 0.01  # relative difference of two RMSE that makes none of them better
 
 def findings(it: Comparison) -> list[str]:
     """Return what differs: values, causes, errors; the most important first."""
-    return [*_held_out(it), *_values(it), *_effects(it), *_errors(it)]
+    every = [*_held_out(it), *_values(it), *_effects(it)]
+    for channel in CHANNELS:
+        ratios = [r.ratio for r in it.errors if r.channel == channel and r.ratio is not None]
+        if ratios:
+            span, runs = span_text(ratios), count_of(len(ratios), "run")
+            every.append(f"In {channel} the RMSE of B is {span} times that of A ({runs}).")
+    return every
 
 
 def notes(it: Comparison) -> list[str]:
@@ -70,14 +76,6 @@ def _effects(it: Comparison) -> Iterator[str]:
     for name, side in it.sides.items():
         if side.verdict == "undecided" or side.verdict in INCOMPLETE:
             yield f"The verdict of diagnosis {name} is {side.verdict}: {side.reason}"
-
-
-def _errors(it: Comparison) -> Iterator[str]:
-    for channel in CHANNELS:
-        ratios = [r.ratio for r in it.errors if r.channel == channel and r.ratio is not None]
-        if ratios:
-            span, runs = span_text(ratios), count_of(len(ratios), "run")
-            yield f"In {channel} the RMSE of B is {span} times that of A ({runs})."
 
 
 def _held_out(it: Comparison) -> Iterator[str]:

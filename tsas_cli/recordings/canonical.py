@@ -40,11 +40,14 @@ def canonical_columns(
 
     The table is a file, or a part of it; `before` is the state after the preceding part, None at
     the beginning of a file.
-
-    InputError: a unit is missing or does not fit, columns differ in length, a value is infinite,
-    the time is not strictly increasing, or there are fewer than two samples.
     """
-    rows = _rows(table, path, fewest=1 if before else 2)
+    lengths = {source: values.size for source, values in table.columns.items()}
+    if len(set(lengths.values())) > 1:
+        listed = ", ".join(f"{source} has {n}" for source, n in lengths.items())
+        raise InputError(f"columns differ in length: {listed}", where=path, expected="one length")
+    rows = max(lengths.values())
+    if rows < (1 if before else 2):
+        raise InputError(f"{rows} rows", where=path, expected="at least two samples")
     before = before or PrecedingRows()
     columns, offsets = dict[str, Floats](), dict(before.offsets)
     for name, column in mapping.columns.items():
@@ -70,17 +73,6 @@ def canonical_columns(
     _check_values(columns, before.last.get(TIME), numbers, path)
     kept_rows = before.kept + columns[TIME].size
     return columns, PrecedingRows(before.read + rows, kept_rows, offsets, last)
-
-
-def _rows(table: ColumnTable, path: Path, *, fewest: int) -> int:
-    lengths = {source: values.size for source, values in table.columns.items()}
-    if len(set(lengths.values())) > 1:
-        listed = ", ".join(f"{source} has {n}" for source, n in lengths.items())
-        raise InputError(f"columns differ in length: {listed}", where=path, expected="one length")
-    rows = max(lengths.values())
-    if rows < fewest:
-        raise InputError(f"{rows} rows", where=path, expected="at least two samples")
-    return rows
 
 
 def _converted(

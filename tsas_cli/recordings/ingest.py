@@ -20,7 +20,6 @@ from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
-from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, sha256_of, state_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -41,10 +40,7 @@ class Ingested:
 
 
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
-    """Return the source files, and those below the source folders that fit a pattern ("*.csv").
-
-    InputError: a source does not exist, or a folder holds no such file.
-    """
+    """Return the source files, and those below the source folders that fit a pattern ("*.csv")."""
     found: list[Path] = []
     for source in sources:
         files = _files_in(source, pattern) if source.is_dir() else [source]
@@ -77,8 +73,6 @@ def ingest_files(
 
     `step` is called twice per file: when it is opened and when its run is written. Text tables and
     Parquet are read, converted and written in parts.
-
-    InputError: a file does not match the map, or two files have the same run id.
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}
@@ -194,16 +188,11 @@ def _one_each(table: ColumnTable, begins: npt.NDArray[np.intp], how: How) -> Col
     if not rows:
         return table
     chosen = begins if how != "last" else np.append(begins[1:], rows) - 1
-    columns = {
-        source: _means(values, begins) if how == "mean" else values[chosen]
-        for source, values in table.columns.items()
-    }
+    columns = {source: values[chosen] for source, values in table.columns.items()}
+    for source, values in table.columns.items() if how == "mean" else ():
+        finite = np.isfinite(values)
+        counts = np.add.reduceat(finite.astype(np.float64), begins)
+        sums = np.add.reduceat(np.where(finite, values, 0.0), begins)
+        gaps = np.full(counts.size, np.nan)
+        columns[source] = np.divide(sums, counts, out=gaps, where=counts > 0)
     return replace(table, columns=columns, numbers=table.row_numbers[chosen])
-
-
-def _means(values: Floats, begins: npt.NDArray[np.intp]) -> Floats:
-    finite = np.isfinite(values)
-    counts = np.add.reduceat(finite.astype(np.float64), begins)
-    sums = np.add.reduceat(np.where(finite, values, 0.0), begins)
-    means: Floats = np.divide(sums, counts, out=np.full(counts.size, np.nan), where=counts > 0)
-    return means

@@ -123,10 +123,7 @@ class IngestMap(StrictTable):
 
 
 def read_map(path: Path) -> IngestMap:
-    """Return a validated map.
-
-    InputError: the file is missing, is not TOML, is no valid map, or has open questions.
-    """
+    """Return a validated map."""
     content = read_toml(path)
     open_keys = list(_questions(content))
     if open_keys:
@@ -156,9 +153,6 @@ def run_conditions(
     Later sources take precedence: `[run]`, the file name (with its folder), the header, the
     converted groups, the table entry of the run's id. A comma is a decimal mark; an ambiguous one
     (1,250 may be thousands) needs `decimal`.
-
-    InputError: a pattern does not match, a group is missing, no number or ambiguous by a factor of
-    1000, or a unit does not fit.
     """
     folder = path.absolute().parent.name
     groups = _groups(run_map.from_file_name, f"{folder}/{path.name}", path)
@@ -170,7 +164,12 @@ def run_conditions(
                 where=path,
                 remedy='set decimal = "," under [read] of the map, or the value itself under [run]',
             )
-    name = _filled(run_map.id, {"stem": stem(path), "folder": folder} | groups)
+    words = {"stem": stem(path), "folder": folder} | groups
+    for word in re.findall(r"\{(\w+)\}", run_map.id):
+        if word not in words:
+            hint = nearest(word, words)
+            raise InputError(f"run.id: {{{word}}} is unknown", remedy=hint)
+    name = re.sub(r"\{(\w+)\}", lambda word: words[word[1]], run_map.id)
     converted = {
         condition: _converted(condition, rule, groups, path)
         for condition, rule in run_map.conditions.items()
@@ -216,16 +215,6 @@ def _groups(rule: FromText | None, text: str, path: Path) -> dict[str, str]:
             f"the pattern {rule.pattern.pattern!r} does not match {shown!r}", where=path
         )
     return {key: value for key, value in found.groupdict().items() if value is not None}
-
-
-def _filled(template: str, words: dict[str, str]) -> str:
-    def word(match: re.Match[str]) -> str:
-        if match[1] not in words:
-            hint = nearest(match[1], words)
-            raise InputError(f"run.id: {{{match[1]}}} is unknown", remedy=hint)
-        return words[match[1]]
-
-    return re.sub(r"\{(\w+)\}", word, template)
 
 
 def _plain(text: str) -> float | int | str:

@@ -25,7 +25,7 @@ from pydantic import (
 from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.files import Raw
+from tsas_cli.support.files import Raw, parsed
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -175,10 +175,7 @@ class Manifest(_ManifestTable):
 
 
 def read_manifest(folder: Location) -> Manifest:
-    """Return the validated `dataset.toml` of a folder.
-
-    InputError: the manifest is missing, is not TOML, or violates format 1.
-    """
+    """Return the validated `dataset.toml` of a folder."""
     path = folder / MANIFEST_FILE
     if not path.is_file():
         raise InputError(
@@ -192,33 +189,23 @@ def read_manifest(folder: Location) -> Manifest:
 
 
 def read_toml(path: Location) -> Raw:
-    """Return the content of a TOML file.
+    """Return the content of a TOML file."""
 
-    InputError: the file cannot be read, is not TOML, or exceeds a limit.
-    """
-    try:
+    def load() -> Raw:
         text = (
             limits.decoded(path.read_bytes(0, limits.TOML_BYTES + 1), path, limits.TOML_BYTES)
             if isinstance(path, Address)
             else limits.text_of(path, limits.TOML_BYTES)
         )
         limits.toml(text, path)
-        content = tomllib.loads(text)
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    except RecursionError as error:
-        raise limits.too_deep(path) from error
-    except ValueError as error:  # of TOML, of text, or of an integer with too many digits
-        raise InputError(f"is not TOML ({limits.reason(error)})", where=path) from error
-    limits.depth(content, path)
+        return tomllib.loads(text)
+
+    content: Raw = parsed(load, "TOML", path)
     return content
 
 
 def parse(model: type[T], content: Raw, path: object) -> T:
-    """Return the validated content of a file; all its errors become one line.
-
-    InputError: a key is missing, unknown or invalid.
-    """
+    """Return the validated content of a file; all its errors become one line."""
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:

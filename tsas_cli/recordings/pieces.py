@@ -49,12 +49,14 @@ class Piece:
 
 
 def long_run(folder: Location, run: Run) -> RunColumns | None:
-    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet.
-
-    InputError: its file, columns or units violate the manifest or format 1.
-    """
-    if isinstance(folder, Path) and not _is_long(folder / run.file):
-        return None
+    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet."""
+    if isinstance(folder, Path):
+        path = folder / run.file
+        try:
+            if not path.is_file() or pq.read_metadata(path).num_rows <= MOST_ROWS:
+                return None
+        except (pa.ArrowException, OSError):  # the reader of a short run reports it
+            return None
     opened = open_run(folder, run)
     if opened.rows <= MOST_ROWS:
         return None
@@ -62,14 +64,6 @@ def long_run(folder: Location, run: Run) -> RunColumns | None:
     check_columns(known, opened.file.schema_arrow.names, opened.path)
     check_size(opened.file, opened.path, known, size=opened.size, whole=False)
     return opened
-
-
-def _is_long(path: Path) -> bool:
-    """Return whether a file has too many rows to be read whole; its reader reports any fault."""
-    try:
-        return path.is_file() and int(pq.read_metadata(path).num_rows) > MOST_ROWS
-    except (pa.ArrowException, OSError):
-        return False
 
 
 def known_columns(run: RunColumns) -> list[str]:
@@ -83,9 +77,6 @@ def pieces(
     """Yield columns in pieces of `MOST_ROWS` rows; consecutive pieces share `overlap` rows.
 
     With `strict=False`, time may stop or decrease, and values may be implausible.
-
-    InputError: the file cannot be read, a column is not numeric or holds an implausible value, or
-    time does not increase.
     """
     buffered: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0

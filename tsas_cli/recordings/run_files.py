@@ -41,10 +41,6 @@ def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Record
 
     With `strict=False`, time may decrease or repeat, and values may be implausible, so that
     `tsas check` can describe them.
-
-    InputError: the file is missing, leaves its folder, is not Parquet or has another checksum; a
-    column is missing, in another unit, not numeric or holds an implausible value; time is not
-    strictly increasing, or in implausible steps.
     """
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
@@ -83,11 +79,7 @@ class RunColumns:
         return int(self.file.metadata.num_rows)
 
     def read(self, name: str) -> Floats:
-        """Return a column as float64, shape (n,), null as NaN.
-
-        InputError: it is missing, not numeric, holds an implausible value or cannot be read; time
-        is not strictly increasing, or in implausible steps.
-        """
+        """Return a column as float64, shape (n,), null as NaN."""
         if name not in self.names:
             raise InputError(
                 f"column {name} is missing",
@@ -103,11 +95,7 @@ class RunColumns:
 
 
 def open_run(folder: Location, run: Run) -> RunColumns:
-    """Return one run, opened and validated as far as possible without reading samples.
-
-    InputError: the file is missing, leaves its folder, is not Parquet or has another checksum; time
-    is missing, or a column is in another unit.
-    """
+    """Return one run, opened and validated as far as possible without reading samples."""
     path = folder / run.file
     source = checked_file(folder, run)
     with reading(path):
@@ -119,11 +107,7 @@ def open_run(folder: Location, run: Run) -> RunColumns:
 
 
 def read_columns(path: Path) -> dict[str, Floats]:
-    """Return the canonical columns of a Parquet file that belongs to no dataset.
-
-    InputError: it does not exist or is no Parquet file; `time_s` is missing or does not increase; a
-    column is in another unit or not numeric.
-    """
+    """Return the canonical columns of a Parquet file that belongs to no dataset."""
     if not path.is_file():
         raise InputError("does not exist", where=path, expected="a Parquet file")
     table, _ = _table_of(path, path)
@@ -158,25 +142,18 @@ def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
             )
         unit = unit_of(field)
         expected = BY_NAME[field.name].unit
-        if unit.strip() and not _is_same(unit, expected):
+        try:
+            same = not unit.strip() or conversion(unit, expected) == (1.0, 0.0)
+        except InputError:
+            same = False
+        if not same:
             raise InputError(
                 f"column {field.name} has the unit {unit[:80]}", where=path, expected=expected
             )
 
 
-def _is_same(unit: str, expected: str) -> bool:
-    """Return whether a unit is the expected one, in any spelling."""
-    try:
-        return conversion(unit, expected) == (1.0, 0.0)
-    except InputError:
-        return False
-
-
 def floats_of(table: pa.Table, name: str, path: Location, *, first_row: int = 0) -> Floats:
-    """Return a column as float64, null as NaN; `first_row` is the number of its first row.
-
-    InputError: it is not numeric, holds an infinite value, or lacks the time of a row.
-    """
+    """Return a column as float64, null as NaN; `first_row` is the number of its first row."""
     values = floats_from(table.column(name))
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])

@@ -27,10 +27,7 @@ _UNREACHED = {
 
 
 def timeout_s() -> float:
-    """Return the time limit of a request [s], of the environment where it says one.
-
-    InputError: it says no time, or one that nobody waits.
-    """
+    """Return the time limit of a request [s], of the environment where it says one."""
     given = os.environ.get(TIMEOUT) or str(TIMEOUT_S)
     try:
         return TIMEOUTS_S(float(given))

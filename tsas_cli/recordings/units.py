@@ -2,6 +2,7 @@
 
 import math
 import re
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
@@ -74,8 +75,6 @@ def conversion(
     `unit` has any common spelling, `to` is s, mm, N, rpm, rad or °C. One `unit` is `factor` times
     `factor_unit`, which counts and volts need; `pulley_radius_mm` converts an angle to mm, or a
     torque to N; `where` is the location in error messages.
-
-    InputError: the unit is unknown or not convertible, or the factor is zero or not finite.
     """
     if factor is None and is_label(unit):
         raise InputError(
@@ -120,25 +119,25 @@ def _between(text: str, to: str, where: str) -> tuple[float, float]:
     if text.strip() == to:  # without pint, which takes longer to load than a recording
         return 1.0, 0.0
     unit, target = _parse(text, to, where), _parse(to, to, where)
-    line = _line(unit, target) if _roots(unit) == _roots(target) else None
-    if line is None:
+    zero = slope = 0.0
+    if _roots(unit) == _roots(target):
+        with suppress(ArithmeticError, TypeError, ValueError):  # of a difference of temperatures
+            number = _registry().Quantity
+            zero, one = (float(number(x, unit).to(target).magnitude) for x in (0.0, 1.0))
+            slope = one - zero
+    if slope == 0.0 or not math.isfinite(slope):
+        remedy = "check the source column and its unit"
+        if to == "mm" and _roots(unit) == _registry().Unit("rad"):
+            remedy = "set pulley_radius_mm to convert an angle to mm"
+        elif to == "N" and _roots(unit) == _roots(_registry().Unit("N*mm")):
+            remedy = "set pulley_radius_mm to convert a torque to N"
         raise InputError(
             f"unit {text!r} is not convertible to {to}",
             where=where,
             expected=_KINDS[to],
-            remedy=_remedy(unit, to),
+            remedy=remedy,
         )
-    return line
-
-
-def _line(unit: Any, target: Any) -> tuple[float, float] | None:
-    """Return slope and intercept, or None without a conversion (temperature differences)."""
-    try:
-        zero, one = (float(_registry().Quantity(x, unit).to(target).magnitude) for x in (0.0, 1.0))
-    except (ArithmeticError, TypeError, ValueError):  # pint's DimensionalityError is a TypeError
-        return None
-    slope = one - zero
-    return (slope, zero) if math.isfinite(slope) and slope != 0.0 else None
+    return slope, zero
 
 
 def _parse(text: str, to: str, where: str) -> Any:
@@ -176,14 +175,6 @@ def _unit(text: str) -> Any:
 def _roots(unit: Any) -> Any:
     """Return the base units; unlike dimensions, they distinguish mm/deg from mm, 1/s from rpm."""
     return _registry().get_root_units(unit)[1]
-
-
-def _remedy(unit: Any, to: str) -> str:
-    if to == "mm" and _roots(unit) == _registry().Unit("rad"):
-        return "set pulley_radius_mm to convert an angle to mm"
-    if to == "N" and _roots(unit) == _roots(_registry().Unit("N*mm")):
-        return "set pulley_radius_mm to convert a torque to N"
-    return "check the source column and its unit"
 
 
 @cache

@@ -67,10 +67,7 @@ class ShownFit:
 
 
 def pictures(inputs: Inputs) -> tuple[Picture, ...]:
-    """Return the loop and its enlargement, or a second channel's; none without a diagnosis.
-
-    InputError: a recording or what the diagnosis has written of it cannot be read.
-    """
+    """Return the loop and its enlargement, or a second channel's; none without a diagnosis."""
     found = best_fits(inputs)
     if found is None:
         return ()
@@ -181,8 +178,6 @@ def best_fits(inputs: Inputs) -> tuple[ShownFit, ShownFit | None] | None:
     """Return the run's channel with the largest gain, and another one with a gain.
 
     f_in comes first where its gain is at least half of the largest one. None without a diagnosis.
-
-    InputError: a recording or what the diagnosis has written of it cannot be read.
     """
     gains = {
         (fit.channel, fit.run): fit.gain
@@ -246,10 +241,9 @@ def near(fit: ShownFit) -> Box:
     more = max((end - start) // 2, n // 100)
     span = slice(max(start - more, 0), min(end + more, n))
     curves = np.array([fit.measured[span], *(values[span] for _, _, values in fit.models)])
-    (left, right), (bottom, top) = (_padded(part) for part in (fit.x[span], curves))
+    ends = []
+    for values in (fit.x[span], curves):
+        room = 0.08 * float(np.ptp(values)) or 1.0
+        ends += [float(values.min()) - room, float(values.max()) + room]
+    left, right, bottom, top = ends
     return left, right, bottom, top
-
-
-def _padded(values: Floats) -> tuple[float, float]:
-    more = 0.08 * float(np.ptp(values)) or 1.0
-    return float(values.min()) - more, float(values.max()) + more

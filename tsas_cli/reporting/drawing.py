@@ -90,7 +90,9 @@ def picture(
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata=_NOTHING)
         scales = {f"axes_{number}": _scales(axes) for number, axes in enumerate(figure.axes, 1)}
-    svg = _inline(_visible(stream.getvalue()), key=anchor(key), alt=alt, scales=scales)
+    # Control characters in names from files, some of which XML cannot hold, are made visible.
+    text = "\n".join(map(printable, stream.getvalue().split("\n")))
+    svg = _inline(text, key=anchor(key), alt=alt, scales=scales)
     return Picture(svg=svg, caption=caption)
 
 
@@ -129,13 +131,6 @@ def _shorten(figure: Any) -> None:
                 axis.set_ticks(
                     axis.get_ticklocs(), [shortened(name, _LONGEST_TICK) for name in names]
                 )
-
-
-def _visible(svg: str) -> str:
-    """Make control characters in names from files visible, some of which XML cannot hold."""
-    if svg.replace("\n", "").isprintable():
-        return svg
-    return "\n".join(map(printable, svg.split("\n")))
 
 
 def _inline(text: str, *, key: str, alt: str, scales: Mapping[str, Mapping[str, str]]) -> Markup:

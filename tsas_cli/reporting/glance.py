@@ -85,18 +85,12 @@ def _errors(channels: Mapping[str, HeldOut], *, extended: bool) -> Iterator[Fact
     for name, channel in channels.items():
         before, after = plain(channel.rmse_before, 3), plain(channel.rmse_after, 3)
         value = f"{after if extended else before} {channel.unit}"
-        note = _normalised(channel, extended=extended)
+        sizes = (channel.rmse_before, channel.rmse_after)[: 1 + extended]
+        note, noise = "", channel.noise_floor
+        if noise and None not in sizes:
+            over = " → ".join(plain(rms / noise, 2) for rms in sizes if rms is not None)
+            note = f"{over} × noise level"
         yield Fact(in_words(name), value, note, before if extended else "")
-
-
-def _normalised(channel: HeldOut, *, extended: bool) -> str:
-    """Return the normalised residual, before and after with an extended model."""
-    both = (channel.rmse_before, channel.rmse_after) if extended else (channel.rmse_before,)
-    noise = channel.noise_floor
-    if not noise or None in both:
-        return ""
-    said = " → ".join(plain(rms / noise, 2) for rms in both if rms is not None)
-    return f"{said} × noise level"
 
 
 def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:

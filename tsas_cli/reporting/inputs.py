@@ -120,10 +120,7 @@ class Inputs:
 
 
 def series_of(folder: Path, run: str, rows: int, column: str) -> Floats:
-    """Return a column of a run of so many samples from a stage's folder, NaN for gaps.
-
-    InputError: the file cannot be read, or does not belong to this recording.
-    """
+    """Return a column of a run of so many samples from a stage's folder, NaN for gaps."""
     path = result_file(folder, run)
     values = columns_of(path, (column,))[column]
     check_rows(path, len(values), rows)
@@ -131,10 +128,7 @@ def series_of(folder: Path, run: str, rows: int, column: str) -> Floats:
 
 
 def written_in(folder: Path, run: str) -> frozenset[str]:
-    """Return the columns that a stage's folder has of a run, none without the run.
-
-    InputError: the file cannot be read.
-    """
+    """Return the columns that a stage's folder has of a run, none without the run."""
     path = result_file(folder, run)
     return frozenset(names_of(path) if path.is_file() else ())
 
@@ -143,9 +137,6 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     """Recognise each folder by the files in it, read all, and find the dataset.
 
     `several` simulations may be given, else one.
-
-    InputError: a folder is of no known kind, a kind is a duplicate, no dataset can be found, a
-    stage has read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders, several=several)
     given = tuple(
@@ -164,7 +155,15 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     dataset = read_dataset(folder).under(**_conditions(given))
     for stage, path in given:
         if isinstance(stage, OfDataset):
-            _check_hashes(stage, dataset, path / stage.FILE)
+            then, now = stage.dataset.hashes, dataset.hashes()
+            for file in sorted(now.keys() | then.keys()):
+                if now.get(file, "").lower() != then.get(file, "").lower():
+                    raise InputError(
+                        f"{file} of {dataset.folder} has changed since this stage read it",
+                        where=path / stage.FILE,
+                        expected=f"SHA-256 {then[file]}" if file in then else "no such file",
+                        remedy="run the stage again, or give the dataset that it has read",
+                    )
         elif isinstance(stage, TrackingFile) and dataset.folder.resolve() != path.resolve():
             raise InputError(
                 f"its runs are not in the dataset {dataset.folder}",
@@ -176,10 +175,7 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
 
 
 def read_stage(kind: type[Stage], folder: Path) -> Stage:
-    """Read what a stage has written; control characters in its texts are made visible.
-
-    InputError: the file cannot be read, or does not say what such a file says.
-    """
+    """Read what a stage has written; control characters in its texts are made visible."""
     path = folder / kind.FILE
     content = read_json(path)
     visible = _visible(content) if isinstance(content, dict) else content
@@ -253,15 +249,3 @@ def _conditions(given: Sequence[tuple[StageFile, Path]]) -> dict[str, float]:
                 remedy="write a page for each",
             )
     return stated[0][0] if stated else {}
-
-
-def _check_hashes(stage: OfDataset, dataset: Dataset, path: Path) -> None:
-    then, now = stage.dataset.hashes, dataset.hashes()
-    for file in sorted(now.keys() | then.keys()):
-        if now.get(file, "").lower() != then.get(file, "").lower():
-            raise InputError(
-                f"{file} of {dataset.folder} has changed since this stage read it",
-                where=path,
-                expected=f"SHA-256 {then[file]}" if file in then else "no such file",
-                remedy="run the stage again, or give the dataset that it has read",
-            )

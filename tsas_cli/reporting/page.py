@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from tsas_cli.records.base import OfDataset
 from tsas_cli.records.calibration import CalibrationFile
-from tsas_cli.records.check import CheckFile
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
@@ -49,8 +48,6 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
 
     A page of a drive, of predictions, of tracked runs, or of what a better model is worth in
     tracking, leaves out what was not given; any other says what is missing.
-
-    InputError: a recording or a simulated run cannot be read.
     """
     kinds = (ClosingFile, TrackingFile, DriveFile, PredictionFile)
     alone = any(inputs.get(kind) is not None for kind in kinds)
@@ -80,7 +77,10 @@ def _sentences(inputs: Inputs) -> Iterator[str]:
     manifest = inputs.dataset.manifest
     many = count_of(len(manifest.run), "recording")
     yield f"{manifest.name} holds {many}, {manifest.kind}."
-    yield _findings(inputs.check)
+    severities = [finding.severity for finding in inputs.check.findings]
+    counts = {name: severities.count(name) for name in ("error", "warning", "note")}
+    said = ", ".join(count_of(n, name) for name, n in counts.items() if n)
+    yield f"The checks report {said}." if said else "The checks found nothing."
     of_data = [stage for stage, _ in inputs.given if isinstance(stage, OfDataset)]
     yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)
@@ -89,12 +89,3 @@ def _sentences(inputs: Inputs) -> Iterator[str]:
         yield f"Keep in mind: {notes[0]}"
         if notes[1:]:
             yield f"{count_of(len(notes) - 1, 'more note')} on the estimates: see Parameters."
-
-
-def _findings(check: CheckFile) -> str:
-    counts = {
-        severity: sum(f.severity == severity for f in check.findings)
-        for severity in ("error", "warning", "note")
-    }
-    said = [count_of(n, name) for name, n in counts.items() if n]
-    return f"The checks report {', '.join(said)}." if said else "The checks found nothing."

@@ -45,7 +45,14 @@ def section(inputs: Inputs) -> Section:
     if tracking := inputs.get(TrackingFile):
         named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
         hashes |= {one.file: one.sha256 for one in named if one.sha256 is not None}
-    tables = [table_of("Versions", ("program", "version"), _versions(inputs))]
+    wrote = ((name, inputs.get(kind)) for kind, name in _WROTE.items())
+    versions = [
+        ("tsas, this page", __version__),
+        *((f"tsas, {name}", stage.version) for name, stage in wrote if stage),
+        ("Python", platform.python_version()),
+        *((name, version(name)) for name in _LIBRARIES),
+    ]
+    tables = [table_of("Versions", ("program", "version"), versions)]
     if hashes:
         tables.append(table_of("Files read", ("file", "SHA-256"), hashes.items()))
     return Section(
@@ -134,15 +141,6 @@ def _model(model: ModelFile, inputs: Inputs) -> list[str]:
     calibrated = folder / model.file if folder else Path(model.file)
     same = calibrated.is_file() and sha256_of(calibrated) == model.sha256
     return ["--model", str(calibrated) if same else model.file]
-
-
-def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
-    yield "tsas, this page", __version__
-    for kind, name in _WROTE.items():
-        if stage := inputs.get(kind):
-            yield f"tsas, {name}", stage.version
-    yield "Python", platform.python_version()
-    yield from ((name, version(name)) for name in _LIBRARIES)
 
 
 def closing_options(closing: ClosingFile) -> Iterator[str]:

@@ -20,9 +20,8 @@ from tsas_cli.physics.closed_form.capstan import (
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
-from tsas_cli.recordings.recording import CopiedRows
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
@@ -136,7 +135,11 @@ def calibrate(
         step.ahead(len(counted.dataset.runs))
         prepared = []
         for run in counted.dataset.runs:
-            prepared.append(_prepared(data, run, counted.copied_of(run.id)))
+            copied = counted.copied_of(run.id)
+            if (long := open_long(data, run, copied)) is not None:
+                prepared.append(long.prepared())  # of the samples that the fit takes
+            else:
+                prepared.append(prepare(data[run.id], data.manifest.session_start, copied))
             step()
         for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
             step.say(sentence)
@@ -155,7 +158,13 @@ def calibrate(
             parameters=parameters_of(result.model.estimates),
             cannot_tell=(*counted.notes, *result.cannot_tell),
             fit=_fit(result),
-            channels=_errors(result),
+            channels={
+                run.run.id: {
+                    name: records.ChannelError(rmse=rmse, noise=run.noise[name])
+                    for name, rmse in a.summary.rmse.items()
+                }
+                for run, a in zip(result.runs, result.predictions, strict=True)
+            },
         )
         if folder is not None:
             fitted = record.source().content()
@@ -168,14 +177,6 @@ def calibrate(
             )
             record.write(folder)
     return CalibrationResult(record.content(), path, record, result)
-
-
-def _prepared(dataset: Dataset, run: Run, copied: CopiedRows) -> Prepared:
-    """Return a run that is ready for the fit; of a long one the samples that the fit takes."""
-    long = open_long(dataset, run, copied)
-    if long is not None:
-        return long.prepared()
-    return prepare(dataset[run.id], dataset.manifest.session_start, copied)
 
 
 def _stiffness_rows(result: Calibration, manifest: Manifest) -> Iterator[records.Stiffness]:
@@ -193,16 +194,6 @@ def _fit(result: Calibration) -> records.NominalFit:
         evaluations=0 if fitted is None else fitted.evaluations,
         solver=tuple(sorted({a.response.solver for a in result.predictions})),
     )
-
-
-def _errors(result: Calibration) -> dict[str, dict[str, records.ChannelError]]:
-    return {
-        run.run.id: {
-            name: records.ChannelError(rmse=rmse, noise=run.noise[name])
-            for name, rmse in a.summary.rmse.items()
-        }
-        for run, a in zip(result.runs, result.predictions, strict=True)
-    }
 
 
 def _stiffness(

@@ -119,7 +119,13 @@ def work(task: Raw) -> TaskOutcome:
         refuse_others(task["inputs"]["versions"], versions(), "this worker")
         outcome = _done(task)
     except InputError as error:
-        outcome = failure(_as_named(error.line(), task), defect=False)
+        # Files as the plan names them, so that the line is the same in every place.
+        line, named = error.line(), {n: f["file"] for n, f in task["inputs"]["files"].items()}
+        if "dataset" in task["inputs"]:
+            named["dataset"] = task["inputs"]["dataset"]["name"]
+        for name, said in named.items():
+            line = line.replace(task["places"][name], said)
+        outcome = failure(line, defect=False)
     except MemoryError:
         outcome = failure(NO_MEMORY, defect=False)
     except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
@@ -129,16 +135,6 @@ def work(task: Raw) -> TaskOutcome:
         "seconds": time.perf_counter() - start,
         "processor_seconds": time.process_time() - before,
     }
-
-
-def _as_named(line: str, task: Raw) -> str:
-    """Return a line with files as the plan names them, so that it is the same in every place."""
-    named = {name: source["file"] for name, source in task["inputs"]["files"].items()}
-    if "dataset" in task["inputs"]:
-        named["dataset"] = task["inputs"]["dataset"]["name"]
-    for name, said in named.items():
-        line = line.replace(task["places"][name], said)
-    return line
 
 
 def _done(task: Raw) -> TaskOutcome:

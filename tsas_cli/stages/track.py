@@ -231,7 +231,11 @@ def track(
         if folder is not None:
             write_dataset(folder, manifest(tables, read), tables)
             record.write(folder)
-    return TrackingResult(record.content(), path, record, _recordings(tables, read))
+    recordings = {
+        run: Recording(conditions(run, read), {n: table[n].to_numpy() for n in table.column_names})
+        for run, table in tables.items()
+    }
+    return TrackingResult(record.content(), path, record, recordings)
 
 
 def _known_controllers(named: Sequence[str]) -> Sequence[str]:
@@ -244,15 +248,6 @@ def _known_controllers(named: Sequence[str]) -> Sequence[str]:
         if name not in CONTROLLERS:
             raise InputError(f"unknown controller {name}", remedy=nearest(name, CONTROLLERS))
     return list(dict.fromkeys(named))
-
-
-def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:
-    return {
-        run: Recording(
-            conditions(run, settings), {name: table[name].to_numpy() for name in table.column_names}
-        )
-        for run, table in tables.items()
-    }
 
 
 def what_is_known(

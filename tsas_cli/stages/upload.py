@@ -73,8 +73,15 @@ def upload(
     step.ahead(len(dataset.runs))
     replaced = {run.file for run in read_dataset(target).runs} if exists else set()
     for run in dataset.runs:  # before anything is sent or replaced
-        if run.file not in replaced:
-            _refuse_foreign(target / run.file, local_file(source, run).stat().st_size)
+        existing, size = target / run.file, local_file(source, run).stat().st_size
+        # An object of this size may be of an interrupted upload.
+        if run.file not in replaced and existing.is_file() and existing.size() != size:
+            raise InputError(
+                "was not written by `tsas upload`",
+                where=existing,
+                expected="an address that is free, or a dataset",
+                remedy="choose another address, or remove the object with the storage's own tools",
+            )
     files: dict[str, int] = {}
     try:
         for run in dataset.runs:
@@ -97,14 +104,3 @@ def upload(
     files[MANIFEST_FILE] = len(content)
     summary = heading("upload") | {"folder": str(source), "address": str(target), "files": files}
     return UploadResult(summary, None)
-
-
-def _refuse_foreign(existing: Address, size: int) -> None:
-    """Refuse to replace an object, unless an interrupted upload of this size wrote it."""
-    if existing.is_file() and existing.size() != size:
-        raise InputError(
-            "was not written by `tsas upload`",
-            where=existing,
-            expected="an address that is free, or a dataset",
-            remedy="choose another address, or remove the object with the storage's own tools",
-        )

@@ -6,7 +6,7 @@ import json
 import math
 import os
 from collections.abc import Callable, Collection, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from contextvars import ContextVar
 from functools import partial
 from pathlib import Path
@@ -36,22 +36,16 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-@contextmanager
 def new_folder(
     path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
-) -> Iterator[Path]:
-    """Yield a temporary folder that becomes `path` when the block ends without an error.
+) -> AbstractContextManager[Path]:
+    """Give a temporary folder that becomes `path` when the block ends without an error.
 
     `stage` writes it, as its JSON names it; with `force` an earlier output of the same stage is
     replaced. The folder may not be, contain or lie inside one of the call's `inputs`.
-
-    InputError: `path` exists and is not an empty folder, and `force` is not set; or, with `force`,
-    it is no earlier output of the same stage, an input, or the current folder; or it is not
-    writable.
     """
     refuse = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
-    with _new(path, refuse, folder=True, force=force) as temporary:
-        yield temporary
+    return _new(path, refuse, folder=True, force=force)
 
 
 @contextmanager
@@ -70,16 +64,13 @@ def stage_folder(
         write_sums(folder)
 
 
-@contextmanager
 def folder_if(
     path: Path | None, *, stage: str, inputs: Iterable[object], force: bool = False
-) -> Iterator[Path | None]:
-    """Yield a new folder as `stage_folder` does, or None without a path."""
+) -> AbstractContextManager[Path | None]:
+    """Give a new folder as `stage_folder` does, or None without a path."""
     if path is None:
-        yield None
-        return
-    with stage_folder(path, stage=stage, inputs=inputs, force=force) as folder:
-        yield folder
+        return nullcontext()
+    return stage_folder(path, stage=stage, inputs=inputs, force=force)
 
 
 @contextmanager
@@ -92,22 +83,17 @@ def extra_output(write: Callable[[Path], None] | None) -> Iterator[None]:
         _EXTRA_OUTPUT.reset(before)
 
 
-@contextmanager
 def new_file(
     path: Path, *, mark: bytes, inputs: Iterable[object], force: bool = False
-) -> Iterator[Path]:
-    """Yield a temporary file name that becomes `path` when the block ends without an error.
+) -> AbstractContextManager[Path]:
+    """Give a temporary file name that becomes `path` when the block ends without an error.
 
     With `force` an earlier output of the same command is replaced, which has `mark` in its first
     4 KiB; an empty mark allows any file, since the path belongs to the program. The file may not
     be one of the call's `inputs` or lie inside one.
-
-    InputError: `path` exists and `force` is not set; or, with `force`, it is no earlier output or
-    an input; or it is a folder or not writable.
     """
     refuse = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
-    with _new(path, refuse, folder=False, force=force) as temporary:
-        yield temporary
+    return _new(path, refuse, folder=False, force=force)
 
 
 @contextmanager
@@ -129,14 +115,9 @@ def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -
             (place_folder if folder else place_file)(temporary, path, replace=force)
 
 
-@contextmanager
-def own_file(path: Path) -> Iterator[Path]:
-    """Yield as `new_file` does, for a file whose path belongs to the program: it is replaced.
-
-    InputError: it is a folder, or not writable.
-    """
-    with new_file(path, mark=b"", inputs=(), force=True) as temporary:
-        yield temporary
+def own_file(path: Path) -> AbstractContextManager[Path]:
+    """Give what `new_file` does, for a file whose path belongs to the program: it is replaced."""
+    return new_file(path, mark=b"", inputs=(), force=True)
 
 
 def write_sums(folder: Path) -> None:
@@ -163,21 +144,26 @@ def json_text(content: Any) -> str:
 
 
 def read_json(path: Path) -> Any:
-    """Return the content of a JSON file.
+    """Return the content of a JSON file, in which no key may be a duplicate."""
 
-    InputError: the file is missing or unreadable, is not JSON, has a duplicate key, or exceeds a
-    limit.
-    """
-    try:
+    def load() -> Any:
         limits.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
         text = limits.text_of(path, limits.JSON_BYTES)
-        content = json.loads(text, object_pairs_hook=_without_duplicates)
+        return json.loads(text, object_pairs_hook=_without_duplicates)
+
+    return parsed(load, "JSON", path)
+
+
+def parsed(load: Callable[[], Any], kind: str, path: object) -> Any:
+    """Return what a parser loads from a file; the errors of both become `InputError`."""
+    try:
+        content = load()
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
     except RecursionError as error:
         raise limits.too_deep(path) from error
-    except ValueError as error:
-        raise InputError(f"is not JSON ({limits.reason(error)})", where=path) from error
+    except ValueError as error:  # of the syntax, of text, or of an integer with too many digits
+        raise InputError(f"is not {kind} ({limits.reason(error)})", where=path) from error
     limits.depth(content, path)
     return content
 

@@ -51,7 +51,13 @@ def stopped_once() -> None:
     Signals that arrive when Python takes its modules apart, after all that is done at exit, would
     end the process by themselves: they are ignored.
     """
-    atexit.register(_ignore)
+
+    def ignore() -> None:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+
+    atexit.register(ignore)
     sys.unraisablehook = _raise_again
     _handle(Interrupted)
 
@@ -77,12 +83,6 @@ def _raise(kind: type[BaseException], frame: FrameType | None) -> None:
             return
         frame = frame.f_back
     raise kind
-
-
-def _ignore() -> None:
-    signal.setitimer(signal.ITIMER_REAL, 0.0)
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
 
 
 @contextmanager

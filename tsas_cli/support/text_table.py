@@ -25,7 +25,13 @@ def table_text(
     cells = [[printable(str(cell)) for cell in row] for row in (header, *rows)]
     widths = _widths(cells, math.inf if width is None else width)
     for row in (cells[0], ["-" * wide for wide in widths], *cells[1:]):
-        yield from _lines(row, widths)
+        wrapped = (
+            [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False)
+            for cell, width in zip(row, widths, strict=True)
+        )
+        for line in zip_longest(*wrapped, fillvalue=""):
+            parts = (part.ljust(width) for part, width in zip(line, widths, strict=True))
+            yield (INDENT + GAP.join(parts)).rstrip()
 
 
 def _widths(cells: Sequence[_Row], room: float) -> list[int]:
@@ -42,13 +48,3 @@ def _widths(cells: Sequence[_Row], room: float) -> list[int]:
             break
         widths[max(reducible, key=lambda k: widths[k])] -= 1
     return widths
-
-
-def _lines(row: _Row, widths: Sequence[int]) -> Iterator[str]:
-    wrapped = (
-        [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False)
-        for cell, width in zip(row, widths, strict=True)
-    )
-    for line in zip_longest(*wrapped, fillvalue=""):
-        parts = (part.ljust(width) for part, width in zip(line, widths, strict=True))
-        yield (INDENT + GAP.join(parts)).rstrip()

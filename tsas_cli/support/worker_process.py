@@ -43,7 +43,7 @@ class WorkerProcess:
     def call(self, work: str, *arguments: Any) -> Any:
         """Return the result of a function, `module:function`.
 
-        EOFError: the process has died, with how it ended.
+        EOFError: the process has died: how, and the last line of its standard error.
         """
         assert self.process.stdin is not None  # noqa: S101 # both are pipes
         assert self.process.stdout is not None  # noqa: S101
@@ -52,7 +52,12 @@ class WorkerProcess:
             self.process.stdin.flush()
             return pickle.load(self.process.stdout)  # noqa: S301 # our own process wrote it
         except (OSError, EOFError, pickle.UnpicklingError) as error:
-            raise EOFError(self._ending()) from error
+            code = self.process.wait()
+            self.stderr.seek(0)
+            last = self.stderr.read()[-STDERR_BYTES:].decode("utf-8", "replace").strip()
+            self.kill()
+            ended = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with {code}"
+            raise EOFError(": ".join([ended, *last.splitlines()[-1:]])) from error
 
     def kill(self) -> None:
         """Kill the process and close its pipes."""
@@ -62,15 +67,6 @@ class WorkerProcess:
             if stream is not None:
                 with suppress(BrokenPipeError, ValueError):
                     stream.close()
-
-    def _ending(self) -> str:
-        """Return how the process ended, with the last line of its standard error."""
-        code = self.process.wait()
-        self.stderr.seek(0)
-        last = self.stderr.read()[-STDERR_BYTES:].decode("utf-8", "replace").strip()
-        self.kill()
-        ended = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with {code}"
-        return ": ".join([ended, *last.splitlines()[-1:]])
 
 
 def serve() -> None:

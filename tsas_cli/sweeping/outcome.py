@@ -27,7 +27,7 @@ def failure(error: str, *, defect: bool = True) -> TaskOutcome:
 def worker_death(times: int, message: str = "") -> TaskOutcome:
     """Return the outcome of a task whose worker died in each of `times` attempts."""
     often = "the process died" if times == 1 else f"the process died, {times} times"
-    return failure(": ".join([often, *([message] if message else [])]))
+    return failure(f"{often}: {message}" if message else often)
 
 
 def success(results: Row, parameters: list[Row]) -> TaskOutcome:

@@ -49,11 +49,7 @@ class Task:
 
 
 def tasks_of(plan: SweepPlan, base: Path, options: Options) -> list[Task]:
-    """Return the tasks of a plan, dataset by dataset.
-
-    InputError: a dataset or file does not exist, a name is unknown, a value is invalid, or tasks
-    are duplicate.
-    """
+    """Return the tasks of a plan, dataset by dataset."""
     sources: list[SweepSource | None] = [None]
     if plan.datasets:
         sources = [*sources_of(plan.datasets, base, each_run=plan.each_run)]
@@ -113,15 +109,21 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Sw
     """Return the datasets of names and patterns, in order; with `each_run` their runs.
 
     A pattern such as `rigs/*` selects the folders that hold a `dataset.toml`.
-
-    InputError: a folder holds no dataset, or a pattern matches none.
     """
     found: dict[Path, SweepSource] = {}
     for name in names:
         for source in _matching(name, base):
             found.setdefault(source.folder.resolve(), source)  # patterns may overlap
-    sources = list(found.values())
-    return [run for source in sources for run in _runs(source)] if each_run else sources
+    if not each_run:
+        return list(found.values())
+    sources = []
+    for source in found.values():
+        try:
+            runs = read_toml(source.folder / MANIFEST_FILE)["run"]
+            sources += [replace(source, run=str(run["id"])) for run in runs] or [source]
+        except (InputError, KeyError, TypeError):  # the task of the dataset reports the fault
+            sources.append(source)
+    return sources
 
 
 def _matching(name: str, base: Path) -> Iterator[SweepSource]:
@@ -151,12 +153,3 @@ def _source(name: str, base: Path) -> SweepSource:
             remedy=f"its subfolders are datasets: use '{name}/*'" if inside else "",
         )
     return SweepSource(Path(name).as_posix(), folder, sha256_of(folder / MANIFEST_FILE))
-
-
-def _runs(source: SweepSource) -> Iterator[SweepSource]:
-    """Yield each run; or the dataset if its manifest lists none, whose task reports the fault."""
-    try:
-        runs = [str(run["id"]) for run in read_toml(source.folder / MANIFEST_FILE)["run"]]
-    except (InputError, KeyError, TypeError):
-        runs = []
-    yield from [replace(source, run=run) for run in runs] or [source]

@@ -47,10 +47,7 @@ class Claim:
 
 
 def claims_of(path: Path) -> Iterator[Claim]:
-    """Yield the checksums that a file records of others; none if tsas has not written it.
-
-    InputError: the file cannot be read, or is not in the format of its name.
-    """
+    """Yield the checksums that a file records of others; none if tsas has not written it."""
     if path.name == SUMS:
         yield from _of_sums(path)
     elif path.name == MANIFEST_FILE:
@@ -127,10 +124,7 @@ def _of_file(path: Path, record: object) -> Iterator[Claim]:
 
 
 def _of_page(path: Path) -> Iterator[Claim]:
-    """Yield the checksum of a page, and those of its inputs; none if it is no page of tsas.
-
-    InputError: the page cannot be read, or what it ends with is broken.
-    """
+    """Yield the checksum of a page, and those of its inputs; none if it is no page of tsas."""
     try:
         content = path.read_bytes()
     except OSError as error:
@@ -188,51 +182,38 @@ def change_notes(given: Iterable[object]) -> list[str]:
     Of a file in such a folder, that file counts alone; what is no path, or no stage has written,
     tells nothing.
     """
-    paths = dict.fromkeys(path for path in given if isinstance(path, Path))
-    changed = [
-        f"Changed since it was written: {', '.join(found)}. What is shown of it is not what the "
-        "stage found; `tsas verify` says more."
-        for path in paths
-        if (found := list(_changed(path)))
+    changed, lacking = [], []
+    for path in dict.fromkeys(path for path in given if isinstance(path, Path)):
+        folder = path if path.is_dir() else path.parent
+        sums, written = folder / SUMS, {n for f in folder.glob("*.json") for n in outputs_of(f)}
+        if not sums.is_file():
+            if written if path == folder else path.name in written:
+                lacking.append(f"{folder.name}/{SUMS} is missing")
+            continue
+        try:
+            listed = list(claims_of(sums))
+        except InputError:
+            changed.append(f"{folder.name}/{SUMS}")
+            continue
+        taken = [claim for claim in listed if path in (folder, folder / claim.file)]
+        if found := [f"{folder.name}/{c.file}" for c in taken if not _fits(folder / c.file, c)]:
+            changed.append(", ".join(found))
+        lost = (written if path == folder else {path.name}) - {claim.file for claim in listed}
+        if lost:
+            lacking.append(f"{folder.name}/{SUMS} does not list {', '.join(sorted(lost))}")
+    more = "`tsas verify` says more."
+    return [
+        f"Changed since it was written: {found}. What is shown of it is not what the stage found; "
+        f"{more}"
+        for found in changed
+    ] + [
+        f"Without a checksum: {found}. What is shown of it may not be what the stage found; {more}"
+        for found in lacking
     ]
-    return changed + [
-        f"Without a checksum: {lacking}. What is shown of it may not be what the stage found; "
-        "`tsas verify` says more."
-        for path in paths
-        if (lacking := _unlisted(path))
-    ]
 
 
-def _changed(path: Path) -> Iterator[str]:
-    folder = path if path.is_dir() else path.parent
+def _fits(path: Path, claim: Claim) -> bool:
     try:
-        claims = list(claims_of(folder / SUMS)) if (folder / SUMS).is_file() else []
-    except InputError:
-        yield f"{folder.name}/{SUMS}"
-        return
-    for claim in claims:
-        if path in (folder, folder / claim.file) and not _fits(folder / claim.file, claim.sha256):
-            yield f"{folder.name}/{claim.file}"
-
-
-def _unlisted(path: Path) -> str:
-    """Say which files of a stage's folder its list lacks; nothing where the list is broken."""
-    folder = path if path.is_dir() else path.parent
-    files = {name for json in folder.glob("*.json") for name in outputs_of(json)}
-    sums = folder / SUMS
-    if not sums.is_file():
-        lost = files if path == folder else files & {path.name}
-        return f"{folder.name}/{SUMS} is missing" if lost else ""
-    try:
-        listed = {claim.file for claim in claims_of(sums)}
-    except InputError:
-        return ""
-    lost = (files if path == folder else {path.name}) - listed
-    return f"{folder.name}/{SUMS} does not list {', '.join(sorted(lost))}" if lost else ""
-
-
-def _fits(path: Path, sha256: str) -> bool:
-    try:
-        return sha256_of(path) == sha256
+        return sha256_of(path) == claim.sha256
     except OSError:
         return False

@@ -50,8 +50,6 @@ def verify_all(
 
     `raw` are folders to search for raw recordings that have moved. `step` is called after each
     file.
-
-    InputError: there is no output of tsas, or a single file records no checksum.
     """
     if not start.exists():
         raise InputError("does not exist", where=start, expected="a folder, or a page")
@@ -151,12 +149,9 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
 
 def _in_raw(claim: Claim, walk: _Walk) -> Path | None:
     """Return the raw recording with the name and the checksum of a claim, or None."""
-    for folder in walk.raw:
-        for path in sorted(folder.rglob("*")):
-            same = path.name == Path(claim.file).name and path.is_file()
-            if same and _sum(path, walk) == claim.sha256:
-                return path
-    return None
+    paths = (path for folder in walk.raw for path in sorted(folder.rglob("*")))
+    same = (path for path in paths if path.name == Path(claim.file).name and path.is_file())
+    return next((path for path in same if _sum(path, walk) == claim.sha256), None)
 
 
 def _unlisted(walk: _Walk, claims: Iterable[Claim], reported: set[str]) -> Iterator[Verified]:

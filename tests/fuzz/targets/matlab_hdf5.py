@@ -7,7 +7,7 @@ import numpy as np
 
 from tests.fuzz.foreign import Offering, whole_file
 from tests.recordings.readers import matlab_files as made
-from tsas_cli.recordings.readers import matlab, matlab_hdf5  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers import hdf5, matlab  # noqa: F401 # instrumented
 
 MOST_BYTES = 16000
 SHARE = 0.12

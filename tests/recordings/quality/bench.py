@@ -9,7 +9,7 @@ import numpy as np
 
 from tsas_cli.recordings.manifest import RigSheet, Run
 from tsas_cli.recordings.quality import RUN_CHECKS
-from tsas_cli.recordings.quality.finding import Remark
+from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.arrays import Floats
@@ -113,7 +113,7 @@ def trial(
     return RunSignals(recording, RigSheet.model_validate(dict(rig or {})))
 
 
-def remarks(measured: Mapping[str, Floats], **run: Any) -> list[tuple[str, Remark]]:
+def remarks(measured: Mapping[str, Floats], **run: Any) -> list[tuple[str, Finding]]:
     """Return what the checks of a run remark, each with the check's code."""
     subject = trial(measured, {"load_stiffness_N_per_mm": LOAD}, **run)
     return [
@@ -121,5 +121,5 @@ def remarks(measured: Mapping[str, Floats], **run: Any) -> list[tuple[str, Remar
         for check in RUN_CHECKS
         if all(name in subject.channels for name in check.needs)
         for remark in check.find(subject)
-        if isinstance(remark, Remark)
+        if isinstance(remark, Finding)
     ]

@@ -5,7 +5,7 @@ import pytest
 
 from tests.recordings.quality.bench import Bench, columns, remarks, trial
 from tsas_cli.recordings.quality import RUN_CHECKS
-from tsas_cli.recordings.quality.finding import CannotTell
+from tsas_cli.recordings.quality.finding import NotChecked
 
 GOOD = columns(Bench())
 TIME = GOOD["time_s"]
@@ -206,7 +206,7 @@ def test_rows_of_a_quiet_coarse_recording_may_repeat():
     measured = columns(Bench(noise_mm=0.0, noise_N=0.0, step_mm=0.01, step_N=0.1, rate_Hz=2000.0))
     subject = trial(measured)
     (check,) = (check for check in RUN_CHECKS if check.code == "repeated-rows")
-    assert [type(remark) for remark in check.find(subject)] == [CannotTell]
+    assert [type(remark) for remark in check.find(subject)] == [NotChecked]
 
 
 @pytest.mark.parametrize("column", ["x_in_mm", "f_in_N"])

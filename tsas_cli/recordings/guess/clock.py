@@ -114,7 +114,12 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
         stated = f"its stated unit {column.unit} means {_rate(seconds)} and "
         stated += f"{seconds * column.values.size:.3g} s in total"
         return QUESTION, f"{stated}; {_listed(step)}", ()
-    likely = [unit for unit in _UNITS if _plausible(step, unit, rows)]
+    likely = []
+    for unit in _UNITS:
+        interval_s = _seconds(step, unit)
+        slow = unit == "s" and _USUAL_S[1] < interval_s <= _SLOWEST_S
+        if _USUAL_S[0] <= interval_s <= _USUAL_S[1] or (slow and interval_s * rows <= _STROKE_S[1]):
+            likely.append(unit)
     first = float(column.values[0])
     since_1970 = [u for u in _UNITS if _EPOCH_S[0] <= _seconds(first, u) <= _EPOCH_S[1]]
     likely = [unit for unit in likely if unit in since_1970] or likely
@@ -125,18 +130,6 @@ def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
     (unit,) = likely
     others = [f"{u}: {_rate(_seconds(step, u))}" for u in (*_UNITS, "min") if u != unit]
     return unit, f"no unit is stated; {unit} means {_rate(_seconds(step, unit))}", tuple(others)
-
-
-def _plausible(step: float, unit: str, rows: float) -> bool:
-    """Return whether a rig may be sampled at this step, with a stroke of so many rows.
-
-    Slow loggers write seconds.
-    """
-    interval_s = _seconds(step, unit)
-    is_slow = unit == "s" and _USUAL_S[1] < interval_s <= _SLOWEST_S
-    if is_slow and interval_s * rows <= _STROKE_S[1]:
-        return True
-    return _USUAL_S[0] <= interval_s <= _USUAL_S[1]
 
 
 def _seconds(step: float, unit: str) -> float:

@@ -1,18 +1,22 @@
 """A file opened without a map: its numeric columns, and the options required to read it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from tsas_cli.recordings.guards import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables, text_of
-from tsas_cli.recordings.readers.layout import DoubtfulMarkError
+from tsas_cli.recordings.readers.layout import DoubtfulMarkError, encoding_of
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
 T = TypeVar("T")
 _PREAMBLE = 60  # lines above a table that are tried
+_ENCODINGS = {  # that a map has to set, and why
+    "utf-16": "the file begins with the byte-order mark of UTF-16",
+    "cp1252": "the file is not UTF-8; cp1252 is usual on Windows",
+}
 
 
 @dataclass(frozen=True)
@@ -28,10 +32,7 @@ class Opened:
 
 
 def open_file(path: Path) -> Opened:
-    """Return a file of any supported format, opened with the options that it requires.
-
-    InputError: the format is unknown, or the file is damaged or does not hold exactly one table.
-    """
+    """Return a file of any supported format, opened with the options that it requires."""
     required, asked = _table(path)
     try:
         return _opened(path, dict(required), asked)
@@ -46,7 +47,8 @@ def open_file(path: Path) -> Opened:
 def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, str]) -> Opened:
     text = text_of(path, options_of(required))
     if text is not None:
-        required |= dict(_encoding(text))
+        if (encoding := encoding_of(text)) in _ENCODINGS:
+            required["encoding"] = (encoding, _ENCODINGS[encoding])
         required |= _preamble(path, required)
     options = options_of(required)
     listed = names(path, options)
@@ -61,9 +63,15 @@ def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, s
     if table is None or not table.columns:
         why = "".join(f" ({reason})" for reason in list(left_out.values())[:1])
         raise InputError(f"holds no column of numbers{why}", where=path)
-    columns, short = _longest(table)
-    if next(iter(columns.values())).size < 2:
+    rows = max(values.size for values in table.columns.values())
+    if rows < 2:
         raise InputError("holds one row", where=path, expected="at least two samples")
+    short = {
+        str(source): f"holds {values.size} numbers, others {rows}"
+        for source, values in table.columns.items()
+        if values.size != rows
+    }
+    columns = {s: v for s, v in table.columns.items() if v.size == rows}
     found = replace(table, columns=columns)
     found_names = {source: sources[source] for source in columns}
     return Opened(path, required, found, found_names, left_out | short, asked)
@@ -72,19 +80,6 @@ def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, s
 def options_of(required: dict[str, tuple[Any, str]]) -> ReadOptions:
     """Return the options of keys with values and reasons."""
     return ReadOptions.model_validate({key: value for key, (value, _) in required.items()})
-
-
-def _encoding(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
-    with path.open("rb") as stream:
-        head = stream.read(1 << 16)
-    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        yield "encoding", ("utf-16", "the file begins with the byte-order mark of UTF-16")
-        return
-    try:
-        head.decode("utf-8")
-    except UnicodeDecodeError as error:
-        if error.start <= len(head) - 4:  # else a character is cut at the end of the head
-            yield "encoding", ("cp1252", "the file is not UTF-8; cp1252 is usual on Windows")
 
 
 def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
@@ -168,14 +163,3 @@ def _all_or_each(
         if each:
             raise
         return None, {}
-
-
-def _longest(table: ColumnTable) -> tuple[dict[ColumnSource, Any], dict[str, str]]:
-    """Return the columns as long as the longest one, and the reason for each of the others."""
-    rows = max(values.size for values in table.columns.values())
-    short = {
-        str(source): f"holds {values.size} numbers, others {rows}"
-        for source, values in table.columns.items()
-        if values.size != rows
-    }
-    return {s: v for s, v in table.columns.items() if v.size == rows}, short

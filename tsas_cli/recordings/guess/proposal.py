@@ -61,11 +61,17 @@ def propose(files: Sequence[Path]) -> MapProposal:
     """Return the map proposed for files; InputError: none of them can be read."""
     opened, different = _first_that_opens(files)
     matching: list[Path] = []
+    options = options_of(opened.read)
     for path in files:
-        if path != opened.path and path not in different:
-            reason = _difference(path, opened)
-            different |= {path: reason} if reason else {}
-            matching += [] if reason else [path]
+        if path == opened.path or path in different:
+            continue
+        try:
+            if names(path, options) == names(opened.path, options):
+                matching.append(path)
+            else:
+                different[path] = "its columns have other names, or another order"
+        except InputError as error:
+            different[path] = error.what
     columns, doubt = with_trusted_names(columns_of(opened))
     time = clock(columns)
     rest = [c for c in columns if c.source != time.entry.get("source")]
@@ -99,16 +105,6 @@ def _first_that_opens(files: Sequence[Path]) -> tuple[Opened, dict[Path, str]]:
         except InputError as error:
             failed[path] = error
     raise next(iter(failed.values()))
-
-
-def _difference(path: Path, opened: Opened) -> str:
-    """Return how a file differs from the one that was opened; empty if its columns match."""
-    options = options_of(opened.read)
-    try:
-        same = names(path, options) == names(opened.path, options)
-    except InputError as error:
-        return error.what
-    return "" if same else "its columns have other names, or another order"
 
 
 def _repeated(columns: Sequence[FileColumn], time: Proposed) -> dict[str, tuple[Any, str]]:

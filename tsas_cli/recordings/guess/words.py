@@ -115,17 +115,15 @@ def _parts(name: str) -> list[str]:
     plain = "".join(c for c in unicodedata.normalize("NFKD", name) if not unicodedata.combining(c))
     plain = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", plain)
     plain = re.sub(r"(?i)\b(load|back|front|end)[\s_-]?(cell|end|effector)", r"\1\2", plain)
-    parts = re.findall(r"[^\W\d_]+", plain.lower())
-    return [word for part in parts for word in _split(part)]
-
-
-def _split(part: str) -> list[str]:
-    """Return the two words of fin, xout, posref; else the part itself."""
-    for end, meaning in _ENDS.items():
-        head = part.removesuffix(end)
-        if head != part and head in _BEFORE_END.split():
-            return [head, meaning]
-    return [part]
+    words = []
+    for part in re.findall(r"[^\W\d_]+", plain.lower()):
+        compounds = (  # fin, xout, posref
+            [head, meaning]
+            for end, meaning in _ENDS.items()
+            if (head := part.removesuffix(end)) != part and head in _BEFORE_END.split()
+        )
+        words += next(compounds, [part])
+    return words
 
 
 UnitKind = NamedQuantity | Literal["label"]  # a label is of counts or volts

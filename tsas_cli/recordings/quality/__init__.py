@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -19,12 +19,11 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
+from tsas_cli.recordings.manifest import Manifest, RigSheet
 from tsas_cli.recordings.pieces import known_columns, long_run, pieces
 from tsas_cli.recordings.quality.checks import (
     clock,
     extremes,
-    jump,
     motion,
     noise,
     of_dataset,
@@ -32,13 +31,7 @@ from tsas_cli.recordings.quality.checks import (
     repeats,
     rows,
 )
-from tsas_cli.recordings.quality.finding import (
-    CannotTell,
-    Finding,
-    NotChecked,
-    QualityCheck,
-    Remark,
-)
+from tsas_cli.recordings.quality.finding import Finding, NotChecked, QualityCheck
 from tsas_cli.recordings.quality.samples import Size, span_of, step_of
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Recording
@@ -59,7 +52,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(clock.gap),
     QualityCheck(rows.lost_samples, needs=("x_in_mm",)),
     QualityCheck(noise.outlier),
-    QualityCheck(jump.jump),
+    QualityCheck(rows.jump),
     QualityCheck(noise.bursts),
     QualityCheck(noise.hum),
     QualityCheck(rows.repeated_rows),
@@ -83,6 +76,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
 DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (QualityCheck(of_dataset.copies),)
 CHECKS: tuple[QualityCheck[Any], ...] = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
 CODES = tuple(check.code for check in CHECKS)
+Results = list[Finding | NotChecked]
 # Warnings that make results wrong where most runs have them; in one run they may be the motion's.
 IN_MOST_RUNS = ("filtered", "repeated-values", "slow-channel", "hum")
 
@@ -94,50 +88,57 @@ class Report:
     findings: tuple[Finding, ...]
     not_checked: tuple[NotChecked, ...]
 
+    @classmethod
+    def of(cls, results: Sequence[Finding | NotChecked]) -> Self:
+        """Return results, sorted by kind."""
+        return cls(
+            tuple(r for r in results if isinstance(r, Finding)),
+            tuple(r for r in results if isinstance(r, NotChecked)),
+        )
+
 
 def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
-    """Return the findings of `check_runs`, and those on the whole dataset.
-
-    InputError: no run can be read.
-    """
+    """Return the findings of `check_runs`, and those on the whole dataset."""
     of_runs = check_runs(dataset, step)
     of_all = [
-        _attributed(result, check.code, result.run)
-        for check in DATASET_CHECKS
-        for result in check.find(dataset)
+        replace(one, code=check.code) for check in DATASET_CHECKS for one in check.find(dataset)
     ]
-    return _report((*of_runs.findings, *of_runs.not_checked, *of_all))
+    return Report.of((*of_runs.findings, *of_runs.not_checked, *of_all))
 
 
 def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     """Return the findings on the manifest and on each run by itself; `step` counts runs.
 
     An unreadable run is a finding (`unreadable`), as long as another run can be read.
-
-    InputError: no run can be read.
     """
-    results = [
-        _attributed(result, check.code, None)
+    results: Results = [
+        replace(one, code=check.code)
         for check in MANIFEST_CHECKS
-        for result in check.find(dataset.manifest)
+        for one in check.find(dataset.manifest)
     ]
     failures = []
     step.doing("checks the recordings")
     step.ahead(len(dataset.runs))
     for run in dataset.runs:
         try:
-            results += _check_run(dataset, run)
+            if (long := long_run(dataset.folder, run)) is not None:
+                found = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
+            else:
+                recording = read_recording(dataset.folder, run, strict=False)
+                trial = RunSignals(recording, dataset.manifest.rig)
+                found = {check.code: look(check, trial) for check in RUN_CHECKS}
+            results += [replace(o, code=code, run=run.id) for code, of in found.items() for o in of]
         except InputError as error:
             failures.append(error)
-            remedy = "restore the file or ingest again"
-            results.append(Finding("unreadable", "error", run.id, None, error.line(), remedy))
+            said = error.line(), "restore the file or ingest again"
+            results.append(Finding("error", None, *said, code="unreadable", run=run.id))
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
-    return _report(_weighed(results, len(dataset.runs)))
+    return Report.of(_weighed(results, len(dataset.runs)))
 
 
-def _weighed(results: Sequence[Finding | NotChecked], runs: int) -> list[Finding | NotChecked]:
+def _weighed(results: Results, runs: int) -> Results:
     """Return the results, warnings of `IN_MOST_RUNS` as errors where most of the runs have them."""
     having: dict[tuple[str, str | None], set[str | None]] = {}
     for one in results:
@@ -152,33 +153,6 @@ def _weighed(results: Sequence[Finding | NotChecked], runs: int) -> list[Finding
     ]
 
 
-def _report(results: Sequence[Finding | NotChecked]) -> Report:
-    return Report(
-        tuple(r for r in results if isinstance(r, Finding)),
-        tuple(r for r in results if isinstance(r, NotChecked)),
-    )
-
-
-def _check_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
-    long = long_run(dataset.folder, run)
-    if long is not None:
-        results = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
-    else:
-        trial = RunSignals(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
-        results = {check.code: look(check, trial) for check in RUN_CHECKS}
-    return [_attributed(one, code, run.id) for code, each in results.items() for one in each]
-
-
-def _attributed(result: Remark | CannotTell, code: str, run: str | None) -> Finding | NotChecked:
-    if isinstance(result, CannotTell):
-        return NotChecked(code, run, result.reason)
-    return Finding(
-        code, result.severity, run, result.column, result.sentence, result.remedy, result.first_s
-    )
-
-
-Results = list[Remark | CannotTell]
-
 _NUMBER = r"-?\d[\d.,e+-]*( \w+)?"
 OVERLAP = 16  # consecutive stretches share one in so many of their rows
 
@@ -187,7 +161,7 @@ def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
     """Return the results of a check on a trial; a missing column is a reason not to apply."""
     missing = [name for name in check.needs if name not in trial.channels]
     if missing:
-        return [CannotTell(f"{' and '.join(missing)} not recorded")]
+        return [NotChecked(f"{' and '.join(missing)} not recorded")]
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         return list(check.find(trial))
 
@@ -220,12 +194,12 @@ def look_by_stretches(
 def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
     """Return the results of a check on a run, from those on its stretches.
 
-    Of remarks that differ in numbers only, the first one stays, with the number of stretches.
+    Of findings that differ in numbers only, the first one stays, with the number of stretches.
     """
-    found: dict[str, list[tuple[str, Remark]]] = {}
+    found: dict[str, list[tuple[str, Finding]]] = {}
     for where, results in stretches:
         for one in results:
-            if isinstance(one, Remark):
+            if isinstance(one, Finding):
                 same = f"{one.column} {re.sub(_NUMBER, '', one.sentence)}"
                 found.setdefault(same, []).append((where, one))
     if not found:  # a check that applies to one stretch applies

@@ -43,8 +43,6 @@ def batches(
 
     Dates become seconds since the first one in their column, times of day seconds since midnight.
     From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.
-
-    InputError: a column is missing, a row differs in its number of fields, or a cell holds text.
     """
     layout = detect(path, options)
     at = resolve(wanted, layout.names, path)
@@ -164,5 +162,5 @@ def _cell(
         raise not_a_number(text, source, path, row)
     if options.decimal is None:
         question = f"column {source} holds {text!r}: are thousands separated in it?"
-        raise DoubtfulMarkError(question, path, layout.decimal, row)
+        raise DoubtfulMarkError(question, f"{path}, row {row}", layout.decimal)
     return value

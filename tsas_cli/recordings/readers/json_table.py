@@ -20,10 +20,14 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     It is a list of rows, a list of records, or an object of columns, under the key `table` of the
     map (nested with dots). A key `columns` beside the rows names their columns; else they are
     numbered. Records in records are named by their paths.
-
-    InputError: it is no such table.
     """
-    above, content = _descend(read_json(path), options.table, path)
+    above: Raw = {}
+    content = read_json(path)
+    for key in options.table.split(".") if options.table else ():
+        if not isinstance(content, dict) or key not in content:
+            keys_here = list(content) if isinstance(content, dict) else []
+            raise InputError(f"key {key} is missing", where=path, remedy=nearest(key, keys_here))
+        above, content = content, content[key]
     names, column = _columns(content, above.get("columns"), path)
     header = tuple(
         f"{key} = {value}" for key, value in above.items() if isinstance(value, str | int | float)
@@ -32,32 +36,24 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the keys of rows, records or columns, nested with dots.
-
-    InputError: the file is not JSON, or nested too deep.
-    """
+    """Return the keys of rows, records or columns, nested with dots."""
     return list(_tables(read_json(path), ""))
 
 
 def _tables(content: Any, key: str) -> Iterator[str]:
-    if key and isinstance(content, dict) and all(_is_column(v) for v in content.values()):
+    if (
+        key
+        and isinstance(content, dict)
+        and all(
+            isinstance(v, list) and v and isinstance(v[0], int | float) for v in content.values()
+        )
+    ):
         yield key
     elif isinstance(content, dict):
         for name, value in content.items():
             yield from _tables(value, f"{key}.{name}" if key else name)
     elif key and isinstance(content, list) and content and isinstance(content[0], list | dict):
         yield key
-
-
-def _descend(content: Any, keys: str | None, path: Path) -> tuple[Raw, Any]:
-    """Return the object that holds the table, and the table."""
-    above: Raw = {}
-    for key in keys.split(".") if keys else ():
-        if not isinstance(content, dict) or key not in content:
-            keys_here = list(content) if isinstance(content, dict) else []
-            raise InputError(f"key {key} is missing", where=path, remedy=nearest(key, keys_here))
-        above, content = content, content[key]
-    return above, content
 
 
 def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[[int], list[Any]]]:
@@ -85,15 +81,8 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
     )
 
 
-def _is_column(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
-
-
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
-    """Write the lines as one JSON list into a folder; return its path.
-
-    InputError: the file is not UTF-8.
-    """
+    """Write the lines as one JSON list into a folder; return its path."""
     made = folder / "lines.json"
     before = "["
     try:

@@ -1,9 +1,9 @@
 """LabVIEW measurement files (`.lvm`), converted to text tables."""
 
-from codecs import getincrementaldecoder
 from collections.abc import Iterator
 from pathlib import Path
 
+from tsas_cli.recordings.readers.layout import encoding_of
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
@@ -13,29 +13,15 @@ _SEPARATORS = {"Tab": "\t", "Comma": ","}
 
 
 def convert(path: Path, folder: Path, options: ReadOptions) -> Path:
-    """Write the samples with names and units as text with tabs into a folder; return its path.
-
-    InputError: it is no such file, or its segments have different channels.
-    """
+    """Write the samples with names and units as text with tabs into a folder; return its path."""
     made = folder / "samples.tsv"
     with (
-        path.open(encoding=_encoding(path), errors="replace") as lines,
+        path.open(encoding=encoding_of(path), errors="replace") as lines,
         made.open("w", encoding=options.encoding) as file,
     ):
         for cells in _rows(limits.lines(lines, path), path):
             file.write("\t".join(cells) + "\n")
     return made
-
-
-def _encoding(path: Path) -> str:
-    """Return UTF-8, or the encoding of Windows in Western Europe, where its head is not."""
-    with path.open("rb") as stream:
-        head = stream.read(1 << 20)
-    try:
-        getincrementaldecoder("utf-8")().decode(head)
-    except UnicodeError:
-        return "cp1252"
-    return "utf-8-sig"
 
 
 def _rows(lines: Iterator[str], path: Path) -> Iterator[list[str]]:
@@ -53,7 +39,9 @@ def _rows(lines: Iterator[str], path: Path) -> Iterator[list[str]]:
             if not names:
                 names = here
                 yield names
-                yield _units(names, head)
+                time = "s" if head.get("X_Dimension", ["Time"])[0] == "Time" else ""
+                stated = iter(head.get("Y_Unit_Label", []))
+                yield [time if name == "X_Value" else next(stated, "") for name in names]
             elif here != names:
                 raise InputError(
                     "its segments have different channels",
@@ -80,10 +68,3 @@ def _interval(head: dict[str, list[str]], path: Path) -> float:
         return float(head["Delta_X"][0].replace(",", "."))
     except (KeyError, IndexError, ValueError) as error:
         raise InputError("states neither times nor Delta_X", where=path) from error
-
-
-def _units(names: list[str], head: dict[str, list[str]]) -> list[str]:
-    """Return the unit of each column: seconds of a time, else that of the channel."""
-    time = "s" if head.get("X_Dimension", ["Time"])[0] == "Time" else ""
-    stated = iter(head.get("Y_Unit_Label", []))
-    return [time if name == "X_Value" else next(stated, "") for name in names]

@@ -2,6 +2,7 @@
 
 import csv
 import re
+from codecs import getincrementaldecoder
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -27,15 +28,10 @@ _BELOW_THOUSAND = re.compile(r"[+-]?\d{1,3}")
 class DoubtfulMarkError(InputError):
     """A mark in a number is the decimal one or separates thousands; `decimal` is one answer."""
 
-    def __init__(self, question: str, path: Path, decimal: str, row: int | None = None) -> None:
-        where = path if row is None else f"{path}, row {row}"
-        super().__init__(question, where=where, remedy=_REMEDY)
+    def __init__(self, question: str, where: object, decimal: str) -> None:
+        remedy = 'set decimal = "," or "." under [read] of the map: the other mark then separates '
+        super().__init__(question, where=where, remedy=remedy + "thousands")
         self.decimal = decimal
-
-
-_REMEDY = (
-    'set decimal = "," or "." under [read] of the map: the other mark then separates thousands'
-)
 
 
 @dataclass(frozen=True)
@@ -60,9 +56,6 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     Names are in the first line that is no comment, or, if that line holds numbers, in the last
     comment line if it has as many fields. A line without numbers below the names holds the units;
     else a unit in brackets at the end of a name counts.
-
-    InputError: the file is not text in its encoding, holds no row of numbers, has more or fewer
-    names than fields in its first row, or its commas are ambiguous.
     """
     comments, lines = _head(path, options)
     if not lines:
@@ -93,6 +86,19 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     return Layout(
         delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line, stamps
     )
+
+
+def encoding_of(path: Path) -> str:
+    """Return UTF-16, UTF-8, or where the head is neither, that of Windows in Western Europe."""
+    with path.open("rb") as stream:
+        head = stream.read(1 << 20)
+    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    try:
+        getincrementaldecoder("utf-8")().decode(head)
+    except UnicodeError:
+        return "cp1252"
+    return "utf-8-sig"
 
 
 def fields(text: str, delimiter: str) -> list[str]:

@@ -37,10 +37,13 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     A vector is a column with its name, those of a matrix are as in `columns_in`, and a member of a
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
     `table` in the map, names are relative to that variable.
-
-    InputError: the file is damaged, or there are several captures.
     """
-    content = _inside(_content(path), options.table, path)
+    content = _content(path)
+    for name in options.table.split(".") if options.table else ():
+        structs = [key for key, value in content.items() if isinstance(value, dict)]
+        if name not in structs:
+            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
+        content = content[name]
     capture = find_capture(content, path)
     if capture is not None:
         yield channels_of(capture, path)
@@ -62,7 +65,7 @@ def _content(path: Path) -> Raw:
     with path.open("rb") as stream:
         head = stream.read(520)
     if _HDF5 in (head[:8], head[512:]):
-        from tsas_cli.recordings.readers.matlab_hdf5 import variables
+        from tsas_cli.recordings.readers.hdf5 import variables
 
         return variables(path)
     check_unpacked(path)
@@ -70,15 +73,6 @@ def _content(path: Path) -> Raw:
         warnings.simplefilter("error", MatReadWarning)  # duplicate variables
         content = loadmat(path, simplify_cells=True)
     return {name: value for name, value in content.items() if not name.startswith("__")}
-
-
-def _inside(content: Raw, table: str | None, path: Path) -> Raw:
-    for name in table.split(".") if table else ():
-        structs = [key for key, value in content.items() if isinstance(value, dict)]
-        if name not in structs:
-            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
-        content = content[name]
-    return content
 
 
 def _columns(content: Raw, prefix: str = "") -> Iterator[Column]:
@@ -166,10 +160,7 @@ def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 
 def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
-    """Return the channels of a capture, with their clocks in s.
-
-    InputError: a channel, when it is loaded, differs in length from its clock.
-    """
+    """Return the channels of a capture, with their clocks in s."""
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
     channels = [
         Column(

@@ -38,10 +38,7 @@ _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 
 @contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
-    """Yield the channels of an MDF file, with those marked as invalid as NaN.
-
-    InputError: asammdf is not installed, or the file's blocks or samples exceed a limit.
-    """
+    """Yield the channels of an MDF file, with those marked as invalid as NaN."""
     asammdf = optional("asammdf", extra="mdf")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # our error repeats its log
     check_blocks(path)
@@ -77,17 +74,12 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
             ]
             header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
             yield Offered(columns, header)
-    except Exception as error:
-        _discard_half_made(error)
+    except Exception as error:  # the clean-up of half-made objects prints errors to stderr
+        hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
+        traceback.clear_frames(error.__traceback__)
+        gc.collect()
+        sys.unraisablehook = hook
         raise
-
-
-def _discard_half_made(error: Exception) -> None:
-    """Collect the half-made objects of a damaged file, whose clean-up prints errors to stderr."""
-    hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
-    traceback.clear_frames(error.__traceback__)
-    gc.collect()
-    sys.unraisablehook = hook
 
 
 def _clock(file: Any, group: int) -> str:

@@ -44,9 +44,9 @@ class Seconds:
     def from_text(self, cells: Sequence[str | None]) -> Floats:
         """Return cells in seconds, shape (n,); ValueError as from `from_text` of this module."""
         values = from_text(cells)
-        return self(values) if values.dtype.kind == "M" else self._after_midnight(self(values))
-
-    def _after_midnight(self, seconds: Floats) -> Floats:
+        seconds = self(values)
+        if values.dtype.kind == "M":
+            return seconds
         known = np.isfinite(seconds)
         steps = np.diff(seconds[known], prepend=self._last_s)
         days = self._days + np.cumsum(steps < -0.5 * _DAY_S)
@@ -70,9 +70,6 @@ def on_one_clock(
     are those of the clock in the map: `time`, its number, both or none. With `resample`, different
     times are interpolated linearly onto those of the channel with the most samples, within the
     interval that all channels cover.
-
-    InputError: there is no channel; the times differ and `resample` is not set, do not increase, or
-    never overlap.
     """
     if not series:
         raise InputError("the map has no channel besides the time", where=path)
@@ -81,7 +78,12 @@ def on_one_clock(
         return dict.fromkeys(clock_sources, clock) | {
             s: values for s, (_, values) in series.items()
         }
-    described = "; ".join(f"{s}: {_described(times)}" for s, (times, _) in series.items())
+    described = "; ".join(
+        f"{s}: {times.size} samples, {times[0]:g} to {times[-1]:g}"
+        if times.size
+        else f"{s}: no samples"
+        for s, (times, _) in series.items()
+    )
     if not resample:
         raise InputError(
             f"the channels have different times ({described})",
@@ -92,7 +94,16 @@ def on_one_clock(
     if any(times.size == 0 for times, _ in series.values()):
         raise InputError(f"a channel holds no samples ({described})", where=path)
     for source, (times, _) in series.items():
-        _check_increases(times, source, path)
+        steps = np.diff(times)
+        invalid = ~((steps > 0) & np.isfinite(steps))  # between which NumPy would interpolate too
+        if invalid.any():
+            i = int(invalid.argmax())
+            raise InputError(
+                f"the time of {source} does not increase ({times[i]:.9g}, then {times[i + 1]:.9g})",
+                where=f"{path}, row {i + 2}",
+                expected="strictly increasing time",
+                remedy="correct the file, or leave the channel out",
+            )
     start = max(times[0] for times, _ in series.values())
     end = min(times[-1] for times, _ in series.values())
     clock = clock[(clock >= start) & (clock <= end)]
@@ -100,26 +111,6 @@ def on_one_clock(
         raise InputError(f"the channels never overlap in time ({described})", where=path)
     resampled = {s: np.interp(clock, *channel) for s, channel in series.items()}
     return dict.fromkeys(clock_sources, clock) | resampled
-
-
-def _check_increases(times: Floats, source: ColumnSource, path: Path) -> None:
-    """Refuse times that do not increase: NumPy would interpolate between them without an error."""
-    steps = np.diff(times)
-    invalid = ~((steps > 0) & np.isfinite(steps))
-    if invalid.any():
-        i = int(invalid.argmax())
-        raise InputError(
-            f"the time of {source} does not increase ({times[i]:.9g}, then {times[i + 1]:.9g})",
-            where=f"{path}, row {i + 2}",
-            expected="strictly increasing time",
-            remedy="correct the file, or leave the channel out",
-        )
-
-
-def _described(times: Floats) -> str:
-    if times.size == 0:
-        return "no samples"
-    return f"{times.size} samples, {times[0]:g} to {times[-1]:g}"
 
 
 def is_stamp(text: object) -> bool:

@@ -91,7 +91,12 @@ def _size(bins: tuple[Bin, ...]) -> float:
 def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, str]) -> Picture:
     seen = [panel for panel in panels if _strength(panel) > _SEEN]
     words = in_words(signal)
-    said = "; ".join(_said(panel, names) for panel in seen)
+    said = "; ".join(
+        f"{panel.channel}: {names[0]} {_range(panel.before)}, {names[1]} {_range(panel.after)}"
+        if panel.after
+        else f"{panel.channel}: {_range(panel.before)}"
+        for panel in seen
+    )
     return picture(
         partial(draw_residual_map, panels=seen, label=at_axis(signal), names=names),
         key=f"{key}-{signal}",
@@ -99,13 +104,6 @@ def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, s
         caption=f"{listed([p.channel for p in seen])} over the {words}.",
         height_in=0.9 + 1.25 * len(seen),
     )
-
-
-def _said(panel: Panel, names: tuple[str, str]) -> str:
-    if not panel.after:
-        return f"{panel.channel}: {_range(panel.before)}"
-    both = zip(names, (panel.before, panel.after), strict=True)
-    return f"{panel.channel}: {', '.join(f'{name} {_range(bins)}' for name, bins in both)}"
 
 
 def _range(bins: tuple[Bin, ...]) -> str:

@@ -99,7 +99,18 @@ def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
     shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
     of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
     header = ("effects", "reduction [%]", "test statistic", "convincing", "remark")
-    rows = (_row(c, standing[frozenset(c.effects)]) for c in shown)
+    rows = [
+        (
+            " + ".join(c.effects),
+            "none"
+            if c.gain_percent is not None and c.gain_percent < 0.0
+            else fixed(c.gain_percent, 1),
+            fixed(c.test_statistic, 1),
+            "yes" if c.convincing else "no",
+            standing[frozenset(c.effects)] if c.converged else "did not converge",
+        )
+        for c in shown
+    ]
     table = table_of(f"Hypotheses{of}", header, rows)
     return Section("diagnosis-candidates", _TRIED, (_HYPOTHESES,), tables=(table,))
 
@@ -113,17 +124,6 @@ def _standing(candidate: TriedHypothesis, named: Sequence[NamedCause]) -> str:
         return "named"
     rivals = [causes - {c.effect} | {rival} for c in named for rival in c.rivals]
     return "rival" if set(candidate.effects) in rivals else ""
-
-
-def _row(candidate: TriedHypothesis, standing: str) -> tuple[str, ...]:
-    gain = candidate.gain_percent
-    return (
-        " + ".join(candidate.effects),
-        "none" if gain is not None and gain < 0.0 else fixed(gain, 1),
-        fixed(candidate.test_statistic, 1),
-        "yes" if candidate.convincing else "no",
-        standing if candidate.converged else "did not converge",
-    )
 
 
 def gains_part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Section | None:

@@ -66,10 +66,7 @@ def stream_of(inputs: Inputs) -> Stream:
 
 
 def write_stream(inputs: Inputs, path: Path, *, step: Callable[[], None] = lambda: None) -> None:
-    """Write what there is to see into a file for the Rerun viewer; `step` is called after each run.
-
-    InputError: a file cannot be read, or `path` exists.
-    """
+    """Write what there is to see into a file for the viewer; `step` is called after each run."""
     stream = stream_of(inputs)
     with to_file(path, stream.name, stream.layout) as recorder:
         stream.record(recorder, step)
@@ -83,26 +80,21 @@ def overview(inputs: Inputs) -> str:
     manifest = None if inputs.dataset is None else inputs.dataset.manifest
     title = "Recordings" if manifest is None else manifest.name
     about = "" if manifest is None else manifest.description
-    said = (f"- {plain_text(point)}" for point in _points(inputs))
-    lines = [f"# {plain_text(title)}", plain_text(about), *_first_screen(inputs), *said]
+    lines = [f"# {plain_text(title)}", plain_text(about)]
+    if first := glance(inputs):
+        lines.append(f"**{plain_text(first.kind)}: {plain_text(first.verdict)}**")
+        lines.append(plain_text(first.numbers))
+        for fact in first.facts:
+            number = " → ".join(filter(None, (fact.before, fact.value)))
+            note = f" ({plain_text(fact.note)})" if fact.note else ""
+            lines.append(f"- {plain_text(f'{fact.label}: {number}')}{note}")
+    lines += (f"- {plain_text(point)}" for point in _points(inputs))
     return "\n\n".join(filter(None, lines))
 
 
 def plain_text(text: str) -> str:
     """Return text of which no letter is read as Markdown or HTML."""
     return _SPECIAL.sub(r"\\\1", printable(text))
-
-
-def _first_screen(inputs: Inputs) -> Iterator[str]:
-    first = glance(inputs)
-    if first is None:
-        return
-    yield f"**{plain_text(first.kind)}: {plain_text(first.verdict)}**"
-    yield plain_text(first.numbers)
-    for fact in first.facts:
-        number = " → ".join(filter(None, (fact.before, fact.value)))
-        note = f" ({plain_text(fact.note)})" if fact.note else ""
-        yield f"- {plain_text(f'{fact.label}: {number}')}{note}"
 
 
 def _points(inputs: Inputs) -> Iterator[str]:
@@ -128,9 +120,6 @@ def shown_stream(
 
     A folder that holds a stream shows that; several folders make one of their own, and `step` is
     called after each run.
-
-    InputError: a path is missing, no stream and no folder of a stage, or a file stands among
-    others.
     """
     local = [path for path in paths if isinstance(path, Path)]
     for path in local:

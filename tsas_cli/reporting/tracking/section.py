@@ -32,6 +32,12 @@ _ADAPTED = (
     "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "
     "bounds. They serve the sliding surface; they need not come to the drive's true values."
 )
+_PORTRAITS = (
+    "The rate of the error e = x_inv − x_in of the drive over the error, both by the filter of the "
+    "sliding modes ({:g} Hz). A turn of the wanted force throws a controller off, over a dead "
+    "band; what it does until it is back at the cross is the loop. Each panel has scales of its "
+    "own."
+)
 _SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
 
 
@@ -63,7 +69,12 @@ def section(inputs: Inputs) -> Section | None:
         return None
     conditions = read_conditions(inputs, tracking)
     force, error, effort = curve_parts(conditions)
-    portrait = portraits_part(conditions, tracking.settings)
+    portrait = Section(
+        "tracking-phase",
+        "Phase portraits",
+        (_PORTRAITS.format(tracking.settings.loop.filter_Hz),),
+        pictures=tuple(_picture(condition, tracking.settings) for condition in conditions),
+    )
     adapted = adaptation_part(conditions, tracking.settings.controllers.adaptive)
     return Section(
         "tracking",
@@ -93,7 +104,15 @@ def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -
         f"{sensor.noise_mm:g} mm and steps of {sensor.step_mm:g} mm. It knows "
         f"{_name(tracking.model)}, and of the drive {tracking.drive.file}; {rig}{tendon}."
     )
-    yield from (_change(condition) for condition in conditions if condition.changes)
+    for condition in conditions:
+        changes = ", ".join(
+            f"`{c.quantity}` = {c.value:g} "
+            + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")
+            for c in condition.changes
+        )
+        if changes:
+            name = condition.name.capitalize()
+            yield f"{name}: the plant has {changes}, which no controller knows."
     if tracking.gains != "default":
         yield f"The gains are {tracking.gains}."
     yield (
@@ -106,15 +125,6 @@ def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -
 
 def _name(model: ModelFile) -> str:
     return "the data sheet" if model.sha256 is None else model.file
-
-
-def _change(condition: RunsUnderCondition) -> str:
-    changes = ", ".join(
-        f"`{c.quantity}` = {c.value:g} "
-        + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")
-        for c in condition.changes
-    )
-    return f"{condition.name.capitalize()}: the plant has {changes}, which no controller knows."
 
 
 _COLUMNS = (
@@ -144,18 +154,6 @@ def _scores(tracking: TrackingFile) -> Table:
 
 def _cell(number: Spread) -> str:
     return with_spread(number.mean, number.sd)
-
-
-def portraits_part(conditions: tuple[RunsUnderCondition, ...], settings: StatedSettings) -> Section:
-    """Return the part, one picture for each condition."""
-    what = (
-        "The rate of the error e = x_inv − x_in of the drive over the error, both by the filter of "
-        f"the sliding modes ({settings.loop.filter_Hz:g} Hz). A turn of the wanted force throws a "
-        "controller off, over a dead band; what it does until it is back at the cross is the loop. "
-        "Each panel has scales of its own."
-    )
-    pictures = tuple(_picture(condition, settings) for condition in conditions)
-    return Section("tracking-phase", "Phase portraits", (what,), pictures=pictures)
 
 
 def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:

@@ -6,7 +6,7 @@ import numpy as np
 
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks, Severity
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
 from tsas_cli.recordings.quality.trial import RunSignals, Stroke
 from tsas_cli.support.wording import count_of
@@ -15,7 +15,7 @@ _ZERO = 0.15  # of the channel's span: the mean of the second half
 _NEGATIVE = 0.2  # share of the samples there
 
 
-def ac_coupled(trial: RunSignals) -> Remarks:
+def ac_coupled(trial: RunSignals) -> Findings:
     """A tension has no constant part: its amplifier passes changes alone.
 
     A tendon that pushes nowhere has a positive tension; behind a coupling to AC its mean falls to
@@ -26,7 +26,7 @@ def ac_coupled(trial: RunSignals) -> Remarks:
     """
     preload = trial.recording.run.preload_N
     if not preload or not trial.strokes:
-        yield CannotTell("no preload is stated, or the drive does not move")
+        yield NotChecked("no preload is stated, or the drive does not move")
         return
     for name in ("f_in_N", "f_out_N"):
         if name not in trial.channels:
@@ -37,12 +37,12 @@ def ac_coupled(trial: RunSignals) -> Remarks:
         began = float(np.nanmean(values[: trial.strokes[0].stop + 1]))
         mean = float(np.nanmean(late))
         if abs(mean) < _ZERO * span < began and np.nanmean(late < 0.0) > _NEGATIVE:
-            yield Remark(
+            yield Finding(
                 "error",
+                name,
                 f"{name} begins at {began:.3g} N and has a mean of {mean:.2g} N in the second half "
                 f"of the run, with a preload of {preload:g} N: its amplifier is coupled to AC",
                 "set the amplifier to DC and record again",
-                name,
             )
 
 
@@ -57,7 +57,7 @@ _STRAIGHT = 1.0 / 3.0  # of what is visible: the RMS about a line, twice the noi
 _CLIPPED_REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
 
 
-def clipped(trial: RunSignals) -> Remarks:
+def clipped(trial: RunSignals) -> Findings:
     """A channel sits at its highest or lowest value while the motion goes on.
 
     The sensor or its amplifier is at the end of its range, or the part is at a stop. Reported when
@@ -70,7 +70,7 @@ def clipped(trial: RunSignals) -> Remarks:
     """
     for name in trial.mechanical:
         if name == trial.prescribed:
-            yield CannotTell(f"{name} is prescribed by the load, and may stay at its extremes")
+            yield NotChecked(f"{name} is prescribed by the load, and may stay at its extremes")
             continue
         if trial.sizes[name].lowest == trial.sizes[name].highest:
             continue
@@ -79,7 +79,7 @@ def clipped(trial: RunSignals) -> Remarks:
             yield from exact or _saturation(trial, name, end, sign)
 
 
-def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
+def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Finding]:
     values = trial.channels[name]
     extreme = trial.sizes[name].highest if sign > 0 else trial.sizes[name].lowest
     flat = [
@@ -91,17 +91,17 @@ def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Rem
     ]
     if flat:
         seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
-        yield Remark(
+        yield Finding(
             "error",
+            name,
             f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in "
             f"{count_of(len(flat), 'plateau')} while the motion goes on",
             _CLIPPED_REMEDY,
-            name,
             float(trial.time_s[flat[0].start]),
         )
 
 
-def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
+def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Finding]:
     """Yield that a channel ends at a level, with noise on it, in all strokes that reach there."""
     strokes = [s for s in trial.strokes if s.direction == sign]
     ends = [_end_of_stroke(trial, name, s) for s in strokes] if name != "x_in_mm" else []
@@ -112,12 +112,12 @@ def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[R
     near = [e for e in filter(None, ends) if abs(e[0] - level) < _NEAR * trial.visible(name)]
     lacks = [e[1] for e in near if e[2]]
     if len(lacks) >= max(_FEWEST_STROKES, _MOST_OF_THEM * len(near)):
-        yield Remark(
+        yield Finding(
             "error",
+            name,
             f"{name} ends at its {end} level {level:.4g} in {count_of(len(lacks), 'stroke')} while "
             f"the motion goes on: up to {max(lacks):.2g} {name.rsplit('_', 1)[1]} are cut off",
             _CLIPPED_REMEDY,
-            name,
         )
 
 
@@ -170,7 +170,7 @@ _FEWEST_UPDATES = 20
 _LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel
 
 
-def stuck(trial: RunSignals) -> Remarks:
+def stuck(trial: RunSignals) -> Findings:
     """A channel does not change at all while the motion goes back and forth.
 
     The sensor, its cable or its software hangs. A noisy channel is stuck if it does not change for
@@ -179,7 +179,7 @@ def stuck(trial: RunSignals) -> Remarks:
     """
     for name, values in trial.mechanical.items():
         if name == trial.prescribed:
-            yield CannotTell(f"{name} is prescribed by the load, and may rest")
+            yield NotChecked(f"{name} is prescribed by the load, and may rest")
             continue
         if trial.sizes[name].lowest == trial.sizes[name].highest:
             yield _unchanging("warning", trial, name, slice(0, values.size))
@@ -193,14 +193,14 @@ def stuck(trial: RunSignals) -> Remarks:
             yield _unchanging("error", trial, name, max(stuck, key=lambda r: r.stop - r.start))
 
 
-def _unchanging(severity: Severity, trial: RunSignals, name: str, rows: slice) -> Remark:
+def _unchanging(severity: Severity, trial: RunSignals, name: str, rows: slice) -> Finding:
     begin, end = trial.time_s[rows.start], trial.time_s[rows.stop - 1]
-    return Remark(
+    return Finding(
         severity,
+        name,
         f"{name} does not change from {begin:.6g} s to {end:.6g} s "
         f"(it stays at {trial.channels[name][rows.start]:.6g})",
         "check the sensor and its cable, and leave the column or this stretch out",
-        name,
         float(begin),
     )
 
@@ -234,7 +234,7 @@ def _noisy(trial: RunSignals, name: str, long: list[slice]) -> bool:
 _NOTE, _WARNING = 1 / 500, 1 / 50
 
 
-def quantised(trial: RunSignals) -> Remarks:
+def quantised(trial: RunSignals) -> Findings:
     """A channel moves in steps that are coarse for its noise and its range.
 
     A note if the step is more than twice the noise, so that averaging does not resolve it, and more
@@ -246,10 +246,10 @@ def quantised(trial: RunSignals) -> Remarks:
             continue
         coarse = step > _WARNING * span and name != trial.prescribed
         unit = name.rsplit("_", 1)[1]
-        yield Remark(
+        yield Finding(
             "warning" if coarse else "note",
+            name,
             f"{name} moves in steps of {step:.4g} {unit}, {100 * step / span:.2g} % of its range "
             f"of {span:.4g} {unit}; its noise is {noise:.2g} {unit}",
             "use a finer resolution or a smaller measuring range, if residuals below a step matter",
-            name,
         )

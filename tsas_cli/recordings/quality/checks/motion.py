@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.trial import RunSignals, Stroke
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
@@ -12,7 +12,7 @@ from tsas_cli.support.wording import count_of
 _CLEAR_SIGN = 0.8
 
 
-def sign(trial: RunSignals) -> Remarks:
+def sign(trial: RunSignals) -> Findings:
     """A channel has the wrong sign.
 
     Pulling at the drive is positive, the distal end follows it, and a tendon cannot push: over each
@@ -37,22 +37,22 @@ def sign(trial: RunSignals) -> Remarks:
             name, f"is negative in {share:.3g} % of the samples; a tendon cannot push"
         )
     if not against and not together and not pushing:
-        yield CannotTell("no channel that follows x_in_mm moves visibly")
+        yield NotChecked("no channel that follows x_in_mm moves visibly")
 
 
-def _wrong_sign(column: str, what: str) -> Remark:
-    return Remark(
+def _wrong_sign(column: str, what: str) -> Finding:
+    return Finding(
         "error",
+        column,
         f"{column} {what}",
         f"invert the sign of {column} at ingest, after checking how the sensor is mounted",
-        column,
     )
 
 
 _SPAN = 0.02  # of the range, below zero: a slack tendon on a sensor with a small offset
 
 
-def negative_tension(trial: RunSignals) -> Remarks:
+def negative_tension(trial: RunSignals) -> Findings:
     """A tension is negative for part of the run.
 
     A tendon cannot push. Most often the sensor was zeroed under preload, so that the column holds
@@ -66,12 +66,12 @@ def negative_tension(trial: RunSignals) -> Remarks:
         low, high = np.nanpercentile(values, (0.5, 98.0))
         if low < -limit and high >= -trial.visible(name):  # else the sign check reports it
             share = 100.0 * float(np.mean(values < 0.0))
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"{name} is negative in {share:.3g} % of the samples, down to {low:.4g} N",
                 "add the preload at ingest if the sensor was zeroed under it, or correct its "
                 "offset; only the difference of two tendons may be negative",
-                name,
                 float(trial.time_s[np.argmax(values < -limit)]),
             )
 
@@ -79,7 +79,7 @@ def negative_tension(trial: RunSignals) -> Remarks:
 _CLEAR_EXCESS = 0.03
 
 
-def exchanged(trial: RunSignals) -> Remarks:
+def exchanged(trial: RunSignals) -> Findings:
     """The two tension sensors are exchanged.
 
     With friction, at the same distal tension, the proximal tension is higher during contraction
@@ -88,20 +88,20 @@ def exchanged(trial: RunSignals) -> Remarks:
     """
     against = [n for n in ("f_in_N", "f_out_N") if (trial.follows(n) or 0.0) < 0.0]
     if against and trial.on_spring:
-        yield CannotTell(f"the sign of {against[0]} against x_in_mm is in doubt")
+        yield NotChecked(f"the sign of {against[0]} against x_in_mm is in doubt")
         return
     if len({stroke.direction for stroke in trial.strokes}) < 2:
-        yield CannotTell("the drive does not move in both directions")
+        yield NotChecked("the drive does not move in both directions")
         return
     excess = _excess_while_pulling(trial)
     visible = 0.5 * (trial.visible("f_in_N") + trial.visible("f_out_N"))
     if excess < -max(_CLEAR_EXCESS * trial.sizes["f_in_N"].span, visible):
-        yield Remark(
+        yield Finding(
             "error",
+            "f_in_N",
             f"at the same f_out_N, f_in_N is {-excess:.3g} N lower in contraction than in "
             "loosening; friction makes it higher",
             "exchange the columns of f_in_N and f_out_N at ingest, or check the sign of x_in_mm",
-            "f_in_N",
         )
 
 
@@ -128,7 +128,7 @@ _PART = 0.2  # of a jump, that it may change by then
 _VISIBLE, _CRITICAL = 4.0, 6.0  # noise levels, and standard errors of the mean
 
 
-def interference(trial: RunSignals) -> Remarks:
+def interference(trial: RunSignals) -> Findings:
     """A channel at the load jumps whenever the drive reverses.
 
     In the dead band after a reversal of the drive the load rests, so nothing there can jump with
@@ -143,7 +143,7 @@ def interference(trial: RunSignals) -> Remarks:
         (len(trial.strokes) > _FEWEST_REVERSALS, "the drive has too few reversals"),
     ):
         if not judged:
-            yield CannotTell(reason)
+            yield NotChecked(reason)
             return
     for name in [n for n in ("x_out_mm", "f_out_N") if n in trial.noisy]:
         jumps = _jumps(trial, trial.noisy[name], trial.sizes[name].noise)
@@ -153,14 +153,14 @@ def interference(trial: RunSignals) -> Remarks:
         if abs(mean) > max(_VISIBLE * trial.sizes[name].noise, _CRITICAL * error):
             unit = name.rsplit("_", 1)[1]
             lags = "a delay, " if name == "x_out_mm" else "mass of the load, a delay, "
-            yield Remark(
+            yield Finding(
                 "warning" if mean < 0.0 else "error",
+                name,
                 f"{name} jumps by {abs(mean):.2g} {unit} when the drive reverses, "
                 f"where the load still rests: {lags + 'or ' if mean < 0.0 else ''}"
                 "interference that follows the motor's direction",
                 "shield the sensor's cable from the motor's, and look for corrections by the sign "
                 "of the speed",
-                name,
             )
 
 
@@ -194,7 +194,7 @@ def _polynomial(t: Floats, values: Floats, degree: int) -> Floats:
 _ENOUGH_REVERSALS = 3
 
 
-def few_reversals(trial: RunSignals) -> Remarks:
+def few_reversals(trial: RunSignals) -> Findings:
     """The drive has too few reversals.
 
     Two full cycles have three reversals. With fewer, a run shows each phase at most once, so that
@@ -204,12 +204,12 @@ def few_reversals(trial: RunSignals) -> Remarks:
     if reversals >= _ENOUGH_REVERSALS:
         return
     moves = f"has {count_of(reversals, 'reversal')}"
-    yield Remark(
+    yield Finding(
         "warning",
+        "x_in_mm",
         f"x_in_mm {moves if trial.strokes else 'does not move visibly'}; two full cycles have "
         f"{_ENOUGH_REVERSALS} reversals",
         "record at least two full cycles of contraction and loosening",
-        "x_in_mm",
     )
 
 
@@ -222,7 +222,7 @@ _INDICATORS = {
 }
 
 
-def no_steady_motion(trial: RunSignals) -> Remarks:
+def no_steady_motion(trial: RunSignals) -> Findings:
     """The tendon never slips through to the load in one of the two directions.
 
     After a reversal the drive first crosses a dead band, in which the distal end rests. The
@@ -231,7 +231,7 @@ def no_steady_motion(trial: RunSignals) -> Remarks:
     """
     indicators = [n for n in _INDICATORS[trial.recording.run.load] if n in trial.channels]
     if not indicators or not trial.strokes:
-        yield CannotTell(
+        yield NotChecked(
             "the drive does not move visibly"
             if indicators
             else "no channel shows when the distal end moves"
@@ -241,12 +241,12 @@ def no_steady_motion(trial: RunSignals) -> Remarks:
         strokes = [s for s in trial.strokes if s.direction == direction]
         share = max((_moving(trial, n, s) for n in indicators for s in strokes), default=1.0)
         if share < _ENOUGH_MOVING:
-            yield Remark(
+            yield Finding(
                 "warning",
+                indicators[0],
                 f"no steady {phase}: by {' and '.join(indicators)}, the distal end moves in at "
                 f"most {100 * share:.2g} % of a stroke of x_in_mm",
                 "record longer strokes, so that the load moves well beyond the dead band",
-                indicators[0],
             )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import largest
-from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.wording import count_of
@@ -18,7 +18,7 @@ _RARE, _OFTEN = 0.012, 0.1  # share of all samples
 _PARTS, _EVERYWHERE = 20, 0.6  # of the run, and the share of them that holds some
 
 
-def outlier(trial: RunSignals) -> Remarks:
+def outlier(trial: RunSignals) -> Findings:
     """Single samples are far from the samples before and after them.
 
     A bit error on a line, a sentinel for a missing value, a loose plug. One outlier can dominate a
@@ -39,19 +39,19 @@ def outlier(trial: RunSignals) -> Remarks:
         usual = float(np.nanmedian(values))
         farthest = rows[np.argmax(np.abs(values[rows] / 2.0 - usual / 2.0))]
         plausible = abs(values[farthest]) <= largest(name)
-        yield Remark(
+        yield Finding(
             "error",
+            name,
             f"{name} holds {count_of(rows.size, 'sample')} far from "
             f"{'the samples before and after' if plausible else 'any plausible value'}; the "
             f"farthest is {values[farthest]:.6g} at {trial.time_s[farthest]:.6g} s, "
             f"row {trial.first_row + farthest}",
             "leave these cells empty in the file and ingest again; the stages leave the gap out",
-            name,
             float(trial.time_s[rows[0]]),
         )
 
 
-def _frequent(trial: RunSignals) -> Iterator[Remark]:
+def _frequent(trial: RunSignals) -> Iterator[Finding]:
     """Yield the channels of which many samples deviate from the median of their neighbours."""
     for name, values in trial.noisy.items():
         window = np.lib.stride_tricks.sliding_window_view(values, 2 * _ASIDE + 1)
@@ -72,12 +72,12 @@ def _frequent(trial: RunSignals) -> Iterator[Remark]:
         if np.count_nonzero(far) < _APART * between:
             continue
         if _RARE < float(far.mean()) < _OFTEN and np.mean(parts) > _EVERYWHERE:
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"{100.0 * far.mean():.2g} % of the samples of {name} deviate from the median of "
                 f"their neighbours by more than {_FAR:g} times its noise",
                 "look for bit errors and loose plugs; leave these cells empty and ingest again",
-                name,
             )
 
 
@@ -88,7 +88,7 @@ _MOST = 0.15  # share of the blocks
 _REPEATS = 0.02  # share of the rows
 
 
-def bursts(trial: RunSignals) -> Remarks:
+def bursts(trial: RunSignals) -> Findings:
     """The noise of a channel rises manifold for short times.
 
     A radio, a welder, a motor's brake or a loose plug. Reported where a few short stretches have
@@ -96,7 +96,7 @@ def bursts(trial: RunSignals) -> Remarks:
     lasts as long as the motion.
     """
     if float(trial.repeats.mean()) > _REPEATS:
-        yield CannotTell("rows repeat")
+        yield NotChecked("rows repeat")
         return
     for name, values in trial.noisy.items():
         third = np.diff(values, 3)
@@ -111,12 +111,12 @@ def bursts(trial: RunSignals) -> Remarks:
         if bursts and float(loud.mean()) < _MOST:
             start = _BLOCK * int(bursts[0][0])
             more = float(np.median(level[loud]) / np.median(level))
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"the noise of {name} rises to {more:.2g} times its level in "
                 f"{count_of(len(bursts), 'burst')}, the first at {trial.time_s[start]:.4g} s",
                 "look for what switches at that time, shield the cable, or leave these cells empty",
-                name,
                 float(trial.time_s[start]),
             )
 
@@ -126,25 +126,25 @@ _LINE_TIMES = 20.0  # the power beside the line
 _BESIDE_LINE = 0.35  # of the line's frequency: how far to the sides that is taken
 
 
-def hum(trial: RunSignals) -> Remarks:
+def hum(trial: RunSignals) -> Findings:
     """A channel oscillates at one frequency all the time, whatever the motion.
 
     Mains hum aliased into the band, an inverter, a fan. Reported where the noise of a channel has
     one narrow line, twenty times as strong as beside it and as strong in every part of the run.
     """
     if not trial.increases:
-        yield CannotTell("time does not increase")
+        yield NotChecked("time does not increase")
         return
     for name, values in trial.noisy.items():
         spectrum = noise_spectrum(trial.time_s, values, _HUM_S)
         line = None if spectrum is None else _line(spectrum)
         if line is not None:
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"{name} oscillates at about {line:.2g} Hz all the time, whatever the motion",
                 "look for hum, aliased perhaps, and for what runs at this frequency; shield the "
                 "cable, filter before sampling",
-                name,
             )
 
 
@@ -174,7 +174,7 @@ _FEWEST_BANDS = 2, 3  # in so many bands above rounding, or above nothing: a mot
 _MATTERS = 10.0  # times the noise
 
 
-def filtered(trial: RunSignals) -> Remarks:
+def filtered(trial: RunSignals) -> Findings:
     """A channel was low-pass filtered before it was recorded, slowly enough to delay the motion.
 
     White noise of a sensor reaches up to half the sampling rate. Behind a filter it ends at a lower
@@ -186,7 +186,7 @@ def filtered(trial: RunSignals) -> Remarks:
     noise.
     """
     if not trial.increases or not trial.strokes:
-        yield CannotTell("time does not increase, or the drive does not move")
+        yield NotChecked("time does not increase, or the drive does not move")
         return
     segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
     for name, values in trial.mechanical.items():
@@ -203,12 +203,12 @@ def filtered(trial: RunSignals) -> Remarks:
         change = np.interp(late_s, trial.time_s, values) - values
         wrong = float(np.sqrt(np.mean(change**2)))
         if noise > max(_STEPS * size.step, _COMPUTED * size.span) and wrong > _MATTERS * noise:
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"the noise of {name} ends at about {end_Hz:.2g} Hz, as behind a low-pass filter "
                 f"(the sampling rate is {1.0 / trial.step_s:.4g} Hz)",
                 "record without the filter, or with one that is ten times as fast for all channels",
-                name,
             )
 
 

@@ -5,11 +5,11 @@ from collections.abc import Callable
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.copies.search import find_copies
-from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.support.errors import printable
 
 
-def unknown_key(manifest: Manifest) -> Remarks:
+def unknown_key(manifest: Manifest) -> Findings:
     """The manifest holds a key that format 1 does not define.
 
     Such a key is kept but has no effect; a misspelt key loses its value. A run may have keys of its
@@ -24,8 +24,9 @@ def unknown_key(manifest: Manifest) -> Remarks:
         misspelt = hint.startswith("did you mean")
         if not misspelt and all(place.startswith("run ") for place in where):
             continue
-        yield Remark(
+        yield Finding(
             "warning" if misspelt else "note",
+            None,
             f"dataset.toml holds the unknown key {printable(key)} in {where[0]}"
             + (f" and {len(where) - 1} more" if len(where) > 1 else ""),
             hint if misspelt else "none, if it is a note for readers",
@@ -50,7 +51,7 @@ _RIG: _Suspicions = (
 )
 
 
-def manifest_unit(manifest: Manifest) -> Remarks:
+def manifest_unit(manifest: Manifest) -> Findings:
     """A value in the manifest looks as if it were in another unit than its key says.
 
     A bend of 180 rad is most likely 180°, a sheath of 0.8 mm most likely 0.8 m. The limits are far
@@ -62,14 +63,15 @@ def manifest_unit(manifest: Manifest) -> Remarks:
         for key, implausible, likely in suspicions:
             value = values[key]
             if value is not None and implausible(value):
-                yield Remark(
+                yield Finding(
                     "warning",
+                    None,
                     f"dataset.toml says {place}{key} = {value:g}, which looks like {likely}",
                     f"convert the value to the unit in the key, if it is in {likely}",
                 )
 
 
-def copies(dataset: Dataset) -> Remarks:
+def copies(dataset: Dataset) -> Findings:
     """A run holds samples of another run of the dataset, which are no further evidence.
 
     Two runs that repeat a motion have independent noise; a copy shares it. Each run is searched for
@@ -82,8 +84,9 @@ def copies(dataset: Dataset) -> Remarks:
     """
     found = find_copies(dataset, strict=False)
     for copy in found.copies:
-        yield Remark(
+        yield Finding(
             "error" if copy.contradicts else "warning",
+            None,
             f"{copy.sentence}{copy.contradiction}",
             "correct the conditions in dataset.toml, or leave out the wrong run"
             if copy.contradicts
@@ -92,6 +95,6 @@ def copies(dataset: Dataset) -> Remarks:
             run=copy.run.id,
         )
     for run in found.unordered:
-        yield CannotTell("time does not increase", run)
+        yield NotChecked("time does not increase", run=run)
     for run in found.short:
-        yield CannotTell("too few rows change", run)
+        yield NotChecked("too few rows change", run=run)

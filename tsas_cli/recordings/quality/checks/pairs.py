@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
 
@@ -48,7 +48,7 @@ _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
 
 
-def unit(trial: RunSignals) -> Remarks:
+def unit(trial: RunSignals) -> Findings:
     """A channel is off by the ratio of two units: most likely its unit is not that in its name.
 
     Pairs that must agree are compared: the travel of the tendon's two ends; the level of the two
@@ -59,24 +59,35 @@ def unit(trial: RunSignals) -> Remarks:
     dead band also reduces the distal travel, but then the distal path is no scaled copy of the
     proximal one.
     """
-    yield from _time(trial)
+    interval = trial.step_s
+    if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
+        yield Finding(
+            "error",
+            "time_s",
+            f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
+            f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
+            "check the unit of time_s and set it at ingest",
+        )
     tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
     driven = trial.recording.run.load == "displacement"
     travel = None
     if trial.strokes and not driven and "x_out_mm" in trial.channels:
         travel = _slope(trial, "x_in_mm", "x_out_mm")
-    farther = 0.0 if driven else _times_as_far(trial)
+    x_in, x_out = (trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm"))
+    farther = 0.0
+    if x_in and x_out and trial.strokes and not driven:
+        farther = x_out.span / x_in.span
     if travel is None and tension is None and stiffness is None and farther <= _FARTHER:
-        yield CannotTell("no two channels whose sizes must agree were recorded and move")
+        yield NotChecked("no two channels whose sizes must agree were recorded and move")
     moves = "x_out_mm moves {:.4g} mm per mm of x_in_mm"
     of_travel = [*_suspect_unit(travel, moves, _TRAVEL, 1.4), *_halved(trial, travel)]
     yield from of_travel
     if farther > _FARTHER and not of_travel:
-        yield Remark(
+        yield Finding(
             "warning",
+            "x_out_mm",
             f"x_out_mm moves {farther:.3g} times as far as x_in_mm; a tendon moves its load less",
             "check unit and pulley radius of both; of a joint or a tip, the arm that moves it",
-            "x_out_mm",
         )
     for remark in _suspect_unit(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
         if remark.column != "f_out_N" or not _as_stated(stiffness):
@@ -85,21 +96,15 @@ def unit(trial: RunSignals) -> Remarks:
     suspected = list(_suspect_unit(stiffness, slope, _STIFFNESS, 1.1))
     yield from suspected
     if stiffness is not None and not suspected and not _as_stated(stiffness):
-        yield Remark(
+        yield Finding(
             "warning",
+            None,
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
         )
 
 
-def _times_as_far(trial: RunSignals) -> float:
-    """Return the travel of the load's end over that of the drive's; 0 without strokes or one."""
-    ends = [trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm")]
-    x_in, x_out = (0.0 if end is None else end.span for end in ends)
-    return x_out / x_in if trial.strokes and x_in > 0.0 else 0.0
-
-
-def _halved(trial: RunSignals, travel: float | None) -> Iterator[Remark]:
+def _halved(trial: RunSignals, travel: float | None) -> Iterator[Finding]:
     """Yield that x_in is twice what it is, where the tendon cannot stretch by what is lost."""
     sheet, run, forces = trial.rig, trial.recording.run, trial.sizes.get("f_in_N")
     modulus, diameter = sheet.tendon_modulus_GPa, sheet.tendon_diameter_mm
@@ -111,13 +116,13 @@ def _halved(trial: RunSignals, travel: float | None) -> Iterator[Remark]:
     stiffness_N = 1e3 * modulus * math.pi * diameter**2 / 4.0
     lost = (1.0 - travel) * trial.sizes["x_in_mm"].span
     if lost > _STRETCH * forces.span * length / stiffness_N:
-        yield Remark(
+        yield Finding(
             "error",
+            "x_in_mm",
             f"x_out_mm moves {travel:.4g} mm per mm of x_in_mm, and the tendon cannot stretch by "
             f"the {lost:.3g} mm that are lost; x_in_mm looks like taken with the diameter of a "
             "wheel for its radius",
             "check the radius that x_in_mm was calculated with, and set it at ingest",
-            "x_in_mm",
         )
 
 
@@ -131,18 +136,18 @@ def _as_stated(stiffness: float | None) -> bool:
 
 def _suspect_unit(
     ratio: float | None, sentence: str, likely: Mapping[float, str], tolerance: float
-) -> Iterator[Remark]:
+) -> Iterator[Finding]:
     """Yield a remark if a ratio is close to the ratio of two units."""
     if ratio is None or not 0.0 < ratio < math.inf:
         return
     nearest = min(likely, key=lambda factor: abs(math.log(ratio / factor)))
     if abs(math.log(ratio / nearest)) < math.log(tolerance):
         column = likely[nearest].split()[0]
-        yield Remark(
+        yield Finding(
             "error",
+            None if column.startswith("load") else column,
             f"{sentence.format(ratio)}; {likely[nearest]}",
             f"check the unit of {column} and set it at ingest",
-            None if column.startswith("load") else column,
         )
 
 
@@ -179,18 +184,6 @@ def _slope(trial: RunSignals, x: str, y: str) -> float | None:
     return float(np.std(b) / np.std(a))
 
 
-def _time(trial: RunSignals) -> Iterator[Remark]:
-    interval = trial.step_s
-    if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
-        yield Remark(
-            "error",
-            f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
-            f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
-            "check the unit of time_s and set it at ingest",
-            "time_s",
-        )
-
-
 _MOST_CYCLES = 100  # evenly spread; more would not improve the estimate
 _ROUNDS = 20
 _ROWS = 40  # least number of independent rows of a smoothed cycle
@@ -199,7 +192,7 @@ _SPRING = 0.002  # largest share of the tension's variance that a spring leaves 
 _OWN = 0.02  # least share of the speed that the other terms leave unexplained
 
 
-def delay(trial: RunSignals) -> Remarks:
+def delay(trial: RunSignals) -> Findings:
     """The tension at the load comes before or after the displacement at the load.
 
     A spring's tension follows its displacement without lag, so a time shift between the two is an
@@ -210,40 +203,36 @@ def delay(trial: RunSignals) -> Remarks:
     with a damper or a mass, or one that relaxes, looks like a delay too.
     """
     if not trial.on_spring:
-        yield CannotTell(
+        yield NotChecked(
             "the load is no spring, so the tension at the load need not follow the displacement"
         )
         return
     if not trial.increases:
-        yield CannotTell("time does not increase")
+        yield NotChecked("time does not increase")
         return
     strokes = zip(trial.strokes[::2], trial.strokes[1::2], strict=False)
     cycles = [slice(one.start, other.stop + 1) for one, other in strokes]
     cycles = cycles[:: max(1, -(-len(cycles) // _MOST_CYCLES))]
     delays = np.array([d for d in (_delay(trial, rows) for rows in cycles) if math.isfinite(d)])
     if delays.size < 2:
-        yield CannotTell("fewer than two cycles of changing speed with a load like a spring")
+        yield NotChecked("fewer than two cycles of changing speed with a load like a spring")
         return
     from scipy.special import stdtrit
 
     mean, quantile = float(delays.mean()), float(stdtrit(delays.size - 1, 0.975))
     half = quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)  # each cycle is one
-    if abs(mean) - half > _smallest(trial):
-        yield Remark(
+    force = trial.channels["f_out_N"]
+    rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
+    matters_s = max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
+    if abs(mean) - half > matters_s:
+        yield Finding(
             "warning",
+            "f_out_N",
             f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
             f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
             "use the same filter and clock for both channels, or shift one at the source (offset_s "
             "in a .join list), unless the load relaxes, or has a damper or a mass",
-            "f_out_N",
         )
-
-
-def _smallest(trial: RunSignals) -> float:
-    """Return the shortest delay that matters [s]."""
-    force = trial.channels["f_out_N"]
-    rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
-    return max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
 
 
 def _delay(trial: RunSignals, rows: slice) -> float:

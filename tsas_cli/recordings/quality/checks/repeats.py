@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings
 from tsas_cli.recordings.quality.samples import is_held, rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
@@ -15,7 +15,7 @@ _MORE, _MOST = 2.0, 0.3  # times the share by chance, and share beyond that
 _ONE_STEP, _DEVIATIONS = 1.2, 4.0  # times the share of changes by one step, and its deviations
 
 
-def repeated_values(trial: RunSignals) -> Remarks:
+def repeated_values(trial: RunSignals) -> Findings:
     """A channel repeats its value far more often than its noise would: a median filter before it.
 
     A median keeps one sample of its window until another one is in the middle. Reported where a
@@ -35,12 +35,12 @@ def repeated_values(trial: RunSignals) -> Remarks:
             where, (share, chance) = "", _beside_one_step(values[fresh], size.step)
             if share <= chance:
                 continue
-        yield Remark(
+        yield Finding(
             "warning",
+            name,
             f"{name} repeats its value in {100.0 * share:.2g} % of the rows{where}, its noise "
             f"would in {100.0 * chance:.2g} %: as behind a median filter",
             "record the channel without the filter",
-            name,
         )
 
 
@@ -65,21 +65,17 @@ def _beside_one_step(values: Floats, step: float) -> tuple[float, float]:
         return 0.0, 0.0
     steps = np.rint(np.diff(values) / step)
     high = values[1:] > 0.5 * (np.nanmin(values) + np.nanmax(values))
-    if all(_repeats_more(steps[half]) for half in (high, ~high)):
-        return float(np.mean(steps == 0.0)), 0.5 * float(np.mean(np.abs(steps) == 1.0))
-    return 0.0, 0.0
+    for half in (steps[high], steps[~high]):
+        if half.size == 0:
+            return 0.0, 0.0
+        repeats, one = np.mean(half == 0.0), 0.5 * np.mean(np.abs(half) == 1.0)
+        deviation = math.sqrt((repeats + 0.5 * one) / half.size)
+        if not 0.0 < one < min(repeats / _ONE_STEP, repeats - _DEVIATIONS * deviation):
+            return 0.0, 0.0
+    return float(np.mean(steps == 0.0)), 0.5 * float(np.mean(np.abs(steps) == 1.0))
 
 
-def _repeats_more(steps: Floats) -> bool:
-    """Return whether changes by nothing are far more than those by one step."""
-    if steps.size == 0:
-        return False
-    repeats, one = np.mean(steps == 0.0), 0.5 * np.mean(np.abs(steps) == 1.0)
-    deviation = math.sqrt((repeats + 0.5 * one) / steps.size)
-    return bool(0.0 < one < min(repeats / _ONE_STEP, repeats - _DEVIATIONS * deviation))
-
-
-def slow_channel(trial: RunSignals) -> Remarks:
+def slow_channel(trial: RunSignals) -> Findings:
     """A channel is updated less often than the rows are written.
 
     Its sensor updates at a lower rate and the logger repeats the last value (zero-order hold), so
@@ -93,9 +89,9 @@ def slow_channel(trial: RunSignals) -> Remarks:
         change = np.abs(np.diff(values))
         if np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values):
             rows = rows_between_changes(values[fresh])
-            yield Remark(
+            yield Finding(
                 "warning",
+                name,
                 f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
                 "record the channel at its own rate, or correct for half an update of delay",
-                name,
             )

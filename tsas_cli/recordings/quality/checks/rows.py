@@ -1,4 +1,4 @@
-"""The checks for rows that are lost, or repeated."""
+"""The checks for rows that are lost or repeated, and for a position that jumps alone."""
 
 import math
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Remark, Remarks
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.samples import alternates, smallest_change
 from tsas_cli.recordings.quality.trial import GAP, RunSignals
 from tsas_cli.support.arrays import Floats, Mask
@@ -33,7 +33,7 @@ class _Jumps(NamedTuple):
     at_once: Floats  # what it changes by between the two rows, without its slope
 
 
-def lost_samples(trial: RunSignals) -> Remarks:
+def lost_samples(trial: RunSignals) -> Findings:
     """Samples are lost, and the times run on as if none were.
 
     Where the rows of a lost buffer are closed up, every channel jumps by its slope times the same
@@ -44,19 +44,19 @@ def lost_samples(trial: RunSignals) -> Remarks:
     there both change by many times what they do anywhere else.
     """
     if not trial.increases or not trial.strokes:
-        yield CannotTell("time does not increase, or the drive does not move")
+        yield NotChecked("time does not increase, or the drive does not move")
         return
     interval = np.diff(trial.time_s)
     even = float(np.mean(np.abs(interval / trial.step_s - 1.0) < _EVEN))
     if even < _MOSTLY or float(trial.repeats.mean()) > 1.0 - _MOSTLY:
-        yield CannotTell("the times are uneven, or rows repeat")
+        yield NotChecked("the times are uneven, or rows repeat")
         return
     step_s = trial.step_s
     window_s = min(_OF_A_STROKE * trial.stroke_s, _LONGEST_S)
     rows = max(round(window_s / step_s), _FEWEST_ROWS)
     moving = {n: v for n, v in trial.mechanical.items() if trial.moves(n) and np.isfinite(v).all()}
     if "x_in_mm" not in moving or len(moving) < 2 or trial.time_s.size < 4 * rows:
-        yield CannotTell("too few channels move without a gap")
+        yield NotChecked("too few channels move without a gap")
         return
     jumps = {name: _jumps(values, rows, step_s) for name, values in moving.items()}
     size = trial.sizes["x_in_mm"]
@@ -68,24 +68,24 @@ def lost_samples(trial: RunSignals) -> Remarks:
         lost = [lost_s for _, lost_s in places]
         first, lost_s = places[0]
         at = first + rows - 1
-        yield Remark(
+        yield Finding(
             "warning",
+            None,
             f"all channels jump at {count_of(len(places), 'place')}, as if samples were lost and "
             f"the gap closed up: {lost_s:.2g} s at {trial.time_s[at]:.5g} s"
             + (f", {sum(lost):.2g} s in total" if lost[1:] else ""),
             "write down the time of each sample, and look for lost buffers at the source",
-            None,
             float(trial.time_s[at]),
         )
     rows_of_places = {place + rows - 1 for place, _ in places}
     for at in _torn(trial, list(moving)):
         if all(abs(at - row) > rows for row in rows_of_places):
-            yield Remark(
+            yield Finding(
                 "warning",
+                None,
                 f"x_in_mm and other channels jump from one row to the next at "
                 f"{trial.time_s[at]:.5g} s, as if samples were lost there, a reversal among them",
                 "write down the time of each sample, and end the run before that time",
-                None,
                 float(trial.time_s[at]),
             )
 
@@ -159,7 +159,7 @@ _BLOCK = 32  # rows
 _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
 
 
-def repeated_rows(trial: RunSignals) -> Remarks:
+def repeated_rows(trial: RunSignals) -> Findings:
     """Rows repeat the row before them in every channel.
 
     The logger sampled faster than the sensors, or repeated the last value while the link was down.
@@ -168,7 +168,7 @@ def repeated_rows(trial: RunSignals) -> Remarks:
     the noise of some channel exceeds its smallest change: quiet channels repeat by chance.
     """
     if not trial.channels:
-        yield CannotTell("no column besides time holds enough numbers")
+        yield NotChecked("no column besides time holds enough numbers")
         return
     repeated = trial.repeats.copy()
     if not repeated.any():
@@ -177,13 +177,14 @@ def repeated_rows(trial: RunSignals) -> Remarks:
     chance = _chances(trial, ~repeated)[block]
     noisy = chance < 1.0
     if not noisy.any():
-        yield CannotTell("the channels are so quiet or so coarse that rows repeat by chance")
+        yield NotChecked("the channels are so quiet or so coarse that rows repeat by chance")
         return
     repeated &= noisy
     count, expected = int(repeated.sum()), float(chance[noisy].sum())
     if count > 3.0 * expected + 10.0:
-        yield Remark(
+        yield Finding(
             "warning",
+            None,
             f"{count} of {repeated.size} rows ({100 * count / repeated.size:.2g} %) repeat the row "
             f"before them in all channels; with this noise about {expected:.0f} would",
             "record no faster than the slowest sensor updates, or drop the repeats at ingest",
@@ -212,7 +213,7 @@ def _chances(trial: RunSignals, fresh: Mask) -> Floats:
 _FEWEST_OF_A_BUFFER = 4  # of a block
 
 
-def repeated_buffer(trial: RunSignals) -> Remarks:
+def repeated_buffer(trial: RunSignals) -> Findings:
     """A block of rows is written twice, one after the other, and the times run on.
 
     A driver that hands out its buffer again when no new one is ready. Every channel then repeats,
@@ -221,7 +222,7 @@ def repeated_buffer(trial: RunSignals) -> Remarks:
     """
     noisy = [values for values in trial.channels.values() if alternates(values)]
     if not noisy:
-        yield CannotTell("no channel has noise, so rows may repeat by themselves")
+        yield NotChecked("no channel has noise, so rows may repeat by themselves")
         return
     table = np.column_stack([np.nan_to_num(values) for values in trial.channels.values()])
     row = np.unique(table, axis=0, return_inverse=True)[1].ravel()
@@ -234,12 +235,59 @@ def repeated_buffer(trial: RunSignals) -> Remarks:
     starts = [int(a) for a, b in pairwise(edges) if lag[a] == b - a >= _FEWEST_OF_A_BUFFER]
     if starts:
         first = starts[0]
-        yield Remark(
+        yield Finding(
             "error",
+            None,
             f"{count_of(len(starts), 'block')} of rows repeat the block before in all channels; "
             f"the first has {lag[first]} rows and begins at {trial.time_s[first]:.6g} s, "
             f"row {trial.first_row + first}",
             "write each buffer once; remove the repeated rows with their times at the source",
-            None,
             float(trial.time_s[first]),
         )
+
+
+_FARTHEST, _LOUDEST = 10.0, 20.0  # times the largest step elsewhere, and noise levels
+_QUIET = 3.0  # times the largest step elsewhere, of a channel that does not jump
+_BESIDE = 2  # rows
+
+
+def jump(trial: RunSignals) -> Findings:
+    """A position jumps from one row to the next and stays there, and no other channel jumps.
+
+    An encoder was reset, its counter overflowed, or its cable was off for a moment. Reported where
+    x_in or x_out changes by ten times its largest change elsewhere, 20 times its noise and three
+    quantisation steps, while all other channels change as they do elsewhere. Not reported: an
+    outlier, which comes back; a drive that jumps, which the tension follows; a tendon that slips
+    many times. A jump within the usual changes is a fault that `diagnose` names.
+    """
+    channels = {name: trial.steps(name) for name in trial.mechanical}
+    for name in ("x_in_mm", "x_out_mm"):
+        if name not in channels:
+            continue
+        if len(channels) < 2:
+            yield NotChecked("no other channel shows whether the tendon moved")
+            continue
+        at = int(np.argmax(channels[name]))
+        beside = slice(max(at - _BESIDE, 0), at + _BESIDE + 1)
+        size, elsewhere = channels[name][at], _elsewhere(channels[name], beside)
+        sizes = trial.sizes[name]
+        least = max(_FARTHEST * elsewhere, _LOUDEST * sizes.noise, _STEPS * sizes.step)
+        others = [steps for other, steps in channels.items() if other != name]
+        alone = all(steps[beside].max() <= _QUIET * _elsewhere(steps, beside) for steps in others)
+        if size > least and alone:
+            before, after = trial.channels[name][at : at + 2]
+            yield Finding(
+                "error",
+                name,
+                f"{name} jumps from {before:.6g} to {after:.6g} mm at {trial.time_s[at + 1]:.6g} "
+                f"s, row {trial.first_row + at + 1}, and no other channel jumps there",
+                "check the encoder, its counter and its cable; record again, or end the run before",
+                float(trial.time_s[at + 1]),
+            )
+
+
+def _elsewhere(steps: Floats, beside: slice) -> float:
+    """Return the largest change, but for those beside a row."""
+    rest = steps.copy()
+    rest[beside] = 0.0
+    return float(rest.max(initial=0.0))

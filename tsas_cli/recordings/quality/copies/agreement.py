@@ -232,16 +232,11 @@ def stretches(
         first, end = int(edges[k]) + 1, int(edges[k + 1])
         times = samples.time_s[first], samples.time_s[end - 1]
         span = RowSpan(row + first, row + end, float(times[0]), float(times[1]))
-        out.append((span, _every(found, slice(first, end))))
+        every, exact = 0, found.exact[first:end]
+        if np.count_nonzero(exact) >= EXACT_SHARE * np.count_nonzero(found.agrees[first:end]):
+            every = max(int(np.median(np.diff(found.at[first:end][exact]))), 1)
+        out.append((span, every))
     return out
-
-
-def _every(found: Agreement, rows: slice) -> int:
-    """Return the rows of the source from one sample to the next; 0 if they are interpolated."""
-    exact = found.exact[rows]
-    if np.count_nonzero(exact) < EXACT_SHARE * np.count_nonzero(found.agrees[rows]):
-        return 0
-    return max(int(np.median(np.diff(found.at[rows][exact]))), 1)
 
 
 def joined(parts: Iterable[tuple[RowSpan, int]]) -> list[tuple[RowSpan, int]]:

@@ -29,10 +29,7 @@ class DeduplicatedDataset:
 
 
 def without_duplicates(dataset: Dataset) -> DeduplicatedDataset:
-    """Return a dataset without duplicate samples.
-
-    InputError: a run cannot be read, or two runs hold the same samples under different conditions.
-    """
+    """Return a dataset without duplicate samples."""
     by_run: dict[str, list[Copy]] = {}
     for copy in find_copies(dataset).copies:
         if copy.contradicts:

@@ -104,15 +104,12 @@ def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int])
         for c in parts
         if not {c.run.id, c.other.id} & whole.keys()
     }
-    return [*whole.values(), *_once(list(kept.values()), order)]
-
-
-def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
-    """Return each common stretch of two runs once: as that of the later run, if found in both."""
-    later = [copy for copy in parts if order[copy.run.id] >= order[copy.other.id]]
-    earlier = [copy for copy in parts if order[copy.run.id] < order[copy.other.id]]
-    pairs = {(copy.other.id, copy.run.id) for copy in later}
-    return later + [copy for copy in earlier if (copy.run.id, copy.other.id) not in pairs]
+    # What two runs share is said once: of the later one, if it was found in both.
+    later = [c for c in kept.values() if order[c.run.id] >= order[c.other.id]]
+    pairs = {(c.other.id, c.run.id) for c in later}
+    earlier = [c for c in kept.values() if order[c.run.id] < order[c.other.id]]
+    alone = [c for c in earlier if (c.run.id, c.other.id) not in pairs]
+    return [*whole.values(), *later, *alone]
 
 
 def _in_source(
