@@ -42,6 +42,8 @@ class SqlQuery:
 def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
     """Return a query as SQL, with `2026-01` as a time and `f_out in channels` with the full name.
 
+    InputError: no run has such a channel.
+
     >>> to_sql("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
     "started >= TIMESTAMP '2026-01-01' and 'f_out_N' in channels"
     """
@@ -131,6 +133,9 @@ def run_query(
     """Return the matching runs with the requested columns, or with all.
 
     A minus before a name in `sort` reverses its order; missing values come last.
+
+    InputError: the query is no condition on these columns, a column does not exist, or it takes
+    too long.
     """
     import duckdb
 

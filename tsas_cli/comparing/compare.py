@@ -63,6 +63,9 @@ def compare(
     `a` and `b` are models, their files, or folders that `tsas calibrate`, `diagnose` or `simulate`
     wrote. Without a dataset `on` a folder's model is held to the recordings that the stage has
     read, and a model file to none.
+
+    InputError: A or B is none of these, there is nothing that both hold, or a recording cannot be
+    read.
     """
     sides = read_side(a), read_side(b)
     _refuse(sides, on)

@@ -50,7 +50,10 @@ class Predicted:
 
 
 def read_models(given: Sequence[Path | Model]) -> dict[str, Side]:
-    """Read model files, or folders of `tsas calibrate` or `diagnose`, and give each a letter."""
+    """Read model files, or folders of `tsas calibrate` or `diagnose`, and give each a letter.
+
+    InputError: there is none, one is no model, or there are more than letters.
+    """
     if not 0 < len(given) <= len(ascii_uppercase):
         raise InputError(f"{len(given)} models", expected=f"1 to {len(ascii_uppercase)}")
     models = dict(zip(ascii_uppercase, map(read_side, given), strict=False))

@@ -79,6 +79,8 @@ def read_side(path: Path | Model) -> Side:
     """Read a model file, or a folder that `tsas calibrate`, `diagnose` or `simulate` has written.
 
     A model in memory is checked like its file.
+
+    InputError: it is neither, more than one of them, or not whole.
     """
     if isinstance(path, Model):
         model = model_of(path)

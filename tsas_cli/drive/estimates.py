@@ -60,7 +60,10 @@ class DataSheet:
 
 
 def drive_sheet(manifest: Manifest) -> DataSheet:
-    """Return what the data sheet says; k_p is kL e^{μθ}, the pull in contraction (31)."""
+    """Return what the data sheet says; k_p is kL e^{μθ}, the pull in contraction (31).
+
+    InputError: what follows from it is no property of a drive.
+    """
     rig = manifest.rig
     kL, mu = rig.load_stiffness_N_per_mm, rig.friction_coefficient
     bend, *others = {run.total_bend_rad for run in manifest.run}

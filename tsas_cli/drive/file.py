@@ -111,7 +111,11 @@ def write_drive(
 
 
 def read_drive(path: Path) -> IdentifiedDrive:
-    """Read `drive.toml`, or the folder that holds it."""
+    """Read `drive.toml`, or the folder that holds it.
+
+    InputError: the file is missing, not TOML, of another format or kind, names an unknown
+    parameter, lacks the gain, or a value or its unit is not what it has to be.
+    """
     path = path / DRIVE_FILE if path.is_dir() else path
     file = parse(_DriveTables, read_toml(path), path)
     for name, value in file.parameters.items():
@@ -128,7 +132,10 @@ def read_drive(path: Path) -> IdentifiedDrive:
 
 
 def checked_drive(drive: IdentifiedDrive) -> IdentifiedDrive:
-    """Return a drive in memory whose values can be."""
+    """Return a drive in memory whose values can be.
+
+    InputError: as from `read_drive`.
+    """
     where = "the drive in memory"
     for name, value in vars(drive).items():
         if value is not None:

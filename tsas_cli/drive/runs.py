@@ -56,7 +56,11 @@ class DriveRun:
 def drive_runs(
     recordings: Iterable[Recording], hold: Hold, copied: Mapping[str, CopiedRows] | None = None
 ) -> list[DriveRun]:
-    """Return the runs of a dataset, some of whose rows may be `copied` from other runs."""
+    """Return the runs of a dataset, some of whose rows may be `copied` from other runs.
+
+    InputError: a channel is missing, has a gap, does not move or keeps one speed; the clock is
+    uneven; a run is too short; or x_in does not follow the motor.
+    """
     known = copied or {}
     return [_checked(one, hold, known.get(one.run.id, NONE_COPIED)) for one in recordings]
 

@@ -29,7 +29,10 @@ def each(
 
 
 def threads() -> int:
-    """Return how many threads share such calls."""
+    """Return how many threads share such calls.
+
+    InputError: the environment variable is not a whole number.
+    """
     asked = os.environ.get(THREADS) or str(os.cpu_count() or 1)
     if not asked.isdecimal():
         raise InputError(

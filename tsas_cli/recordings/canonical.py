@@ -40,6 +40,9 @@ def canonical_columns(
 
     The table is a file, or a part of it; `before` is the state after the preceding part, None at
     the beginning of a file.
+
+    InputError: a unit is missing or does not fit, columns differ in length, a value is infinite,
+    the time is not strictly increasing, or there are fewer than two samples.
     """
     lengths = {source: values.size for source, values in table.columns.items()}
     if len(set(lengths.values())) > 1:

@@ -78,7 +78,10 @@ class Expanded:
         return cls(path, path.stat().st_size)
 
     def add(self, more: int, *, what: str = "") -> None:
-        """Count one item of so many bytes."""
+        """Count one item of so many bytes.
+
+        InputError: the file expands to more than a recording of its size can hold.
+        """
         self.items += 1
         if self.items > min(limits.ITEMS, max(1000, self.of_file // 8)):
             raise InputError(
@@ -150,6 +153,7 @@ _PROCESS = _Process()
 def in_another_process(module: str, function: str, path: Path, *rest: Any, kind: str) -> Any:
     """Return the result of a module's function for a file, called in the other process.
 
+    InputError: the function raises it, or the file crashes the process or exceeds a limit.
     OSError: the function raises it.
     """
     size = path.stat().st_size

@@ -40,7 +40,10 @@ class Ingested:
 
 
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
-    """Return the source files, and those below the source folders that fit a pattern ("*.csv")."""
+    """Return the source files, and those below the source folders that fit a pattern ("*.csv").
+
+    InputError: a source does not exist, or a folder holds no such file.
+    """
     found: list[Path] = []
     for source in sources:
         files = _files_in(source, pattern) if source.is_dir() else [source]
@@ -73,6 +76,8 @@ def ingest_files(
 
     `step` is called twice per file: when it is opened and when its run is written. Text tables and
     Parquet are read, converted and written in parts.
+
+    InputError: a file does not match the map, or two files have the same run id.
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}

@@ -123,7 +123,10 @@ class IngestMap(StrictTable):
 
 
 def read_map(path: Path) -> IngestMap:
-    """Return a validated map."""
+    """Return a validated map.
+
+    InputError: the file is missing, is not TOML, is no valid map, or has open questions.
+    """
     content = read_toml(path)
     open_keys = list(_questions(content))
     if open_keys:
@@ -153,6 +156,9 @@ def run_conditions(
     Later sources take precedence: `[run]`, the file name (with its folder), the header, the
     converted groups, the table entry of the run's id. A comma is a decimal mark; an ambiguous one
     (1,250 may be thousands) needs `decimal`.
+
+    InputError: a pattern does not match, a group is missing, no number or ambiguous by a factor of
+    1000, or a unit does not fit.
     """
     folder = path.absolute().parent.name
     groups = _groups(run_map.from_file_name, f"{folder}/{path.name}", path)

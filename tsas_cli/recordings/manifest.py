@@ -175,7 +175,10 @@ class Manifest(_ManifestTable):
 
 
 def read_manifest(folder: Location) -> Manifest:
-    """Return the validated `dataset.toml` of a folder."""
+    """Return the validated `dataset.toml` of a folder.
+
+    InputError: the manifest is missing, is not TOML, or violates format 1.
+    """
     path = folder / MANIFEST_FILE
     if not path.is_file():
         raise InputError(
@@ -189,7 +192,10 @@ def read_manifest(folder: Location) -> Manifest:
 
 
 def read_toml(path: Location) -> Raw:
-    """Return the content of a TOML file."""
+    """Return the content of a TOML file.
+
+    InputError: the file cannot be read, is not TOML, or exceeds a limit.
+    """
 
     def load() -> Raw:
         text = (
@@ -205,7 +211,10 @@ def read_toml(path: Location) -> Raw:
 
 
 def parse(model: type[T], content: Raw, path: object) -> T:
-    """Return the validated content of a file; all its errors become one line."""
+    """Return the validated content of a file; all its errors become one line.
+
+    InputError: a key is missing, unknown or invalid.
+    """
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:

@@ -52,6 +52,7 @@ def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.Par
 
     `where` is the location in error messages; default: the source.
 
+    InputError: it is no regular file, or its columns or its footer exceed a limit.
     ArrowException, OSError, UnicodeDecodeError: the file cannot be read.
     """
     path = where or source
@@ -98,6 +99,8 @@ def check_size(
 
     The columns `names` are to be read, at once if `whole`; `size` is that of the file [bytes], by
     default that of `path`.
+
+    InputError: it does; or the columns exceed the memory, if they are read whole.
     """
     of_file = cast("Path", path).stat().st_size if size is None else size
     expanded = Expanded(path, of_file, limits.PARQUET_EXPANSION)
@@ -153,7 +156,11 @@ def column_of(values: Floats) -> pa.Array:
 
 
 def checked_file(folder: Location, run: Run) -> ParquetSource:
-    """Return the source that Parquet is read from, after its checksum matches the manifest."""
+    """Return the source that Parquet is read from, after its checksum matches the manifest.
+
+    InputError: the file is missing, leaves its folder or has another checksum, or cannot be
+    fetched.
+    """
     if isinstance(folder, Address):
         path = folder / run.file
         try:
@@ -174,7 +181,10 @@ def checked_file(folder: Location, run: Run) -> ParquetSource:
 
 
 def local_file(folder: Path, run: Run) -> Path:
-    """Return a run's file in a local folder."""
+    """Return a run's file in a local folder.
+
+    InputError: the file is missing, or a link leads out of the folder.
+    """
     path = folder / run.file
     if not path.is_file():
         raise _missing(path, run)
@@ -199,7 +209,11 @@ def changed(path: Location, run: Run) -> InputError:
 
 
 def fetched(address: Address, sha256: str) -> mmap.mmap | None:
-    """Return a recording's bytes, mapped from disk; None if the checksum differs."""
+    """Return a recording's bytes, mapped from disk; None if the checksum differs.
+
+    InputError: there is no such object (`NotThereError`), the storage fails, or the disk has no
+    room for the recording.
+    """
     key = address, sha256
     with _LOCK:
         content = _CACHE.pop(key, None) or _fetch(address, sha256)

@@ -49,7 +49,10 @@ class Piece:
 
 
 def long_run(folder: Location, run: Run) -> RunColumns | None:
-    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet."""
+    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet.
+
+    InputError: its file, columns or units violate the manifest or format 1.
+    """
     if isinstance(folder, Path):
         path = folder / run.file
         try:
@@ -77,6 +80,9 @@ def pieces(
     """Yield columns in pieces of `MOST_ROWS` rows; consecutive pieces share `overlap` rows.
 
     With `strict=False`, time may stop or decrease, and values may be implausible.
+
+    InputError: the file cannot be read, a column is not numeric or holds an implausible value, or
+    time does not increase.
     """
     buffered: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0

@@ -41,6 +41,10 @@ def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Record
 
     With `strict=False`, time may decrease or repeat, and values may be implausible, so that
     `tsas check` can describe them.
+
+    InputError: the file is missing, leaves its folder, is not Parquet or has another checksum; a
+    column is missing, in another unit, not numeric or holds an implausible value; time is not
+    strictly increasing, or in implausible steps.
     """
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
@@ -79,7 +83,11 @@ class RunColumns:
         return int(self.file.metadata.num_rows)
 
     def read(self, name: str) -> Floats:
-        """Return a column as float64, shape (n,), null as NaN."""
+        """Return a column as float64, shape (n,), null as NaN.
+
+        InputError: it is missing, not numeric, holds an implausible value or cannot be read; time
+        is not strictly increasing, or in implausible steps.
+        """
         if name not in self.names:
             raise InputError(
                 f"column {name} is missing",
@@ -95,7 +103,11 @@ class RunColumns:
 
 
 def open_run(folder: Location, run: Run) -> RunColumns:
-    """Return one run, opened and validated as far as possible without reading samples."""
+    """Return one run, opened and validated as far as possible without reading samples.
+
+    InputError: the file is missing, leaves its folder, is not Parquet or has another checksum; time
+    is missing, or a column is in another unit.
+    """
     path = folder / run.file
     source = checked_file(folder, run)
     with reading(path):
@@ -107,7 +119,11 @@ def open_run(folder: Location, run: Run) -> RunColumns:
 
 
 def read_columns(path: Path) -> dict[str, Floats]:
-    """Return the canonical columns of a Parquet file that belongs to no dataset."""
+    """Return the canonical columns of a Parquet file that belongs to no dataset.
+
+    InputError: it does not exist or is no Parquet file; `time_s` is missing or does not increase; a
+    column is in another unit or not numeric.
+    """
     if not path.is_file():
         raise InputError("does not exist", where=path, expected="a Parquet file")
     table, _ = _table_of(path, path)
@@ -153,7 +169,10 @@ def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
 
 
 def floats_of(table: pa.Table, name: str, path: Location, *, first_row: int = 0) -> Floats:
-    """Return a column as float64, null as NaN; `first_row` is the number of its first row."""
+    """Return a column as float64, null as NaN; `first_row` is the number of its first row.
+
+    InputError: it is not numeric, holds an infinite value, or lacks the time of a row.
+    """
     values = floats_from(table.column(name))
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])

@@ -157,7 +157,11 @@ def is_address(given: str) -> bool:
 
 
 def location_of(given: "str | Location") -> Location:
-    """Return a local path, or an address on object storage; file:///… is a local path too."""
+    """Return a local path, or an address on object storage; file:///… is a local path too.
+
+    InputError: the scheme is unknown, no bucket is named, or the address holds a key or a
+    signature.
+    """
     if not isinstance(given, str):
         return given
     if not is_address(given):

@@ -27,7 +27,10 @@ _UNREACHED = {
 
 
 def timeout_s() -> float:
-    """Return the time limit of a request [s], of the environment where it says one."""
+    """Return the time limit of a request [s], of the environment where it says one.
+
+    InputError: it says no time, or one that nobody waits.
+    """
     given = os.environ.get(TIMEOUT) or str(TIMEOUT_S)
     try:
         return TIMEOUTS_S(float(given))

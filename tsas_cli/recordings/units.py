@@ -75,6 +75,8 @@ def conversion(
     `unit` has any common spelling, `to` is s, mm, N, rpm, rad or °C. One `unit` is `factor` times
     `factor_unit`, which counts and volts need; `pulley_radius_mm` converts an angle to mm, or a
     torque to N; `where` is the location in error messages.
+
+    InputError: the unit is unknown or not convertible, or the factor is zero or not finite.
     """
     if factor is None and is_label(unit):
         raise InputError(

@@ -36,6 +36,7 @@ class WrittenRuns(Mapping[str, Recording]):
         """Return a run.
 
         KeyError: there is no such run.
+        InputError: its file is missing or damaged.
         """
         return Recording(self.runs[run], read_columns(self.folder / f"{run}.parquet"))
 
@@ -105,7 +106,10 @@ def parquet_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table
 
 
 def result_file(folder: Path, run: str) -> Path:
-    """Return the file of a stage's result for a run."""
+    """Return the file of a stage's result for a run.
+
+    InputError: the run's id leads out of the folder, or a link does.
+    """
     path = folder / "runs" / f"{run}.parquet"
     try:
         check_run_name(run)
@@ -123,7 +127,10 @@ def names_of(path: Path) -> list[str]:
 
 
 def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
-    """Return columns of such a file by name, shape (n,) each, null as NaN."""
+    """Return columns of such a file by name, shape (n,) each, null as NaN.
+
+    InputError: the file cannot be read or lacks a column.
+    """
     with reading(path), open_parquet(path) as file:
         check_size(file, path, names, whole=True)
         table = file.read(columns=list(names))

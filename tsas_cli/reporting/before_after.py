@@ -67,7 +67,10 @@ class ShownFit:
 
 
 def pictures(inputs: Inputs) -> tuple[Picture, ...]:
-    """Return the loop and its enlargement, or a second channel's; none without a diagnosis."""
+    """Return the loop and its enlargement, or a second channel's; none without a diagnosis.
+
+    InputError: a recording or what the diagnosis has written of it cannot be read.
+    """
     found = best_fits(inputs)
     if found is None:
         return ()
@@ -178,6 +181,8 @@ def best_fits(inputs: Inputs) -> tuple[ShownFit, ShownFit | None] | None:
     """Return the run's channel with the largest gain, and another one with a gain.
 
     f_in comes first where its gain is at least half of the largest one. None without a diagnosis.
+
+    InputError: a recording or what the diagnosis has written of it cannot be read.
     """
     gains = {
         (fit.channel, fit.run): fit.gain

@@ -214,7 +214,10 @@ def _draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
 
 
 def tracked_page(it: tracked.Tracks, advance: Callable[[], None] = lambda: None) -> str:
-    """Return the whole page as HTML; `advance` is called after each section."""
+    """Return the whole page as HTML; `advance` is called after each section.
+
+    InputError: a run cannot be read.
+    """
     return rendered(
         name="A and B, side by side",
         about=" and ".join(str(path) for path in it.paths.values()),

@@ -120,7 +120,10 @@ class Inputs:
 
 
 def series_of(folder: Path, run: str, rows: int, column: str) -> Floats:
-    """Return a column of a run of so many samples from a stage's folder, NaN for gaps."""
+    """Return a column of a run of so many samples from a stage's folder, NaN for gaps.
+
+    InputError: the file cannot be read, or does not belong to this recording.
+    """
     path = result_file(folder, run)
     values = columns_of(path, (column,))[column]
     check_rows(path, len(values), rows)
@@ -128,7 +131,10 @@ def series_of(folder: Path, run: str, rows: int, column: str) -> Floats:
 
 
 def written_in(folder: Path, run: str) -> frozenset[str]:
-    """Return the columns that a stage's folder has of a run, none without the run."""
+    """Return the columns that a stage's folder has of a run, none without the run.
+
+    InputError: the file cannot be read.
+    """
     path = result_file(folder, run)
     return frozenset(names_of(path) if path.is_file() else ())
 
@@ -137,6 +143,9 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     """Recognise each folder by the files in it, read all, and find the dataset.
 
     `several` simulations may be given, else one.
+
+    InputError: a folder is of no known kind, a kind is a duplicate, no dataset can be found, a
+    stage has read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders, several=several)
     given = tuple(
@@ -175,7 +184,10 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
 
 
 def read_stage(kind: type[Stage], folder: Path) -> Stage:
-    """Read what a stage has written; control characters in its texts are made visible."""
+    """Read what a stage has written; control characters in its texts are made visible.
+
+    InputError: the file cannot be read, or does not say what such a file says.
+    """
     path = folder / kind.FILE
     content = read_json(path)
     visible = _visible(content) if isinstance(content, dict) else content

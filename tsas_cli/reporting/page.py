@@ -48,6 +48,8 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
 
     A page of a drive, of predictions, of tracked runs, or of what a better model is worth in
     tracking, leaves out what was not given; any other says what is missing.
+
+    InputError: a recording or a simulated run cannot be read.
     """
     kinds = (ClosingFile, TrackingFile, DriveFile, PredictionFile)
     alone = any(inputs.get(kind) is not None for kind in kinds)

@@ -36,7 +36,10 @@ _OPTIONS = (
 
 
 def browser() -> str:
-    """Return the path of the first of `BROWSERS` that is there."""
+    """Return the path of the first of `BROWSERS` that is there.
+
+    InputError: none is.
+    """
     for name in BROWSERS:
         if path := shutil.which(name):
             return path
@@ -48,7 +51,10 @@ def browser() -> str:
 
 
 def print_page(html: str, pdf: Path) -> None:
-    """Print a page into a file, on A4, with its headings as the outline."""
+    """Print a page into a file, on A4, with its headings as the outline.
+
+    InputError: no browser is there, or it fails.
+    """
     program = browser()
     with tempfile.TemporaryDirectory(prefix="tsas-pdf-", ignore_cleanup_errors=True) as name:
         folder = Path(name)

@@ -59,7 +59,10 @@ class Simulated:
         return self._written(recording, X_IN)
 
     def predicted(self, recording: Recording, column: str) -> Floats | None:
-        """Return a channel of a run as predicted, shape (n,), None where it is not."""
+        """Return a channel of a run as predicted, shape (n,), None where it is not.
+
+        InputError: the file cannot be read, or does not belong to this recording.
+        """
         return self._written(recording, self.named(column))
 
     def _written(self, recording: Recording, name: str) -> Floats | None:

@@ -43,6 +43,10 @@ def new_folder(
 
     `stage` writes it, as its JSON names it; with `force` an earlier output of the same stage is
     replaced. The folder may not be, contain or lie inside one of the call's `inputs`.
+
+    InputError: `path` exists and is not an empty folder, and `force` is not set; or, with `force`,
+    it is no earlier output of the same stage, an input, or the current folder; or it is not
+    writable.
     """
     refuse = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
     return _new(path, refuse, folder=True, force=force)
@@ -91,6 +95,9 @@ def new_file(
     With `force` an earlier output of the same command is replaced, which has `mark` in its first
     4 KiB; an empty mark allows any file, since the path belongs to the program. The file may not
     be one of the call's `inputs` or lie inside one.
+
+    InputError: `path` exists and `force` is not set; or, with `force`, it is no earlier output or
+    an input; or it is a folder or not writable.
     """
     refuse = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
     return _new(path, refuse, folder=False, force=force)
@@ -116,7 +123,10 @@ def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -
 
 
 def own_file(path: Path) -> AbstractContextManager[Path]:
-    """Give what `new_file` does, for a file whose path belongs to the program: it is replaced."""
+    """Give what `new_file` does, for a file whose path belongs to the program: it is replaced.
+
+    InputError: it is a folder, or not writable.
+    """
     return new_file(path, mark=b"", inputs=(), force=True)
 
 
@@ -144,7 +154,11 @@ def json_text(content: Any) -> str:
 
 
 def read_json(path: Path) -> Any:
-    """Return the content of a JSON file, in which no key may be a duplicate."""
+    """Return the content of a JSON file.
+
+    InputError: the file is missing or unreadable, is not JSON, has a duplicate key, or exceeds a
+    limit.
+    """
 
     def load() -> Any:
         limits.fits(path, limits.JSON_EXPANDS * path.stat().st_size)

@@ -47,6 +47,7 @@ _DOTTED = re.compile(
 def text_of(path: Path, most: int) -> str:
     """Return the text of a UTF-8 file of at most `most` bytes, without its byte-order mark.
 
+    InputError: the file is not regular, or too large.
     OSError, UnicodeDecodeError: the file cannot be read, or is not UTF-8.
     """
     # Without O_NONBLOCK, opening a pipe without a writer would block.

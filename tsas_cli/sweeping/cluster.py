@@ -45,6 +45,9 @@ def on_cluster(
     failed. If the loop over the outcomes ends early, pending tasks are cancelled. `work` is the
     function to call, `module:function`, `address` what `dask scheduler` prints, `shared` a file
     that every worker has to see, to check the shared file system.
+
+    InputError: dask is not installed, no scheduler responds at the address or it ends, or a worker
+    is missing, has other versions, or does not see the file.
     """
     with _connected(address) as client:
         _refuse_workers(client, address, shared)

@@ -28,6 +28,9 @@ def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
     """Yield the folder for the tasks of a sweep, locked against other processes.
 
     Temporary files of killed workers are removed before and after.
+
+    InputError: another sweep writes to it, it holds something else or an input, or it cannot be
+    written.
     """
     text_name(out.absolute())
     refuse_kind(out, folder=True)

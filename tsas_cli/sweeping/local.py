@@ -21,6 +21,8 @@ def in_processes(
     `work` is the function to call, `module:function`, in at most `workers` processes. A task whose
     worker dies is repeated once by a new one. If the loop over the outcomes ends early, the workers
     are killed.
+
+    InputError: no further process can be started.
     """
     crew = _Crew(work)
     pool = ThreadPoolExecutor(max(1, min(workers, len(texts))))

@@ -91,7 +91,10 @@ class SweepPlan(StrictTable):
 
 
 def read_plan(given: Path | Mapping[str, Any]) -> tuple[SweepPlan, Path]:
-    """Return a plan, from its file or its content, and the folder of its relative paths."""
+    """Return a plan, from its file or its content, and the folder of its relative paths.
+
+    InputError: the plan cannot be read, or a key is unknown or invalid.
+    """
     if isinstance(given, Path):
         return parse(SweepPlan, read_toml(given), given), given.parent
     return parse(SweepPlan, dict(given), "the plan"), Path()
@@ -104,6 +107,9 @@ def points_of(plan: SweepPlan, base: Path) -> list[Row]:
     """Return the values of every task by name; one empty point without variation.
 
     The last axis varies fastest. Each row of the table is combined with every point of the axes.
+
+    InputError: the table cannot be read, shares a name with an axis or option, or the points are
+    too many.
     """
     axes = plan.axes()
     sets = [Row()] if plan.sets is None else _sets(base / plan.sets)

@@ -85,6 +85,8 @@ def sweep_tasks(
 
     `out` is a new folder, or that of an earlier sweep. The pool runs tasks, and yields their number
     and outcome. `inputs` are files besides those of the tasks.
+
+    InputError: the folder cannot be used or holds an input, or the pool fails.
     """
     inputs = [*inputs, *{Path(path) for task in tasks for path in task.places.values()}]
     with sweep_folder(out, inputs) as folder:

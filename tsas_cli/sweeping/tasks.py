@@ -49,7 +49,11 @@ class Task:
 
 
 def tasks_of(plan: SweepPlan, base: Path, options: Options) -> list[Task]:
-    """Return the tasks of a plan, dataset by dataset."""
+    """Return the tasks of a plan, dataset by dataset.
+
+    InputError: a dataset or file does not exist, a name is unknown, a value is invalid, or tasks
+    are duplicate.
+    """
     sources: list[SweepSource | None] = [None]
     if plan.datasets:
         sources = [*sources_of(plan.datasets, base, each_run=plan.each_run)]
@@ -109,6 +113,8 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Sw
     """Return the datasets of names and patterns, in order; with `each_run` their runs.
 
     A pattern such as `rigs/*` selects the folders that hold a `dataset.toml`.
+
+    InputError: a folder holds no dataset, or a pattern matches none.
     """
     found: dict[Path, SweepSource] = {}
     for name in names:

@@ -44,6 +44,8 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
     """Return the named values of a task by kind; their paths are relative to `base`.
 
     `options` holds the type of each keyword of the stage's call.
+
+    InputError: a name is unknown, a value is invalid, or a file does not exist.
     """
     kinds: dict[str, Raw] = {kind: {} for kind in KINDS}
     paths, of_runs = dict[str, Path](), "model" in options and "plant" not in options
@@ -139,7 +141,10 @@ def _number(name: str, value: Any) -> float:
 
 
 def with_settings(path: Path | None, changes: Mapping[str, Any]) -> Raw:
-    """Return the content of a settings file, or of none, with some dotted keys replaced."""
+    """Return the content of a settings file, or of none, with some dotted keys replaced.
+
+    InputError: the file cannot be read, or a part of a dotted key is no table.
+    """
     content = {} if path is None else read_toml(path)
     for key, value in changes.items():
         *tables, last = key.split(".")

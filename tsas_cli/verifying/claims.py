@@ -47,7 +47,10 @@ class Claim:
 
 
 def claims_of(path: Path) -> Iterator[Claim]:
-    """Yield the checksums that a file records of others; none if tsas has not written it."""
+    """Yield the checksums that a file records of others; none if tsas has not written it.
+
+    InputError: the file cannot be read, or is not in the format of its name.
+    """
     if path.name == SUMS:
         yield from _of_sums(path)
     elif path.name == MANIFEST_FILE:
@@ -124,7 +127,10 @@ def _of_file(path: Path, record: object) -> Iterator[Claim]:
 
 
 def _of_page(path: Path) -> Iterator[Claim]:
-    """Yield the checksum of a page, and those of its inputs; none if it is no page of tsas."""
+    """Yield the checksum of a page, and those of its inputs; none if it is no page of tsas.
+
+    InputError: the page cannot be read, or what it ends with is broken.
+    """
     try:
         content = path.read_bytes()
     except OSError as error:

@@ -50,6 +50,8 @@ def verify_all(
 
     `raw` are folders to search for raw recordings that have moved. `step` is called after each
     file.
+
+    InputError: there is no output of tsas, or a single file records no checksum.
     """
     if not start.exists():
         raise InputError("does not exist", where=start, expected="a folder, or a page")

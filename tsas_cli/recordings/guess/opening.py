@@ -32,7 +32,10 @@ class Opened:
 
 
 def open_file(path: Path) -> Opened:
-    """Return a file of any supported format, opened with the options that it requires."""
+    """Return a file of any supported format, opened with the options that it requires.
+
+    InputError: the format is unknown, or the file is damaged or does not hold exactly one table.
+    """
     required, asked = _table(path)
     try:
         return _opened(path, dict(required), asked)

@@ -98,7 +98,10 @@ class Report:
 
 
 def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
-    """Return the findings of `check_runs`, and those on the whole dataset."""
+    """Return the findings of `check_runs`, and those on the whole dataset.
+
+    InputError: no run can be read.
+    """
     of_runs = check_runs(dataset, step)
     of_all = [
         replace(one, code=check.code) for check in DATASET_CHECKS for one in check.find(dataset)
@@ -110,6 +113,8 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     """Return the findings on the manifest and on each run by itself; `step` counts runs.
 
     An unreadable run is a finding (`unreadable`), as long as another run can be read.
+
+    InputError: no run can be read.
     """
     results: Results = [
         replace(one, code=check.code)

@@ -62,14 +62,21 @@ SUFFIXES = tuple(_ALL)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
-    """Return the requested columns of one file."""
+    """Return the requested columns of one file.
+
+    InputError: the suffix is unknown, the file is empty or damaged, or a requested column is
+    missing or not numeric.
+    """
     return whole(batches(path, options, wanted))
 
 
 def batches(
     path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
 ) -> Iterator[ColumnTable]:
-    """Yield the requested columns in parts of `BATCH_ROWS` rows, or whole for some formats."""
+    """Yield the requested columns in parts of `BATCH_ROWS` rows, or whole for some formats.
+
+    InputError: as from `read`; a fault in a later part is raised with that part.
+    """
     with _checked(path, options) as (module, file):
         if module in _IN_PARTS:
             yield from _call("batches", file, options, wanted)

@@ -96,7 +96,10 @@ _Topics = Iterator[tuple[list[Topic], dict[str, str]]]  # and advice where none 
 
 @contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
-    """Yield the fields of all topics whose type is defined in the file, or by ROS itself."""
+    """Yield the fields of all topics whose type is defined in the file, or by ROS itself.
+
+    InputError: there is none.
+    """
     with _TOPICS_OF[path.suffix.lower()](path) as (topics, advice):
         yield Offered(columns_of(topics, path, **advice))
 
@@ -106,6 +109,8 @@ def columns_of(topics: Sequence[Topic], path: Path, **advice: str) -> list[Colum
 
     The clock of a topic is the stamp in the header of its messages, else when they were published
     or logged; it counts from the first message of the file.
+
+    InputError: no topic can be decoded; `advice` says what is expected, or what to do.
     """
     used, unknown = [], []
     for topic in topics:

@@ -35,6 +35,7 @@ def is_packed(path: Path) -> bool:
 def converted(path: Path, options: ReadOptions, convert: Callable[..., Path]) -> Path:
     """Return the temporary file of a known format that `convert` makes of `path`.
 
+    InputError: it is damaged, or holds no such file.
     OSError: a file cannot be read or written.
     """
     key = (path.absolute(), state_of(path), options.table, options.encoding)
@@ -62,7 +63,11 @@ _PART = 1 << 20  # bytes at a time
 
 
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
-    """Unpack the file of a known suffix inside `path` into a folder; return its path."""
+    """Unpack the file of a known suffix inside `path` into a folder; return its path.
+
+    InputError: it is damaged, encrypted, holds no or several known files, or unpacks to more than a
+    recording can hold.
+    """
     packing = path.suffix.lower()
     try:
         if packing == ".zip":

@@ -43,6 +43,8 @@ def batches(
 
     Dates become seconds since the first one in their column, times of day seconds since midnight.
     From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.
+
+    InputError: a column is missing, a row differs in its number of fields, or a cell holds text.
     """
     layout = detect(path, options)
     at = resolve(wanted, layout.names, path)

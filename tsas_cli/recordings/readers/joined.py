@@ -45,7 +45,11 @@ def _listed(path: Path) -> dict[str, JoinedFile]:
 
 @contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
-    """Yield the columns of numbers of all files as `part.column`, with the clock of their file."""
+    """Yield the columns of numbers of all files as `part.column`, with the clock of their file.
+
+    InputError: the list or a file is wrong, a file is not in the list's folder, or its clock states
+    no unit or counts from its own first date and the list no offset.
+    """
     parts = _listed(path).items()
     yield Offered([column for name, part in parts for column in _columns(path, name, part)])
 

@@ -20,6 +20,8 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     It is a list of rows, a list of records, or an object of columns, under the key `table` of the
     map (nested with dots). A key `columns` beside the rows names their columns; else they are
     numbered. Records in records are named by their paths.
+
+    InputError: it is no such table.
     """
     above: Raw = {}
     content = read_json(path)
@@ -36,7 +38,10 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the keys of rows, records or columns, nested with dots."""
+    """Return the keys of rows, records or columns, nested with dots.
+
+    InputError: the file is not JSON, or nested too deep.
+    """
     return list(_tables(read_json(path), ""))
 
 
@@ -82,7 +87,10 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
 
 
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
-    """Write the lines as one JSON list into a folder; return its path."""
+    """Write the lines as one JSON list into a folder; return its path.
+
+    InputError: the file is not UTF-8.
+    """
     made = folder / "lines.json"
     before = "["
     try:

@@ -13,7 +13,10 @@ _SEPARATORS = {"Tab": "\t", "Comma": ","}
 
 
 def convert(path: Path, folder: Path, options: ReadOptions) -> Path:
-    """Write the samples with names and units as text with tabs into a folder; return its path."""
+    """Write the samples with names and units as text with tabs into a folder; return its path.
+
+    InputError: it is no such file, or its segments have different channels.
+    """
     made = folder / "samples.tsv"
     with (
         path.open(encoding=encoding_of(path), errors="replace") as lines,

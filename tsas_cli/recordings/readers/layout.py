@@ -56,6 +56,9 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     Names are in the first line that is no comment, or, if that line holds numbers, in the last
     comment line if it has as many fields. A line without numbers below the names holds the units;
     else a unit in brackets at the end of a name counts.
+
+    InputError: the file is not text in its encoding, holds no row of numbers, has more or fewer
+    names than fields in its first row, or its commas are ambiguous.
     """
     comments, lines = _head(path, options)
     if not lines:

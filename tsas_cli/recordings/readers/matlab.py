@@ -37,6 +37,8 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     A vector is a column with its name, those of a matrix are as in `columns_in`, and a member of a
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
     `table` in the map, names are relative to that variable.
+
+    InputError: the file is damaged, or there are several captures.
     """
     content = _content(path)
     for name in options.table.split(".") if options.table else ():
@@ -160,7 +162,10 @@ def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 
 def channels_of(capture: Mapping[str, Any], path: Path) -> Offered:
-    """Return the channels of a capture, with their clocks in s."""
+    """Return the channels of a capture, with their clocks in s.
+
+    InputError: a channel, when it is loaded, differs in length from its clock.
+    """
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
     channels = [
         Column(

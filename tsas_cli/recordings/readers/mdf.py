@@ -38,7 +38,10 @@ _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 
 @contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
-    """Yield the channels of an MDF file, with those marked as invalid as NaN."""
+    """Yield the channels of an MDF file, with those marked as invalid as NaN.
+
+    InputError: asammdf is not installed, or the file's blocks or samples exceed a limit.
+    """
     asammdf = optional("asammdf", extra="mdf")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # our error repeats its log
     check_blocks(path)

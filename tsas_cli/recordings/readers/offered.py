@@ -52,7 +52,10 @@ class Offered:
 
 
 def names(path: Path, module: str, kind: str, options: ReadOptions) -> list[str]:
-    """Return the names of a file's columns; `module` has a function `offered` for its format."""
+    """Return the names of a file's columns; `module` has a function `offered` for its format.
+
+    InputError: the file is damaged, or the package for its format is not installed.
+    """
     with foreign(path, kind), import_module(module).offered(path, options) as offered:
         found: list[str] = offered.names
         return found
@@ -64,6 +67,9 @@ def read(
     """Return the requested columns of a file.
 
     Dates become seconds since the first one of their column, durations become seconds.
+
+    InputError: as from `names`; or a column is missing or not numeric, the columns hold more than a
+    file of this size can, their clocks differ and `resample` is not set, or a clock is no time.
     """
     with foreign(path, kind), import_module(module).offered(path, options) as offered:
         at = resolve(wanted, offered.names, path)

@@ -23,6 +23,8 @@ def batches(path: Path, _: ReadOptions, wanted: Sequence[ColumnSource]) -> Itera
     """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
     Dates become seconds since the first one in their column, durations become seconds.
+
+    InputError: the file is damaged, or a column is missing or not numeric.
     """
     with reading(path), open_parquet(path) as file:
         schema = file.schema_arrow

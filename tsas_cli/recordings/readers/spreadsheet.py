@@ -13,14 +13,21 @@ _FAULTS = ("#N/A", "#DIV/0!", "#VALUE!", "#REF!", "#NUM!", "#NAME?", "#NULL!")  
 
 
 def tables(path: Path) -> list[str]:
-    """Return the names of the sheets with a row of numbers, the longest first."""
+    """Return the names of the sheets with a row of numbers, the longest first.
+
+    InputError: the file is damaged, or python-calamine is not installed.
+    """
     sheets = _sheets(path)
     found = [name for name in sheets if _has_numbers(sheets[name])]
     return sorted(found, key=lambda name: -len(sheets[name]))
 
 
 def convert(path: Path, folder: Path, options: ReadOptions) -> Path:
-    """Write a sheet as text with tabs into a folder; return its path. Rows keep their numbers."""
+    """Write a sheet as text with tabs into a folder; return its path. Rows keep their numbers.
+
+    InputError: as from `tables`; or there are several sheets of numbers and the map names none, or
+    there is none of that name.
+    """
     sheets = _sheets(path)
     found = [name for name in sheets if _has_numbers(sheets[name])]
     chosen = options.table or next(iter(found), None)

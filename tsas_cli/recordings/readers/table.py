@@ -65,6 +65,8 @@ def resolve(
     """Return the index of each requested column among a file's columns.
 
     `wanted` are names, or numbers from 1; a column without a name is empty text in `names`.
+
+    InputError: a column is missing, its name is not unique, or there are too many columns.
     """
     limits.columns(names, path)
     return {source: _index(source, names, path) for source in wanted}
@@ -96,7 +98,10 @@ def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
 
 
 def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> Floats:
-    """Return values as float64; null becomes NaN. `first` is the number of the first row."""
+    """Return values as float64; null becomes NaN. `first` is the number of the first row.
+
+    InputError: a value is not numeric, or the values are complex, dates or durations.
+    """
     # NumPy would drop the imaginary part or the unit.
     if isinstance(values, np.ndarray) and values.dtype.kind in "cmM":
         raise InputError(

@@ -70,6 +70,9 @@ def on_one_clock(
     are those of the clock in the map: `time`, its number, both or none. With `resample`, different
     times are interpolated linearly onto those of the channel with the most samples, within the
     interval that all channels cover.
+
+    InputError: there is no channel; the times differ and `resample` is not set, do not increase, or
+    never overlap.
     """
     if not series:
         raise InputError("the map has no channel besides the time", where=path)

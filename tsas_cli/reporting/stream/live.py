@@ -86,7 +86,10 @@ class LiveStream:
 
 @contextmanager
 def live_stream(address: str, name: str) -> Iterator[LiveStream]:
-    """Yield a stream into the viewer at `address`; see `to_viewer`."""
+    """Yield a stream into the viewer at `address`; see `to_viewer`.
+
+    InputError: the viewer does not take it.
+    """
     with TemporaryDirectory(prefix="tsas-live-") as folder, to_viewer(address, name) as recorder:
         stream = LiveStream(recorder, Path(folder))
         yield stream

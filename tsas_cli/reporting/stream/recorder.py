@@ -86,7 +86,10 @@ class Recorder:
         self.stream.send_blueprint(layout)
 
     def settle(self) -> None:
-        """Wait until what was recorded is written: what waits for it is kept in memory."""
+        """Wait until what was recorded is written: what waits for it is kept in memory.
+
+        InputError: the file or the viewer does not take it.
+        """
         try:
             self.stream.flush(timeout_sec=SLOWEST_S)
         except RuntimeError as error:
@@ -136,6 +139,8 @@ def to_file(path: Path, name: str, layout: Blueprint | None = None) -> Iterator[
     """Record into a file that is there, whole, when the block ends without an error.
 
     The viewer calls the recording `name`, and opens with `layout` where it is known from the start.
+
+    InputError: the file is there, or cannot be written; Rerun is switched off.
     """
     with new_file(path, mark=b"", inputs=()) as temporary, _strict():
         stream = _opened(name, layout)
@@ -157,7 +162,10 @@ def to_file(path: Path, name: str, layout: Blueprint | None = None) -> Iterator[
 
 @contextmanager
 def to_viewer(address: str, name: str) -> Iterator[Recorder]:
-    """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`."""
+    """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`.
+
+    InputError: it does not take what it is sent; Rerun is switched off.
+    """
     with _strict():
         stream = _opened(name, None)
         stream.connect_grpc(address)
@@ -174,6 +182,8 @@ def is_finished(path: Path) -> bool:
 
     Only the heads of its parts are read, however large it is. Rerun's own `rerun rrd verify` lets
     empty files pass.
+
+    InputError: it is no stream, holds none, or is cut off within a part.
     """
     try:
         with warnings.catch_warnings():

@@ -66,7 +66,10 @@ def stream_of(inputs: Inputs) -> Stream:
 
 
 def write_stream(inputs: Inputs, path: Path, *, step: Callable[[], None] = lambda: None) -> None:
-    """Write what there is to see into a file for the viewer; `step` is called after each run."""
+    """Write what there is to see into a file for the Rerun viewer; `step` is called after each run.
+
+    InputError: a file cannot be read, or `path` exists.
+    """
     stream = stream_of(inputs)
     with to_file(path, stream.name, stream.layout) as recorder:
         stream.record(recorder, step)
@@ -120,6 +123,9 @@ def shown_stream(
 
     A folder that holds a stream shows that; several folders make one of their own, and `step` is
     called after each run.
+
+    InputError: a path is missing, no stream and no folder of a stage, or a file stands among
+    others.
     """
     local = [path for path in paths if isinstance(path, Path)]
     for path in local:

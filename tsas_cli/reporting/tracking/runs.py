@@ -82,7 +82,10 @@ class RunsUnderCondition:
 
 
 def read_conditions(inputs: Inputs, tracking: TrackingFile) -> tuple[RunsUnderCondition, ...]:
-    """Read what the plots need, in the order of the file."""
+    """Read what the plots need, in the order of the file.
+
+    InputError: a run cannot be read, or lacks a column.
+    """
     folder = inputs.folders[TrackingFile]
     found: dict[str, list[TrackedRun]] = {}
     for result in tracking.results:

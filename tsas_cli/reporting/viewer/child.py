@@ -43,7 +43,10 @@ class Child:
     log: IO[bytes]
 
     def wait(self, at_most_s: float = math.inf) -> None:
-        """Return when the viewer has been closed, or after some seconds."""
+        """Return when the viewer has been closed, or after some seconds.
+
+        InputError: it has failed.
+        """
         until = time.monotonic() + at_most_s
         while self.process.poll() is None and time.monotonic() < until:
             time.sleep(LOOK_S)  # short: not every system lets a signal interrupt a long wait
@@ -67,6 +70,8 @@ def program() -> Path:
     """Return the path of the viewer, which is inside the package `rerun_cli`.
 
     The script `rerun` beside Python only calls it: who ends the script leaves it running.
+
+    InputError: the package or its program is not installed.
     """
     spec = find_spec("rerun_cli")
     folders = [] if spec is None else list(spec.submodule_search_locations or ())
@@ -83,7 +88,10 @@ def program() -> Path:
 
 @contextmanager
 def viewer_child(arguments: Sequence[str], *, port: int) -> Iterator[Child]:
-    """Start the viewer, wait until its port answers, and end it when the block ends."""
+    """Start the viewer, wait until its port answers, and end it when the block ends.
+
+    InputError: it is not installed, fails at its start, or does not answer.
+    """
     call = [str(program()), *arguments]
     if sys.platform == "linux":
         call = [sys.executable, "-I", "-S", "-c", ASK, *call]
@@ -125,7 +133,10 @@ def _await_response(child: Child, port: int) -> None:
 
 
 def free_ports(count: int, first: int | None = None) -> tuple[int, ...]:
-    """Return ports on 127.0.0.1 that nothing listens on: any, or `first` and those after it."""
+    """Return ports on 127.0.0.1 that nothing listens on: any, or `first` and those after it.
+
+    InputError: one of those asked for is in use, or may not be had.
+    """
     wanted = [0] * count if first is None else range(first, first + count)
     with ExitStack() as held:  # all at once, so that no two are the same
         return tuple(held.enter_context(_listening(port)).getsockname()[1] for port in wanted)
@@ -146,7 +157,10 @@ def _listening(port: int) -> socket.socket:
 
 
 def drawn_with() -> str:
-    """Return what the viewer draws with, for a person: "Vulkan on …"."""
+    """Return what the viewer draws with, for a person: "Vulkan on …".
+
+    InputError: it is not installed, or cannot draw.
+    """
     with tempfile.TemporaryDirectory(prefix="tsas-draw-") as folder:
         picture = Path(folder) / "picture.png"
         (port,) = free_ports(1)

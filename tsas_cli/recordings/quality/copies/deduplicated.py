@@ -29,7 +29,10 @@ class DeduplicatedDataset:
 
 
 def without_duplicates(dataset: Dataset) -> DeduplicatedDataset:
-    """Return a dataset without duplicate samples."""
+    """Return a dataset without duplicate samples.
+
+    InputError: a run cannot be read, or two runs hold the same samples under different conditions.
+    """
     by_run: dict[str, list[Copy]] = {}
     for copy in find_copies(dataset).copies:
         if copy.contradicts:
