@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import proven as p
@@ -83,87 +82,6 @@ def test_what_a_law_of_one_place_lacks_is_no_second_cause(first, second, law, re
     failed = p._beside_another_law(less, both).failed
     assert bool(failed) == refused
     assert not failed or "nonlinear load spring" in failed[0] or "curved scale" in failed[0]
-
-
-EVEN, ODD = np.full(20, 10.0), 10.0 + 0.1 * (-1.0) ** np.arange(20)
-FEW = np.array([1.0, *np.full(19, 10.01)])  # one block of twenty gains
-
-
-@pytest.mark.parametrize(
-    ("after", "told", "failed", "law", "negligible"),
-    [
-        (0.1 * EVEN, {}, (), "", False),
-        (0.1 * EVEN, {"zero": True}, (), "", False),
-        (ODD, {}, (), "", True),  # less than a fortieth, and by chance
-        (FEW, {}, (), "", False),
-        (FEW, {"zero": True}, (), "", True),
-        # A law differs where a twentieth is left of the 100 that 200 squares are beyond the noise.
-        (0.1 * EVEN, {"split": "s", "structure": 4.9}, (), "over s", False),
-        (0.1 * EVEN, {"split": "s", "structure": 5.1}, ("is not constant over s",), "", False),
-        (0.1 * EVEN, {"split": "s", "apart": True}, ("is not constant over s",), "", False),
-        (0.1 * EVEN, {"structure": 9.0}, (), "", False),
-        (0.1 * EVEN, {"tolerance": True}, ("is no more than a tolerance",), "", True),
-        (0.1 * EVEN, {"scatter": True}, ("is no more than a friction",), "", True),
-    ],
-)
-def test_what_an_effect_proves(monkeypatch, after, told, failed, law, negligible):
-    told = {"split": None, "structure": 0.0, "zero": False} | told
-    given = {}
-
-    def failures(name, own, again, fewer, whole, **more):
-        given.update(more, own=[e.name for e in own])
-        return ()
-
-    def may_be_zero(name, moved, correlation):
-        given.update(moved=[e.value for e in moved], correlation=correlation.tolist())
-        return told["zero"]
-
-    def within_tolerances(trial, name, tolerated, reduction):
-        given.update(reduction=reduction)
-        return "tolerance" in told
-
-    for function in (failures, may_be_zero, within_tolerances):
-        monkeypatch.setattr(p, function.__name__, function)
-    monkeypatch.setattr(p, "worst_split", lambda *_: told["split"])
-    monkeypatch.setattr(p, "split_in_words", lambda split: f"over {split}")
-    monkeypatch.setattr(p, "of_one_size", lambda split: "apart" not in told)
-    monkeypatch.setattr(p, "_within_interval", lambda split, own: False)
-    monkeypatch.setattr(p, "within_scatter", lambda *_: "scatter" in told)
-    monkeypatch.setattr(p, "_of_another_law", lambda *_: ())
-    monkeypatch.setattr(p, "largest_forces", lambda bench: {"f_in_N": 40.0})
-    folds = SimpleNamespace(block=np.zeros(100, int), run=None)
-    judged = SimpleNamespace(
-        named=frozenset({"backlash", "preload_loss"}),
-        rivals={"backlash": ("free_tendon",)},
-        bench=SimpleNamespace(closed=()),
-        folds=folds,
-        trial=lambda names: None,
-    )
-    estimates = [replace(ZERO, name=n) for n in ("preload_loss.x", "backlash.play_mm", "slack_mm")]
-    moved = [replace(e, value=k) for k, e in enumerate(estimates)]
-    found = SimpleNamespace(estimates=estimates, moved=moved, correlation=np.diag((1.0, 2.0, 3.0)))
-    squares = {judged.named: after, frozenset({"preload_loss"}): EVEN}
-    held_out = {names: SimpleNamespace(squares=s) for names, s in squares.items()}
-    signals = {"x_in_mm": np.array([-3.0, 5.0])}
-    last = p._LastFit(judged, found, held_out, signals, told["structure"], None)
-    cause = p._cause(last, "backlash")
-    assert (cause.effect, cause.rivals, cause.law_differs) == ("backlash", ("free_tendon",), law)
-    assert len(cause.failed) == len(failed)
-    assert all(said.startswith(start) for said, start in zip(cause.failed, failed, strict=True))
-    assert cause.negligible == negligible
-    assert cause.gain_percent == pytest.approx(100.0 - 100.0 * np.sqrt(after.sum() / 200.0))
-    low, high = cause.gain_interval_percent
-    assert low <= cause.gain_percent + 1e-9
-    assert cause.gain_percent <= high + 1e-9
-    assert given == {
-        "own": ["backlash.play_mm"],
-        "moved": [1],
-        "correlation": [[2.0]],
-        "tolerance_N": {"f_in_N": pytest.approx(0.1)},
-        "stroke_mm": 8.0,
-        "zero": told["zero"],
-        "reduction": pytest.approx(200.0 - after.sum()),
-    }
 
 
 @pytest.mark.parametrize(

@@ -28,15 +28,6 @@ def test_the_largest_value_is_in_the_last_bin_and_the_smallest_in_the_first():
     assert (below.samples, below.label) == (2, "0 to 1")
 
 
-def test_a_rest_neither_pulls_nor_is_it_its_own_run():
-    """Where the direction is 0 the drive does not pull; empty bins are left out."""
-    signal = np.array([0.0, 1.0, 1.0])
-    rest, pull = binned(signal, signal, edges_of(signal, DIRECTION), DIRECTION)
-    assert (rest.label, pull.label) == ("letting go", "pulling")
-    gone = binned(np.zeros(2), np.zeros(2), np.array([-1.0, 0.0, 5.0, 9.0]), "x_in_mm")
-    assert [b.label for b in gone] == ["0 to 5"]
-
-
 class Errors:
     """A run of seven samples (tests of signals) with an error at some samples of a channel."""
 
@@ -172,24 +163,6 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
     )
 
 
-@pytest.mark.parametrize(("share", "said"), [(0.29, False), (0.31, True)])
-def test_a_narrow_band_holds_three_tenths_of_the_squares(share, said):
-    """The swing has so much of them, seven others of equal size the rest."""
-    turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
-    rest = sum(np.cos(k * turn) for k in (10, 30, 50, 70, 90, 110, 130))
-    whole = np.sqrt(7.0 * share / (1.0 - share)) * np.cos(160 * turn) + rest
-    bench = bench_of(*[Run({"f_in_N": whole})] * 2)
-    assert (r._oscillation(bench, None) is not None) == said
-
-
-def test_a_band_is_three_lines_wide():
-    """A swing between two lines of the spectrum is in both, and a little beside them."""
-    turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
-    three = sum(size * np.cos(k * turn) for k, size in ((99, 1.0), (100, 1.1), (101, 1.0)))
-    rest = sum(np.cos(k * turn) for k in (10, 30, 50, 70, 90, 110, 130))
-    assert r._oscillation(bench_of(*[Run({"f_in_N": three + rest})] * 2), None) is not None
-
-
 @pytest.mark.parametrize(("cycles", "said"), [(1, False), (2, True)])
 def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
     """The drive makes one stroke, half a cycle: 2.5 of that is more than one cycle."""
@@ -222,44 +195,3 @@ def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_n
     quiet = left_of({"f_in_N": 0.1 * NOISE[0]}, {"f_in_N": 0.1 * NOISE[1]})
     assert quiet.explained == {"f_in_N": 0.0}
     assert quiet.mean_square == pytest.approx(0.01, rel=0.1)
-
-
-def test_no_more_than_three_signals_are_named(monkeypatch):
-    """A part of a fiftieth of all squares counts; channels are weighed by theirs."""
-    parts = {"one": 0.5, "two": 0.4, "three": 0.3, "four": 0.2, "five": 0.019}
-    signals = {name: np.full(2 * ROWS, k) for k, name in enumerate(parts)}
-    signals[DIRECTION] = np.ones(2 * ROWS)
-    monkeypatch.setattr(r, "_oscillation", lambda *_: "time_s (swings)")
-    monkeypatch.setattr(r, "hats", lambda signal, direction: np.full((signal.size, 1), signal[0]))
-    order = list(parts.values())
-
-    def regressed(columns, residual, fold):
-        share = 0.0 if columns.shape[1] > 1 else order[int(columns[0, 0])]
-        return residual * (1.0 - np.sqrt(1.0 - share))
-
-    monkeypatch.setattr(r, "regressed", regressed)
-    found = left_of({"f_in_N": NOISE[0], "x_out_mm": 2.0 * NOISE[1]}, signals=signals)
-    assert found.depends_on == ("time_s (swings)", "one", "two", "three")
-    monkeypatch.setattr(r, "_oscillation", lambda *_: None)
-    order[:] = [0.021, 0.019, 0.0, 0.0, 0.0]
-    assert left_of(
-        {"f_in_N": NOISE[0], "x_out_mm": 2.0 * NOISE[1]}, signals=signals
-    ).depends_on == ("one",)
-
-
-def test_each_channel_counts_by_its_squares(monkeypatch):
-    """What explains a tenth of a channel with a tenth of the squares explains a hundredth."""
-    signals = {name: np.full(2 * ROWS, k) for k, name in enumerate(("loud", "low"))}
-    signals[DIRECTION] = np.ones(2 * ROWS)
-    monkeypatch.setattr(r, "_oscillation", lambda *_: None)
-    monkeypatch.setattr(r, "hats", lambda signal, direction: np.full((signal.size, 1), signal[0]))
-
-    def regressed(columns, residual, fold):
-        loud = float(residual @ residual) > 2.0 * ROWS
-        told = columns.shape[1] == 1 and loud == (columns[0, 0] == 0.0)
-        return residual * (1.0 - np.sqrt(0.9 if told else 1.0))
-
-    monkeypatch.setattr(r, "regressed", regressed)
-    assert left_of(
-        {"f_in_N": NOISE[0], "x_out_mm": 3.0 * NOISE[1]}, signals=signals
-    ).depends_on == ("loud",)

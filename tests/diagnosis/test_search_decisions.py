@@ -94,12 +94,6 @@ def test_gains_are_beside_the_friction_of_each_run_unless_it_changes_with_the_se
     assert search.gain(names(), names(A)).part == pytest.approx(part)
 
 
-def test_a_trial_is_fitted_once(made):
-    search = made({names(A): 2.0})
-    assert search.trial(names(A)) is search.trial(names(A))
-    assert len(search.bench.fits) == 1
-
-
 def seen(search, at, *parts, signatures=None):
     search.screened[at] = [
         screened(name, part, None if signatures is None else signatures[name])
@@ -122,20 +116,6 @@ def test_what_cannot_reduce_the_squares_enough_is_not_fitted(made, least, found)
     assert [name for name, _ in search.add(names(), least)] == found
 
 
-def test_a_further_cause_is_fitted_where_it_could_matter(made):
-    """Of 3.0 beyond the noise, a further cause takes away 0.6; 0.4 of that is 0.06 of 4.0."""
-    search = made({names(): 9.0, names(A): 4.0, names(A, B): 2.0, names(A, C): 1.0})
-    seen(search, names(A), (B, 0.061), (C, 0.059))
-    assert search._better(names(A)) == [names(A, B)]
-    assert names(A, C) not in search.bench.fitted
-
-
-def test_what_explains_next_to_nothing_is_not_fitted(made):
-    search = made({names(): 4.0, names(A): 3.0})
-    seen(search, names(), (A, 0.0006), (B, 0.0004))
-    assert [name for name, _ in search.add(names())] == [A]
-
-
 def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
     parameter = OF[B].parameters[0]
     start = {f"{B}.{parameter.name}": parameter.neutral + 1.0}
@@ -145,14 +125,6 @@ def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
     away = [next(iter(at.values())) - parameter.neutral for at in starts]
     assert away == pytest.approx([1.0, 0.2, 0.04])
     assert search.trial(names(B)).mean_square == 3.0
-
-
-def test_it_starts_again_four_times_at_the_most(made):
-    search = made({names(): 4.0, names(B): [9.0, 8.0, 7.0, 6.0, 5.0]})
-    search._fit(names(), names(B), {f"{B}.{OF[B].parameters[0].name}": 1.0})
-    assert search.trial(names(B)).mean_square == 6.0
-    search._fit(names(), names(B), {})
-    assert len(search.bench.fits) == 5  # known by now
 
 
 def test_rivals_convince_too_and_are_not_surely_worse(made):
@@ -174,27 +146,12 @@ def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
     assert rivals_of(search, names(A), A) == rivals
 
 
-@pytest.mark.parametrize(("left", "share"), [(0.9, 0.0), (1.0, 0.0), (4.0, 0.75)])
-def test_what_exceeds_the_noise_is_structure(made, left, share):
-    assert made({names(A): left}).structure(names(A)) == pytest.approx(share)
-
-
 @pytest.mark.parametrize(("unsure", "rivals"), [(0.0, ()), (0.025, ()), (0.035, (B,))])
 def test_an_effect_that_leaves_a_little_more_of_a_wrong_model_is_a_rival(made, unsure, rivals):
     """4 % more: beyond the one per cent that tells right models apart."""
     search = made({names(): 9.0, names(A): 4.8, names(B): 5.0})
     search.add = lambda before, least=0.0: [(B, CONVINCES)]
     assert rivals_of(search, names(A), A, unsure) == rivals
-
-
-def test_the_simplest_that_is_not_surely_beaten(made):
-    singles = [(B, CONVINCES), (A, CONVINCES)]
-    assert len(OF[A].parameters) < len(OF[B].parameters)
-    near = made({names(A): 1.02, names(B): 1.0})
-    assert near._simplest(names(), singles) == A  # three hundredths are too little
-    far = made({names(A): 1.04, names(B): 1.0})
-    assert far._simplest(names(), singles) == B
-    assert far._simplest(names(), [(A, CONVINCES), (B, CONVINCES)]) == A
 
 
 def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):

@@ -6,7 +6,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from tests.counted import Counted
 from tests.diagnosis.made_up import (
     OF,
     SIZE,
@@ -18,9 +17,6 @@ from tests.diagnosis.made_up import (
     without_tolerances,
 )
 from tsas_cli.diagnosis import hypotheses, search
-from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.hypotheses import Hypotheses
-from tsas_cli.identification import screening
 
 A, B, C, D, E = "backlash", "drive_friction", "free_tendon", "load_friction", "load_inertia"
 KNOWN = (A, B, C, D, E)
@@ -81,17 +77,6 @@ def test_no_more_than_four_are_named(made):
     assert len(made(halving()).run()) == 4
 
 
-def test_a_pair_is_looked_at_while_there_is_room_for_two(made):
-    asked = []
-    for count, looked in ((0, True), (2, True), (3, False)):
-        search = made({})
-        search.add = lambda *_: []
-        search._best_pair = asked.append
-        before = len(asked)
-        assert search._better(names(*(A, B, C)[:count])) == []
-        assert (len(asked) > before) == looked
-
-
 def test_where_simple_and_best_differ_both_ways_are_gone(made):
     """A has fewer parameters than C, which is better but not by three hundredths."""
     assert len(OF[A].parameters) < len(OF[C].parameters)
@@ -101,29 +86,6 @@ def test_where_simple_and_best_differ_both_ways_are_gone(made):
         search = made(dict.fromkeys(every(), 8.0) | low | ends)
         assert search._better(names()) == [names(A), names(C)]
         assert search.run() == chosen
-
-
-def test_a_set_that_was_passed_is_not_gone_through_again(made):
-    search = made(halving())
-    search._better = lambda at: [names(A)]
-    assert search._grown(names(A), frozenset()) == names(A)
-
-
-def test_the_best_of_the_simple_ones_stands_for_itself(made):
-    """What has as many parameters as the best one is no simpler."""
-    convinces = Reduction(0.5, 4.0)
-    assert len(OF[A].parameters) == len(OF[B].parameters)
-    search = made({names(A): 1.0, names(B): 1.0})
-    assert search._simplest(names(), [(B, convinces), (A, convinces)]) == B
-
-
-def test_a_single_effect_has_to_matter(made):
-    """Of 9 − 1 it takes away 0.2 (8 − 0.15) or less: it convinces and does not matter."""
-    search = made({names(): 9.0, names(A): 7.5} | dict.fromkeys(every()[1:], 9.0))
-    search._best_pair = lambda at: None
-    assert search._better(names()) == []
-    search = made({names(): 9.0, names(A): 5.8} | dict.fromkeys(every()[1:], 9.0))
-    assert search._better(names()) == [names(A)]
 
 
 def test_a_mesh_is_used_for_both_where_one_needs_it(made):
@@ -141,55 +103,6 @@ def test_a_mesh_is_used_for_both_where_one_needs_it(made):
     search.matters(names(), {A})
     search.matters(names(B), {A})
     assert all(fit.on_mesh for fit in search.bench.fits[4:])
-
-
-def test_what_is_new_lies_ahead_and_is_done(made):
-    counted = Counted()
-    search = made({names(): 4.0} | dict.fromkeys(every(), 3.9), step=counted)
-    search.trial(names())
-    assert len(search.add(names())) == 5
-    assert counted.total == counted.done == 5
-    search.add(names())
-    assert counted.total == counted.done == 5  # all are known
-
-
-def test_all_further_effects_are_screened_once(made, monkeypatch):
-    counted = Counted()
-    search = made({}, step=counted, mesh=(E,))
-    del search.screen  # the given one
-    looked = []
-
-    def screen(bench, trial, effect, basis):
-        looked.append((effect.name, trial.on_mesh, basis))
-        return screened(effect.name, part=0.1 * len(looked))
-
-    monkeypatch.setattr(screening, "projector", lambda trial: ("basis", trial.on_mesh))
-    monkeypatch.setattr(screening, "screen", screen)
-    found = search.screen(names(A))
-    assert [x.effect.name for x in found] == [name for name in KNOWN if name != A][::-1]
-    assert {(n, mesh, basis) for n, mesh, basis in looked} == {
-        (n, n == E, ("basis", n == E)) for n in (B, C, D, E)
-    }
-    assert counted.total == counted.done == 4
-    assert search.screen(names(A)) is found
-    assert len(looked) == 4
-
-
-def test_errors_are_weighed_three_times_by_what_was_found(made):
-    counted = Counted()
-    search = made({}, mesh=(B,))
-    sets = {names(), names(A), names(B), names(A, B)}
-    trials = {(n, True): search.trial(n, on_mesh=True) for n in sets}
-    found = Hypotheses(search.bench, search.folds, names(A, B), {A: (C,)}, (), trials, {})
-    other = hypotheses.reweighted_hypotheses(found, counted)
-    assert (other.bench.weighed, found.bench.weighed) == (3, 0)
-    assert (other.named, other.rivals) == (found.named, found.rivals)
-    assert set(other.trials) == {(n, True) for n in sets}
-    assert {trial.weighed for trial in other.trials.values()} == {3}
-    assert not other.squares
-    assert counted.total == counted.done == 3 + 4
-    near = {fit.fitted: fit.near for fit in other.bench.fits}
-    assert all(near[n] is search.trial(n, on_mesh=True) for n in sets - {names(A, B)})
 
 
 def pairs(count):
@@ -222,45 +135,3 @@ def test_a_pair_has_to_promise_a_sufficient_reduction(made, part, looked):
     """Of 8 − 1 it has to take 0.2 (7 − 0.15), of which 0.4 is 0.0685 of the squares."""
     search = paired(made, {names(A, B): 1.0}, part)
     assert (search._best_pair(names()) == names(A, B)) == looked
-
-
-def test_parts_of_each_alone_are_taken_off(made):
-    search = paired(made, {names(A, B): 1.0}, 0.05)
-    alone = [screened(x.effect.name, 0.015, x.signatures) for x in search.screen(names())]
-    search.screen = lambda at: alone
-    assert search._best_pair(names()) is None  # 0.05 − 2 · 0.015
-
-
-def test_what_a_pair_takes_away_lies_ahead(made):
-    search = paired(made, {names(A, B): 1.0}, 0.5)
-    search.step = counted = Counted()
-    search._best_pair(names())
-    assert counted.total == counted.done == 1
-    search._best_pair(names())
-    assert counted.total == counted.done == 1
-
-
-def test_four_pairs_are_fitted_at_the_most_the_most_promising_first(made):
-    """Five signatures that are nearly one make ten pairs, none of which convinces."""
-    search = made(dict.fromkeys([*every(), names()], 1.3))
-    common, *apart = pairs(6)
-    search.trial(names()).solution.residual = sum(
-        (k + 1.0) * at for k, at in enumerate(apart)
-    ) / np.sqrt(55.0)
-    found = [
-        screened(n, 0.0, (common + 0.05 * at)[:, None])
-        for n, at in zip((A, B, C, D, E), apart, strict=True)
-    ]
-    search.screen = lambda at: found
-    assert search._best_pair(names()) is None
-    fitted = [found for found in search.bench.fitted if len(found) == 2]
-    # Of (k a_k − l a_l)/√2 the largest: 5 and 1 of opposite direction are 4²/2, then 3²/2.
-    assert len(fitted) == 4
-    assert fitted[0] == names(A, E)
-    assert set(fitted[1:3]) == {names(A, D), names(B, E)}
-
-
-def test_a_start_is_that_of_both(made):
-    search = paired(made, {names(A, B): 1.0}, 0.5)
-    search._best_pair(names())
-    assert set(search.bench.fits[-1].start) == {f"{n}.{OF[n].parameters[0].name}" for n in (A, B)}

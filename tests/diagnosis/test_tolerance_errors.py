@@ -1,11 +1,8 @@
 """What tolerances leave unsure, on a straight line and two made-up ones."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import tolerances
 from tsas_cli.diagnosis.tolerances import moved_by_tolerances
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -48,40 +45,6 @@ def test_what_the_recordings_ask_for_is_taken_back(truly):
     assert abs(slope) > 0.9 * abs(0.3 * truly)
     assert slope + moved == pytest.approx(0.0, abs=0.05)
     assert found < 0.02
-
-
-def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
-    """Asked for −2 and 3 of two ways that are told to 0.5 and not at all.
-
-    Against a plausible size of 1 the first counts by 1/(1 + 0.25), and that leaves 0.25 of it;
-    the second by nothing, and leaves all of 1.
-    """
-    given = {}
-
-    def with_errors(unknowns, solution, blocks, *, by_run):
-        given.update(names=[u.name for u in unknowns], solution=solution, by_run=by_run)
-        return SimpleNamespace(stderr=np.array([7.0, 7.0, 0.5, np.inf]))
-
-    monkeypatch.setattr(tolerances, "with_errors", with_errors)
-    J = np.zeros((6, 2))
-    J[0, 0] = J[1, 1] = 2.0
-    ways = np.zeros((6, 2))
-    ways[0], ways[2, 0], ways[3, 1] = (0.4, 0.6), 1.0, 1.0
-    residual = np.array([0.0, 1.0, 2.0, -3.0, 0.0, 0.0])
-    solution = Solution(np.array([5.0, 6.0]), np.array([False, True]), residual, J, True, "", 1)
-    unknowns = tuple(Unknown(n, None, 0.0, -9.0, 9.0, 1.0) for n in ("a", "b"))
-    trial = HypothesisFit((), unknowns, solution, (6,), on_mesh=False)
-    moved, covariance = moved_by_tolerances(trial, ways, [np.arange(6)])
-    unsure = np.sqrt(np.diag(covariance))
-    assert moved == pytest.approx([0.2 * 0.8 * 2.0, 0.0], abs=1e-6)
-    assert unsure == pytest.approx([np.sqrt(0.2**2 * 0.8 * 0.25 + 0.3**2 * 1.0), 0.0], rel=1e-6)
-    assert len(given["names"]) == 4
-    assert given["by_run"]
-    beside = given["solution"]
-    assert beside.values.tolist() == [5.0, 6.0, 0.0, 0.0]
-    assert beside.at_bound.tolist() == [False, True, False, False]
-    assert not beside.jacobian[:, 1].any()  # what is at its bound does not move
-    np.testing.assert_array_equal(beside.jacobian[:, 2:], ways)
 
 
 def test_no_tolerance_counts_for_more_than_is_plausible():
