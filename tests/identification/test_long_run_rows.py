@@ -73,19 +73,6 @@ def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
     assert prepared.in_gap.tolist() == (whole % 7 == 0).tolist()
 
 
-def test_a_cleaned_signal_is_handed_out_in_rows_as_asked():
-    """Pieces of 5, 4 and 6 rows; a reversal at a border belongs to the rows that it begins."""
-    stream = iter([part_of(0, 5, [2, 4]), part_of(5, 4, [8]), part_of(9, 6, [10, 14])])
-    aligned = long._Aligned(stream)
-    found = [aligned.take(n) for n in (4, 6, 5)]
-    assert [part.start for part in found] == [0, 4, 10]
-    assert [part.values.size for part in found] == [4, 6, 5]
-    assert [part.reversals.tolist() for part in found] == [[2], [4, 8], [10, 14]]
-    for column, hundred in (("values", 100), ("sd", 200), ("unseen", 300), ("apart_s", 400)):
-        together = np.concatenate([getattr(part, column) for part in found])
-        assert together.tolist() == [hundred + k for k in range(15)]
-
-
 @pytest.mark.parametrize(("samples", "few"), [(160, None), (155, "16"), (25, "2.5")])
 def test_what_a_fit_has_seen_is_said(samples, few):
     """Of ten strokes."""
@@ -103,25 +90,3 @@ def test_what_a_fit_has_seen_is_said(samples, few):
     assert said == f"{seen} drive." + (kept if few else "")
     run.every = 1
     assert long.thinned_notes([run]) == []
-
-
-def test_noise_is_the_median_over_the_pieces_that_tell_it(monkeypatch):
-    def piece(f_in, f_out):
-        return SimpleNamespace(
-            columns={
-                "f_in_N": np.array(f_in), "f_out_N": np.array(f_out), "x_out_mm": np.array([np.nan])
-            }
-        )  # fmt: skip
-
-    read = [piece([1.0], [np.nan]), piece([5.0], [9.0]), piece([2.0], [np.nan])]
-    asked = []
-    monkeypatch.setattr(long, "pieces", lambda run, names: asked.append(names) or iter(read))
-    monkeypatch.setattr(
-        long, "noise_of", lambda values: float("nan") if values[0] == 9.0 else float(values[0])
-    )
-    found = long._noise("run", ["f_in_N", "f_out_N", "x_out_mm"])
-    assert found["f_in_N"] == 2.0
-    assert np.isnan(found["f_out_N"])  # there is something, which tells no noise
-    assert set(found) == {"f_in_N", "f_out_N"}
-    assert long._noise("run", []) == {}
-    assert len(asked) == 1

@@ -105,12 +105,6 @@ def test_a_run_may_end_right_after_a_reversal(left):
     assert abs(parts[-1].first - 99) <= 1
 
 
-def test_the_border_is_the_geometric_mean_of_the_strokes_that_show_both():
-    slopes = [(100.0, 4.0), (400.0, 1.0), (100.0, 4.0), (math.nan, 3.0), (50.0, 0.0)]
-    assert p._border(slopes) == pytest.approx(20.0)
-    assert p._border([(math.nan, 1.0), (5.0, 0.0)]) is None
-
-
 @pytest.fixture
 def cut_as(monkeypatch):
     """Cut strokes of ten samples, up and down in turns, as told; a run goes 0, 2, 4 … inside."""
