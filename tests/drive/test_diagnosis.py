@@ -142,15 +142,6 @@ def test_what_the_nominal_equation_does_as_well_is_no_cause(diagnosed):
     assert (found.verdict, found.nominal, found.named) == ("sufficient", EQUATION_NAME, ())
 
 
-def test_a_gain_that_no_table_shows_names_nothing(diagnosed, monkeypatch):
-    """In millimetres the noisiest run decides, where another one gains."""
-    search = Searched({NOTHING: 1.0, terms("lag"): 0.9})
-    assert len(diagnosed(search, terms("lag")).named) == 1
-    rms = {NOTHING: 0.005062, terms("lag"): 0.005058}
-    monkeypatch.setattr(dd, "_rmse", lambda search, names: rms[names])
-    assert diagnosed(search, terms("lag")).named == ()
-
-
 @pytest.mark.parametrize(
     ("rivals", "told"),
     [
