@@ -9,7 +9,7 @@ import pytest
 
 from tsas_cli.diagnosis import intervals
 from tsas_cli.diagnosis.friction_scatter import is_in_line, is_scatter, within_scatter
-from tsas_cli.diagnosis.held_out import folds_of, held_out_squares
+from tsas_cli.diagnosis.held_out import Folds, folds_of, held_out_squares
 from tsas_cli.diagnosis.tolerances import (
     moved_by_tolerances,
     of_others,
@@ -19,7 +19,7 @@ from tsas_cli.diagnosis.tolerances import (
     without_tolerances,
 )
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.fit import Fitted, Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 
@@ -272,3 +272,39 @@ def test_no_tolerance_counts_for_more_than_is_plausible():
     slope, moved, _ = unsure(0.3 * X + 5.0 * WAVE, 20.0)
     assert abs(slope) == pytest.approx(6.0, abs=0.1)
     assert abs(moved) == pytest.approx(0.3 * 2.0, rel=0.05)
+
+
+def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
+    """Noise leaves each of two unknowns by 1, a tolerance both together by 3, moved by 2 and −9.
+
+    They are known by their difference. Blocks are counted from 0 in each run.
+    """
+    given = {}
+    fitted = Fitted(*(np.full(2, v) for v in (7.0, 1.0, 2.0)), np.zeros(2, bool), True, "", 1)
+
+    def with_errors(unknowns, solution, blocks, *, by_run):
+        given.update(blocks=[b.tolist() for b in blocks], by_run=by_run)
+        return fitted
+
+    def estimates_of(unknowns, fit, ids):
+        ends = zip(fit.values, 2.0 * fit.stderr, strict=True)
+        return [Estimate("a", v, "1", "fitted", None, w / 2.0, v - w, v + w) for v, w in ends]
+
+    monkeypatch.setattr(intervals, "with_errors", with_errors)
+    moves = np.array([2.0, -9.0]), np.full((2, 2), 9.0)
+    monkeypatch.setattr(intervals, "moved_by_tolerances", lambda *_: moves)
+    monkeypatch.setattr(intervals, "estimates_of", estimates_of)
+    folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
+    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
+    trial = SimpleNamespace(unknowns=[], solution=None, effects=(), correlation=lambda: np.eye(2))
+    search = SimpleNamespace(folds=folds, bench=bench)
+    found = intervals.estimates_with_tolerances(search, trial, np.zeros((6, 7)))
+    half = np.hypot(2.0 * 1.0, 1.96 * 3.0)  # Student's t is of the noise alone
+    assert [e.value for e in found.estimates] == [7.0, 7.0]
+    assert [e.value for e in found.moved] == [9.0, -2.0]
+    assert [e.stderr for e in found.estimates] == pytest.approx([half / 2.0] * 2)
+    lows, highs = zip(*((e.interval_low, e.interval_high) for e in found.estimates), strict=True)
+    assert lows == pytest.approx((9.0 - half, -2.0 - half))
+    assert highs == pytest.approx((9.0 + half, 7.0))  # the value is held
+    assert found.correlation == pytest.approx(np.array([[1.0, 0.9], [0.9, 1.0]]))
+    assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
