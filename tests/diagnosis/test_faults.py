@@ -12,6 +12,7 @@ from tsas_studies.challenge.cases import Case, Hidden
 from tsas_studies.challenge.make import make
 
 RATE_HZ = 30.0
+LARGE = pytest.mark.large  # `test_fault_laws.py` holds the amount of each law
 
 
 def made(folder, kind, *hidden):
@@ -34,15 +35,11 @@ LATE = {"channels": ("x_out_mm",), "late_s": 0.02}
     ("fault", "values", "code", "column", "size", "unit"),
     [
         ("gain_of_a_run", MORE, "run-gain", "f_in_N", 3.0, "% more"),
-        (
-            "step_in_a_run",
-            LESS,
-            "run-offset",
-            "f_out_N",
-            1.0,
-            "N",
+        ("step_in_a_run", LESS, "run-offset", "f_out_N", 1.0, "N"),
+        pytest.param(
+            *("shifted_start_of_a_run", LATE, "run-delay", "x_out_mm", 20.0, "ms later"),
+            marks=LARGE,
         ),
-        ("shifted_start_of_a_run", LATE, "run-delay", "x_out_mm", 20.0, "ms later"),
     ],
 )
 def test_a_fault_of_one_run_is_said_with_its_size(
@@ -63,7 +60,11 @@ def test_a_fault_of_one_run_is_said_with_its_size(
     ("fault", "values", "code", "said"),
     [
         ("hum_in_the_band", {"amplitude": 0.7, "frequency_Hz": 1.4}, "hum", "swings at 1.4 Hz in"),
-        ("soft_saturation", {"depth": 1.5, "knee": 1.5}, "saturates", "as a sensor that saturates"),
+        pytest.param(
+            *("soft_saturation", {"depth": 1.5, "knee": 1.5}, "saturates"),
+            *("as a sensor that saturates",),
+            marks=LARGE,
+        ),
     ],
 )
 def test_a_fault_of_all_runs_is_said(fault, values, code, said, tmp_path):
@@ -80,7 +81,7 @@ def test_counts_that_an_encoder_misses_are_said_as_steps(tmp_path):
     assert found.sentence.count(" mm less since about ") == 3
 
 
-@pytest.mark.parametrize(("run", "rate"), [("b", 0.003), (None, -0.002)])
+@pytest.mark.parametrize(("run", "rate"), [pytest.param("b", 0.003, marks=LARGE), (None, -0.002)])
 def test_a_clock_is_said_with_its_pace(run, rate, tmp_path):
     values = {"run": run, "channels": ("x_out_mm",), "rate": rate}
     fault = "clock_of_a_run" if run else "second_logger"

@@ -232,14 +232,6 @@ def searched(residual):
     )
 
 
-def test_errors_and_noise_are_in_millimetres_of_each_run():
-    """Residuals are in units of each run's noise: 1 and 2 mm here."""
-    search = searched(np.full(400, 3.0))
-    assert dd._rmse(search, NOTHING) == pytest.approx(3.0 * math.sqrt(0.5 * (1.0 + 4.0)))
-    assert dd._noise(search) == pytest.approx(math.sqrt(0.5 * (1.0 + 4.0)))
-    assert dd._noises(search).tolist() == [1.0] * 20 + [2.0] * 20
-
-
 def test_what_is_left_depends_on_what_it_was_made_of():
     """A wave over the motor's angle, with period one turn of it."""
     plain = searched(np.zeros(2000))

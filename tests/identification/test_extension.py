@@ -8,7 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification import extension as e
-from tsas_cli.identification.extension import Bench, _parameters
+from tsas_cli.identification.extension import _parameters
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.fit_problem import FitProblem, unknown_of
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -30,13 +30,6 @@ def test_without_a_force_a_compliance_at_the_load_is_not_fitted():
     with_force, without = (_parameters(["load_law"], has_force=known) for known in (True, False))
     assert set(with_force) - set(without) == {"load_law.compliance_mm_per_N"}
     assert not any(name.endswith(("travel_mm", "low_mm", "high_mm")) for name in with_force)
-
-
-def test_what_the_closed_form_does_not_hold_for_needs_a_mesh():
-    bench = SimpleNamespace(never_closed=False)
-    assert not Bench.on_mesh(bench, ["free_tendon", "backlash"])
-    assert Bench.on_mesh(bench, ["free_tendon", "presliding"])
-    assert Bench.on_mesh(SimpleNamespace(never_closed=True), [])
 
 
 ZERO = "x_in_zero_mm"

@@ -71,22 +71,3 @@ def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
     assert (prepared.every, prepared.all_rows, prepared.session_s) == (5, 98, 60.0)
     assert prepared.noise == {"f_in_N": 0.2}
     assert prepared.in_gap.tolist() == (whole % 7 == 0).tolist()
-
-
-@pytest.mark.parametrize(("samples", "few"), [(160, None), (155, "16"), (25, "2.5")])
-def test_what_a_fit_has_seen_is_said(samples, few):
-    """Of ten strokes."""
-    run = SimpleNamespace(
-        run=SimpleNamespace(id="a"),
-        every=2,
-        all_rows=1000,
-        time_s=np.zeros(samples),
-        drive_column="x_in_mm",
-        conditioned={"x_in_mm": SimpleNamespace(reversals=np.arange(11))},
-    )
-    (said,) = long.thinned_notes([run])
-    seen = "Run a has 1000 samples: the fit uses one in 2 of them, and those at reversals of the"
-    kept = f" A stroke keeps {few} of its samples, too few to detect its phases."
-    assert said == f"{seen} drive." + (kept if few else "")
-    run.every = 1
-    assert long.thinned_notes([run]) == []
