@@ -29,7 +29,6 @@ from tsas_cli.physics.lugre.ends import (
     Samples,
     Span,
     StepEnds,
-    input_error,
     write_samples,
 )
 from tsas_cli.physics.lugre.slack import (
@@ -42,7 +41,6 @@ from tsas_cli.physics.lugre.slack import (
 )
 from tsas_cli.physics.lugre.start import rest_at
 from tsas_cli.physics.lugre.state import Given, Step
-from tsas_cli.physics.lugre.step import bdf2, step_error
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import with_values
 
@@ -93,38 +91,11 @@ def test_limits_of_friction_follow_tension_way_and_speed(exponent, excess, sign)
         assert each[0] == each[LAST] == 0.0
 
 
-def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
-    """Backward Euler leaves out h²/2 of the acceleration, which the guess has not seen."""
-    s, law = lumps(GROUP_A, speeds=(0.0, 0.1, 0.3, -0.2, 0.0))
-    nodes(s, rows.RATE_PREDICTED)[:] = 0.0, 0.1, 0.1, 0.1, 0.0
-    stretched = segments(s, rows.STIFFNESS) * np.abs(np.diff([0.0, 0.0, 0.2, -0.3, 0.0]))
-    first = bdf2(0.2, math.inf, math.inf)
-    assert (first.gh, first.near, first.far) == (0.2, 1.0, 0.0)
-    assert step_error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
-
-
 ENDS = StepEnds(
     EndState(Given(1.0, 2.0), 0.0, 0.0, 30.0, 0.0),
     EndState(Given(10.0, 3.0), 0.0, 0.0, 20.0, 0.0),
     0.5,
 )
-
-
-@pytest.mark.parametrize("boundary", BOUNDARIES[:3])
-def test_what_a_step_does_not_see_is_told_by_how_each_end_answers(boundary):
-    """Drive and load leave the straight lines that the step sees by 0.1 and 0.02."""
-    times = np.linspace(0.0, 1.0, 11)
-    course = course_of(1.0 + 2.0 * times, GROUP_A, load=10.0 + 3.0 * times, time_s=times)
-    end = STEP._replace(drive=Given(3.0, 2.0), load=Given(13.0, 3.0))
-    law = at(cleared(GROUP_A)[1], boundary)
-
-    def not_seen():
-        return input_error(course, Samples(1, 9), Span(0.0, 1.0), ENDS, end, (2.0, 50.0), law)
-
-    assert not_seen() == pytest.approx(0.0, abs=1e-12)
-    course[DRIVE, 5] += 0.1
-    course[LOAD, 3] -= 0.02
-    assert not_seen() == pytest.approx(0.2 if boundary == LOADED_BY_SPRING else 0.2 + 1.0)
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)

@@ -224,19 +224,6 @@ def test_the_error_of_a_step_is_that_of_a_cubic(times):
     assert step_error(s, law, formula) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize(("before_s", "speed"), [(math.inf, 0.0), (0.2, -3.0)])
-def test_the_first_step_is_guessed_at_rest_and_the_second_one_straight_on(before_s, speed):
-    """Each lump by its own speed; what has been before is not known."""
-    (s, law), scale = cleared(GROUP_A), np.arange(1.0, N + 3.0)
-    formula = bdf2(0.3, before_s, math.inf)
-    nodes(s, rows.POSITION)[:], nodes(s, rows.POSITION_1)[:] = scale, scale * 1.6
-    nodes(s, rows.POSITION_2)[:] = 99.0
-    predict(s, law, formula)
-    np.testing.assert_allclose(nodes(s, rows.RATE), speed * scale, atol=1e-12)
-    there = nodes(s, rows.POSITION_HISTORY) + formula.gh * nodes(s, rows.RATE)
-    np.testing.assert_allclose(there, scale * (1.0 + 0.3 * speed))
-
-
 def test_the_ends_after_a_step_have_the_rates_of_their_tensions(lively):
     s, law = lively
     balance(s, STEP, at(law, LOADED_BY_SPRING))
