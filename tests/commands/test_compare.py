@@ -1,12 +1,10 @@
 import json
-import shutil
 from functools import partial
 
 import pytest
 
 from tests.commands.documented import documented
 from tests.comparing.made import NOMINAL, ROUGH, calibrated
-from tests.reporting.made_folders import edited
 
 
 @pytest.fixture(scope="module")
@@ -47,18 +45,6 @@ def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
     page = (out / "report.html").read_text()
     assert page.startswith("<!DOCTYPE html>")
     assert "tsas compare calibrated-1/model.toml" in page
-
-
-def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
-    folder = shutil.copytree(root / "calibrated-1", tmp_path / "c")
-    path = folder / "calibration.json"
-    with edited(path) as content:
-        content["dataset"]["name"] = "\x1b[2Jbench"
-    code, out, _ = run(folder, "calibrated-2")
-    assert code == 0
-    assert "no longer at" in out  # the copy does not stand beside its dataset
-    assert out.count("\\x1b[2Jbench") == 2
-    assert "\x1b" not in out
 
 
 @pytest.mark.parametrize(

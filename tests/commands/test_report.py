@@ -44,13 +44,6 @@ def test_one_folder_of_a_stage_is_enough_and_leads_to_the_dataset(folder, here):
     assert (folder / "r.html").read_text().startswith("<!DOCTYPE html>")
 
 
-def test_json_names_what_was_read_and_quiet_says_nothing(folder, here):
-    code, out, _ = here("report", folder / "check", "--out", folder / "r.html", "--json")
-    assert code == 0
-    assert json.loads(out)["read"]["check.json"] == str(folder / "check")
-    assert here("report", folder / "check", "--out", folder / "q.html", "-q") == (0, "", "")
-
-
 def test_an_existing_page_stays_without_force(folder, here, refused):
     page, call = folder / "r.html", [folder / "check", "--out", folder / "r.html"]
     assert here("report", *call)[0] == 0

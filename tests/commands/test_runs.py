@@ -25,15 +25,17 @@ def test_a_table_of_the_runs(done, home):
     ]
 
 
-def test_json_and_paths(done, home):
+def test_json_and_paths(here, home, monkeypatch):
+    monkeypatch.chdir(home)
     call = ("runs", "--in", "rigs")
-    content = json.loads(done(*call, "--sort", "-total_bend_rad", "--json", cwd=home))
+    content = json.loads(here(*call, "--sort", "-total_bend_rad", "--json")[1])
     assert [row["total_bend_rad"] for row in content["runs"]] == [4.0, 3.5, 1.0]
-    assert done(*call, "--paths", cwd=home) == "rigs/a\nrigs/b c\n"
-    assert done(*call, "--quiet", cwd=home) == ""
+    assert here(*call, "--paths") == (0, "rigs/a\nrigs/b c\n", "")
+    assert here(*call, "--quiet") == (0, "", "")
 
 
-def test_errors_are_one_line(refused, home):
-    said = refused("runs", "bend > 3", cwd=home)
+def test_errors_are_one_line(refused_here, home, monkeypatch):
+    monkeypatch.chdir(home)
+    said = refused_here("runs", "bend > 3")
     assert said.startswith("tsas: the query, character 1, at 'bend > 3': there is no column")
-    refused("runs", "--paths", "--json", cwd=home)
+    refused_here("runs", "--paths", "--json")

@@ -260,24 +260,6 @@ def fault(reduction, run=None, code="hum", channels=(F,), edges=1):
     return Candidate(code, run, channels, 1.0, reduction, edges)
 
 
-@pytest.mark.parametrize(
-    ("squares", "reduction", "convinces"),
-    [(104.9, 4.9, False), (105.1, 5.1, True), (200.0, 69.0, False), (200.0, 71.0, True)],
-)
-def test_a_fault_convinces_by_its_share_of_what_is_beyond_the_noise(
-    squares, reduction, convinces, monkeypatch
-):
-    """Beyond a twentieth of the noise; more than seven tenths of it."""
-    found = judged(monkeypatch, [fault(reduction)], squares=squares)
-    assert (found is not None) == convinces
-    if found:
-        assert found.excess == pytest.approx(squares - 100.0)
-        assert found.share == pytest.approx(reduction / (squares - 100.0))
-        assert found.rest == pytest.approx(squares - reduction)
-    late = [fault(reduction, code="channel_delay")]
-    assert judged(monkeypatch, late, squares=squares) is None
-
-
 def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(monkeypatch):
     def runs(*found):
         return [c.run for c in judged(monkeypatch, list(found)).found]

@@ -21,6 +21,11 @@ def made(folder, kind, *hidden):
     return dataset
 
 
+def of_three(folder, hidden):
+    """Return the diagnosis of three runs with a fault."""
+    return diagnose(made(folder, "recording", hidden), runs=["a", "b", "c"])
+
+
 def of_a_run(function, **values):
     return Hidden(function, {"run": "b", **values})
 
@@ -34,22 +39,14 @@ LATE = {"channels": ("x_out_mm",), "late_s": 0.02}
     ("fault", "values", "code", "column", "size", "unit"),
     [
         ("gain_of_a_run", MORE, "run-gain", "f_in_N", 3.0, "% more"),
-        (
-            "step_in_a_run",
-            LESS,
-            "run-offset",
-            "f_out_N",
-            1.0,
-            "N",
-        ),
+        ("step_in_a_run", LESS, "run-offset", "f_out_N", 1.0, "N"),
         ("shifted_start_of_a_run", LATE, "run-delay", "x_out_mm", 20.0, "ms later"),
     ],
 )
 def test_a_fault_of_one_run_is_said_with_its_size(
     fault, values, code, column, size, unit, tmp_path
 ):
-    dataset = made(tmp_path, "recording", of_a_run(fault, **values))
-    result = diagnose(dataset)
+    result = of_three(tmp_path, of_a_run(fault, **values))
     assert (result.verdict, result.causes) == ("undecided", ())
     (found,) = result.record.faults
     assert (found.code, found.run, found.column) == (code, "b", column)
@@ -68,14 +65,14 @@ def test_a_fault_of_one_run_is_said_with_its_size(
 )
 def test_a_fault_of_all_runs_is_said(fault, values, code, said, tmp_path):
     hidden = Hidden(fault, {"channels": ("f_out_N",), **values})
-    (found,) = diagnose(made(tmp_path, "recording", hidden)).record.faults
+    (found,) = of_three(tmp_path, hidden).record.faults
     assert (found.code, found.run, found.column) == (code, None, "f_out_N")
     assert said in found.sentence
 
 
 def test_counts_that_an_encoder_misses_are_said_as_steps(tmp_path):
     missed = of_a_run("missed_counts", channel="x_out_mm", lost_mm=0.15, times=3)
-    (found,) = diagnose(made(tmp_path, "recording", missed)).record.faults
+    (found,) = of_three(tmp_path, missed).record.faults
     assert (found.code, found.run, found.column) == ("run-step", "b", "x_out_mm")
     assert found.sentence.count(" mm less since about ") == 3
 
@@ -84,7 +81,7 @@ def test_counts_that_an_encoder_misses_are_said_as_steps(tmp_path):
 def test_a_clock_is_said_with_its_pace(run, rate, tmp_path):
     values = {"run": run, "channels": ("x_out_mm",), "rate": rate}
     fault = "clock_of_a_run" if run else "second_logger"
-    (found,) = diagnose(made(tmp_path, "recording", Hidden(fault, values))).record.faults
+    (found,) = of_three(tmp_path, Hidden(fault, values)).record.faults
     assert (found.code, found.run, found.column) == ("clock", run, "x_out_mm")
     way = "slower" if rate > 0.0 else "faster"
     assert f" runs {100.0 * abs(rate):.1g} % {way} than" in found.sentence
@@ -92,7 +89,7 @@ def test_a_clock_is_said_with_its_pace(run, rate, tmp_path):
 
 def test_what_wanders_without_any_motion_is_no_mechanism(tmp_path):
     values = {"channels": ("f_out_N",), "per_root_s": 0.6}
-    result = diagnose(made(tmp_path, "recording", Hidden("random_walk", values)))
+    result = of_three(tmp_path, Hidden("random_walk", values))
     (found,) = result.record.faults
     assert (result.verdict, found.code, found.column) == ("unexplained", "wanders", "f_out_N")
     assert "follows no signal of the motion" in result.reason

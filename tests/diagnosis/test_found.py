@@ -54,35 +54,12 @@ def test_single_effects_and_what_stands_in_place_of_the_named_ones():
     assert rows("a", (names("a"), True), (names(""), False)) == []
 
 
-def test_the_reduction_by_the_named_cause_is_that_which_it_is_named_with():
-    sets = [(names(s), False) for s in ("b", "a")]
-    assert rows("a", *sets) == [("a", 48.2), ("b", 20.0)]
-
-
 def test_a_candidate_says_how_it_was_fitted():
     (row,) = f.candidates_of(SimpleNamespace(search=MadeUp((names("a"), False)), causes=[]))
     assert row.convincing
     assert (row.test_statistic, row.mean_square, row.converged) == (4.0, 1.5, True)
     assert row.parameters == {"p": 2.0}
     assert f.candidates_of(SimpleNamespace(search=None, causes=[])) == []
-
-
-@pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
-def test_similarity_is_the_cosine_between_two_directions(angle):
-    first = np.array([[1.0], [0.0], [0.0]])
-    turn = np.radians(angle)
-    second = np.array([[np.cos(turn)], [np.sin(turn)], [0.0]])
-    assert f._similarity(first, second) == pytest.approx(np.cos(turn), abs=1e-12)
-    assert f._similarity(first, np.hstack((second, first[::-1]))) == pytest.approx(np.cos(turn))
-    assert f._similarity(first, np.zeros((3, 0))) == 0.0
-
-
-def test_directions_that_are_the_same_count_once():
-    one = np.array([3.0, 4.0, 0.0])
-    basis = f._orthonormal(np.column_stack((one, 2.0 * one)))
-    assert basis.shape == (3, 1)
-    assert np.abs(basis[:, 0] @ one) == pytest.approx(5.0)
-    assert f._orthonormal(np.zeros((3, 2))).shape == (3, 0)
 
 
 def test_how_was_held_out_is_said():
@@ -114,12 +91,6 @@ def test_a_cosine_is_never_more_than_one():
     assert max(f._similarity(b, b) for b in bases) == 1.0
     assert min(f._similarity(b, b) for b in bases) == pytest.approx(1.0)
     assert f._similarity(np.zeros((3, 0)), np.eye(3)) == 0.0
-
-
-def test_directions_a_millionth_of_the_largest_do_not_count():
-    for small, columns in ((2e-6, 2), (0.5e-6, 1)):
-        assert f._orthonormal(np.diag([1.0, small, 0.0])).shape == (3, columns)
-    assert f._orthonormal(np.diag([1e-20, 0.0, 0.0])).shape == (3, 0)
 
 
 def test_an_effect_without_a_free_parameter_is_like_none():

@@ -8,7 +8,7 @@ import pytest
 from tests.counted import Counted
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, cause, seen
 from tsas_cli.diagnosis import plan as p
-from tsas_cli.diagnosis.plan import FurtherRun, propose
+from tsas_cli.diagnosis.plan import propose
 from tsas_cli.effects import EFFECTS
 
 
@@ -20,12 +20,6 @@ def test_what_is_better_is_said_with_its_unit():
     ratio = better("sheath_compression", 0.3, 0.2)
     assert ratio.cause.parameter.unit == "1"
     assert "is named from 0.2 on, instead" in ratio.sentence
-
-
-def test_the_best_of_a_proposal_come_first():
-    three = tuple(better(n, 2.0, 1.0) for n in (PLAY, MASS, LENGTH))
-    said = FurtherRun(CANDIDATES[0], 1.0, three, ()).best_of(2)
-    assert said == f"{three[0].sentence}; {three[1].sentence}"
 
 
 @pytest.mark.parametrize("blocks", [1, 6])
@@ -153,14 +147,6 @@ def test_what_it_still_does_not_tell_is_said_too(monkeypatch):
     runs = Further({None: [seen(PLAY, 1.0), *alike], 3: [seen(PLAY, 0.1), *alike]})
     said, _ = proposed(monkeypatch, runs, PLAY, MASS, LENGTH)
     assert said.endswith(f" It does not distinguish {LENGTH} from {MASS}.")
-
-
-def test_one_effect_is_told_from_all_and_none_means_all(monkeypatch):
-    runs = Further({None: [seen(PLAY, 1.0)], 3: [seen(PLAY, 0.5)]})
-    proposed(monkeypatch, runs, PLAY)
-    assert runs.asked[0] == (None, [PLAY], [e.name for e in EFFECTS])
-    proposed(monkeypatch, runs)
-    assert runs.asked[2] == (None, [e.name for e in EFFECTS], [e.name for e in EFFECTS])
 
 
 @pytest.mark.parametrize("after", [1.0, 0.9])

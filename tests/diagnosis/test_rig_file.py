@@ -1,4 +1,4 @@
-""""""
+"""The file of planned runs: what is read of it, and what is refused."""
 
 import pytest
 

@@ -1,17 +1,13 @@
 """From which size on a signature shows, and from which others it is told."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import visibility as v
 from tsas_cli.diagnosis.amplitudes import Amplitude
 from tsas_cli.diagnosis.visibility import Imitation, Part
 from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.identification.fit import Solution, Unknown
-from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
 BLOCKS, EACH = 20, 10
 SIZE = BLOCKS * EACH
@@ -69,12 +65,6 @@ def test_what_cannot_be_done_by_what_is_free():
     np.testing.assert_allclose(left, [0.0, -1.0, 5.0, 7.0], atol=1e-12)
 
 
-def test_sizes_of_columns_do_not_matter_and_none_is_none():
-    columns = np.array([[1e-20, 0.0, 0.0], [0.0, 0.5, 0.0]])
-    left = Imitation(np.eye(3)[:, :2], columns).left(np.array([3.0, 1.0, 1.0]))
-    np.testing.assert_allclose(left, [0.0, 0.0, 1.0], atol=1e-12)
-
-
 class MadeUpLook:
     """Signatures that are given by name, each for a unit of size; some depend on the size."""
 
@@ -89,36 +79,6 @@ class MadeUpLook:
 
 def wave(k, scale=1.0):
     return scale * np.sin(2.0 * math.pi * k * np.arange(SIZE) / EACH)
-
-
-def test_the_size_looked_at_is_a_power_of_two_below_the_one_found():
-    given = wave(1)
-    found = part().smallest(given)
-    look = MadeUpLook(e=given)
-    one = cause(amplitude(start=0.01, upper=1e9), "e")
-    settled = part(look=look)._converged_size(one)
-    assert settled <= found < 2.0 * settled
-    free = cause(amplitude(start=found / 5.0, upper=1e9), "e")
-    assert part(look=look)._converged_size(free) == pytest.approx(found * 4.0 / 5.0)
-    down = cause(amplitude(start=-found * 3.0, lower=-1e9, upper=1e9), "e")
-    assert part(look=look)._converged_size(down) == pytest.approx(-found * 3.0 / 4.0)
-
-
-def test_where_nothing_is_found_the_start_is_the_size():
-    look = MadeUpLook(e=np.zeros(SIZE))
-    one = cause(amplitude(start=0.3), "e")
-    assert part(look=look)._converged_size(one) == 0.3
-    assert [size for _, size in look.asked] == [0.3]
-
-
-def test_a_size_is_settled_once():
-    look = MadeUpLook(e=wave(1))
-    found = part(look=look)
-    one = cause(amplitude(upper=1e9), "e")
-    found.own(one)
-    before = len(look.asked)
-    found.own(one)
-    assert len(look.asked) == before + 1
 
 
 def test_what_free_parameters_do_is_taken_out():
@@ -189,37 +149,3 @@ def test_no_size_is_larger_than_the_largest():
         told = seen(MadeUpLook(a=wave(1), b=wave(2)), wide("a", upper=upper), wide("b"))
         assert (told.found == math.inf) == limited
         assert (told.distinct["b"] == math.inf) == limited
-
-
-def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
-    """Three runs of four residuals: those of the first and the last one, blocks counted anew."""
-    slopes = np.arange(12.0)[:, None] + 1.0
-    monkeypatch.setattr(v, "_slopes", lambda bench, trial: slopes)
-    monkeypatch.setattr(v, "blocks_of", lambda closed, rigs: [np.array([0, 0, 1, 1])] * 3)
-    solution = Solution(
-        np.zeros(1), np.zeros(1, bool), np.zeros(12), np.zeros((12, 1)), True, "", 1
-    )
-    trial = HypothesisFit(
-        (), (Unknown("a", None, 0.0, -9.0, 9.0, 1.0),), solution, (4, 4, 4), on_mesh=True
-    )
-    asked = []
-
-    def errors_at(trial, at):
-        asked.append(at)
-        return np.arange(12.0) * (1.0 + sum(at.values()) ** 2)
-
-    bench = SimpleNamespace(closed=[], rigs=[], errors_at=errors_at)
-    look = v.linearised_runs(bench, trial)
-    found = look.part([0, 2])
-    assert found.rows.tolist() == [True] * 4 + [False] * 4 + [True] * 4
-    assert found.block.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
-    unit = slopes[found.rows] / np.linalg.norm(slopes[found.rows])
-    np.testing.assert_allclose(np.abs(found.basis), unit)
-    one = Amplitude(effect("e"), amplitude(neutral=1.0), {"e.shape": 2.0})
-    # (1 + (2 + 1 + 3)²) − 1, for each unit of a size of 3.
-    np.testing.assert_allclose(look.signature(one, 3.0), 12.0 * np.arange(12.0))
-    assert asked == [{}, {"e.shape": 2.0, "e.size": 4.0}]
-    look.signature(one, 3.0)
-    assert len(asked) == 2
-    other = Amplitude(one.effect, one.parameter, {"e.shape": 0.0})
-    np.testing.assert_allclose(look.signature(other, 3.0), 16.0 / 3.0 * np.arange(12.0))

@@ -142,15 +142,6 @@ def test_what_the_nominal_equation_does_as_well_is_no_cause(diagnosed):
     assert (found.verdict, found.nominal, found.named) == ("sufficient", EQUATION_NAME, ())
 
 
-def test_a_gain_that_no_table_shows_names_nothing(diagnosed, monkeypatch):
-    """In millimetres the noisiest run decides, where another one gains."""
-    search = Searched({NOTHING: 1.0, terms("lag"): 0.9})
-    assert len(diagnosed(search, terms("lag")).named) == 1
-    rms = {NOTHING: 0.005062, terms("lag"): 0.005058}
-    monkeypatch.setattr(dd, "_rmse", lambda search, names: rms[names])
-    assert diagnosed(search, terms("lag")).named == ()
-
-
 @pytest.mark.parametrize(
     ("rivals", "told"),
     [
@@ -240,14 +231,6 @@ def searched(residual):
         held_out=lambda _: squares,
         trial=lambda _: trial,
     )
-
-
-def test_errors_and_noise_are_in_millimetres_of_each_run():
-    """Residuals are in units of each run's noise: 1 and 2 mm here."""
-    search = searched(np.full(400, 3.0))
-    assert dd._rmse(search, NOTHING) == pytest.approx(3.0 * math.sqrt(0.5 * (1.0 + 4.0)))
-    assert dd._noise(search) == pytest.approx(math.sqrt(0.5 * (1.0 + 4.0)))
-    assert dd._noises(search).tolist() == [1.0] * 20 + [2.0] * 20
 
 
 def test_what_is_left_depends_on_what_it_was_made_of():

@@ -2,7 +2,6 @@
 
 import cmath
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,46 +12,11 @@ from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
 
 
-@pytest.mark.parametrize(
-    ("term", "start", "found"),
-    [
-        ("lag", 0.02, (2.0, 0.0, 500.0, 1.0)),
-        ("spring", 8.0, (math.log(8.0), math.log(0.05), math.log(2e3), d.LOG_SCALE)),
-    ],
-)
-def test_a_number_is_scaled_by_its_size_or_its_logarithm(term, start, found):
-    u = d._unknown(d.TERMS[term][0], start)
-    assert (u.initial, u.lower, u.upper, u.scale) == pytest.approx(found)
-
-
 def bench_of(runs=(), **parts):
     """Return a bench, some of whose parts are made up."""
     bench = d.DriveBench(runs, parts.get("seen"), parts.get("stated_Hz"))
     bench.__dict__.update(parts)
     return bench
-
-
-def test_the_best_fit_that_has_converged_is_taken():
-    answers = {0.01: (3.0, True), 0.02: (1.0, False), 0.03: (2.0, True)}
-
-    def solved(quantities, start, terms, tolerance):
-        square, converged = answers[start.gain_mm_per_s_rpm]
-        solution = SimpleNamespace(converged=converged)
-        return SimpleNamespace(start=start, mean_square=square, solution=solution)
-
-    bench = bench_of(
-        _mean_square=lambda values: values.gain_mm_per_s_rpm,
-        _from_response=lambda terms: DriveValues(0.02),
-        _solved=solved,
-    )
-    simpler = [SimpleNamespace(values=DriveValues(gain)) for gain in (0.01, 0.03)]
-    assert bench.fit([], simpler).start == DriveValues(0.03)
-
-
-def test_all_samples_of_all_runs_count_alike():
-    errors = [np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0])]
-    bench = bench_of(["a", "b"], _error=lambda r, values: errors[r])
-    assert bench._mean_square(DriveValues(0.02)) == (1 + 4 + 9 + 16 + 25) / 5
 
 
 STEP_S = 1e-2
@@ -122,15 +86,6 @@ def test_how_late_the_response_is_goes_to_lag_and_delay():
     early = guess(["delay"], late_by(-0.03))
     assert early.delay_s == pytest.approx(1e-4)
     assert guess(["delay"], late_by(0.03)).gain_mm_per_s_rpm == GAIN
-
-
-@pytest.mark.parametrize(("points", "delay_s"), [(2, 0.005), (3, 0.03)])
-def test_two_points_of_the_response_say_nothing_and_three_are_read_off(points, delay_s):
-    w, excited = W[:points], np.ones(points, dtype=bool)
-    response = GAIN * late_by(0.03, w) / (1j * w)
-    seen = SimpleNamespace(frequency_Hz=w / (2 * math.pi), excited=excited, response=response)
-    found = bench_of(gain=GAIN, seen=seen)._from_response(frozenset(["delay"]))
-    assert found == pytest.approx(DriveValues(GAIN, delay_s=delay_s))
 
 
 @pytest.mark.parametrize(

@@ -86,18 +86,6 @@ def test_measured_phases_are_on_the_turn_of_the_fitted_ones(monkeypatch, turn):
     np.testing.assert_allclose(dark.measured.phase_deg, -90.0)
 
 
-def test_the_turn_is_told_by_the_first_frequency_that_is_excited(monkeypatch):
-    """The fitted phase falls from 0 to −720°: at 2 Hz it is −180°, where −90° is nearest."""
-    frequency = np.linspace(1.0, 5.0, 5)
-    monkeypatch.setattr(
-        dj, "bode_curve", lambda values, at: (at, np.interp(at, [1.0, 5.0], [0.0, -720.0]))
-    )
-    for first, phase in ((1, -90.0), (3, -450.0)):  # beside −540°
-        told = seen(frequency, np.full(5, -1j), np.arange(5) >= first)
-        found = dj.response(told, DriveValues(0.02)).measured.phase_deg
-        np.testing.assert_allclose(found, phase)
-
-
 def test_a_drive_as_tables():
     found = verdict("ambiguous", cause("backlash", rivals=("channel_delay",)), stated=True)
     tried = TriedStructure(name="lag", parameters=2, held_out_times_noise=1.2345)

@@ -7,7 +7,6 @@ import pytest
 
 from tsas_cli.drive import runs as d
 from tsas_cli.drive.runs import drive_runs
-from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.errors import InputError
@@ -122,21 +121,6 @@ def test_gaps_are_counted_and_the_first_is_named(rows, said, row):
     assert f"row {row}" in line
 
 
-@pytest.mark.parametrize(
-    ("noise", "taken"), [(0.0, 6.25e-6), (1.0, 1.0), (1.25, None), (1.3, None)]
-)
-def test_x_in_has_to_travel_five_times_its_noise(monkeypatch, noise, taken):
-    """Without noise a millionth of the travel is taken for it."""
-    monkeypatch.setattr(d, "_noise", lambda values: noise)
-    x = 6.25 * (PLACE - PLACE.min()) / np.ptp(PLACE)
-    assert np.ptp(x) == 6.25
-    if taken is None:
-        with pytest.raises(InputError, match="x_in_mm does not move"):
-            checked(x_in_mm=x)
-    else:
-        assert checked(x_in_mm=x).noise_mm == pytest.approx(taken)
-
-
 @pytest.mark.parametrize(("samples", "times"), [(500, 1), (620, 1), (4000, 1), (500, 2), (2000, 3)])
 def test_the_noise_of_x_in_is_that_of_its_sensor(samples, times):
     """In short runs too, and in those laid on a clock so many times as fast."""
@@ -149,14 +133,6 @@ def test_the_noise_of_x_in_is_that_of_its_sensor(samples, times):
         x_in_mm=np.interp(clock, time_s, x_in),
     )
     assert run.noise_mm == pytest.approx(5e-3, rel=0.2)
-
-
-@pytest.mark.parametrize(("size", "stretches"), [(4000, 40), (320, 20), (33, 2), (31, 1), (16, 1)])
-def test_noise_is_the_median_over_forty_stretches_of_sixteen_samples_or_more(size, stretches):
-    rng = np.random.default_rng(1)
-    values = rng.standard_normal(size) * np.linspace(1.0, 3.0, size)
-    parts = np.array_split(values, stretches)
-    assert d._noise(values) == pytest.approx(np.median([noise_sd(part) for part in parts]))
 
 
 T = np.linspace(-1.0, 1.0, 201)
@@ -191,17 +167,3 @@ def test_travel_has_to_go_with_the_turns(follows, said):
         with pytest.raises(InputError) as raised:
             d._refuse_unrelated(related(follows), "here")
         assert f"x_in_mm does not follow the turns of the {said}" in raised.value.line()
-
-
-def test_nothing_that_turns_or_travels_is_followed():
-    rests, stays = related(1.0), related(1.0)
-    rests.u.integral[:] = stays.x_in[:] = 0.0
-    for run in (rests, stays):
-        with pytest.raises(InputError, match=r"correlation 0\.00"):
-            d._refuse_unrelated(run, "here")
-
-
-def test_a_line_is_taken_out_as_a_fit_would():
-    values = np.exp(T)
-    line = np.polyval(np.polyfit(T, values, 1), T)
-    np.testing.assert_allclose(d._without_line(T, values), values - line, atol=1e-12)

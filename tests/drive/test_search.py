@@ -6,14 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.counted import Counted
 from tests.drive.verdicts import terms
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
 from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.drive.runs import DriveRun
-from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
+from tsas_cli.drive.search import NOTHING, drive_folds
 from tsas_cli.numerics.linear_response import sampled
 
 BLOCKS = 20
@@ -87,65 +86,6 @@ def test_with_the_gear_the_structure_is_chosen_again(folded):
     assert folded == [NOTHING, terms("lag", "play")]
 
 
-def test_a_fit_begins_from_the_simpler_ones_that_are_known():
-    began, counted = {}, Counted()
-    bench = SimpleNamespace(fit=lambda names, simpler: began.setdefault(names, [*simpler]))
-    fits = DriveFits(bench, counted)
-    fits.trials_of([NOTHING, terms("lag")])
-    fits.trials_of([terms("lag"), terms("lag", "delay")])
-    assert [len(simpler) for simpler in began.values()] == [0, 1, 1]
-    assert began[terms("lag", "delay")][0] is fits.trial(terms("lag"))
-    assert counted.total == counted.done == 3
-
-
-def run_of(band, size=40):
-    return SimpleNamespace(x_in=np.zeros(size), band=band, counts=np.ones(size, dtype=bool))
-
-
-@pytest.fixture
-def banded(monkeypatch):
-    monkeypatch.setattr(ds, "frequency_response", lambda runs: SimpleNamespace(band=runs[0].band))
-
-
-@pytest.mark.parametrize(
-    ("highest", "covered"),
-    [
-        ([10.0, 7.0], True),
-        ([10.0, 6.9], False),
-        ([1.0, 10.0, 8.0], True),
-        ([8.0, 1.0, 10.0], True),
-        ([0.5, 0.4], True),
-        ([0.5, 0.3], False),
-        ([None, None], False),
-        ([10.0, None], False),
-    ],
-)
-def test_the_highest_frequency_has_to_be_seen_by_a_second_run(banded, highest, covered):
-    """Up to 0.7 of it."""
-    runs = [run_of(None if h is None else (0.1, h)) for h in highest]
-    assert ds._covered(runs) == covered
-
-
-@pytest.mark.parametrize(("memory", "length"), [(1, 5), (5, 5), (8, 8)])
-def test_there_are_no_more_than_two_hundred_blocks(banded, monkeypatch, memory, length):
-    """Of a thousand samples blocks of five at the least."""
-    monkeypatch.setattr(ds, "block_length", lambda residuals: memory)
-    residuals = [np.zeros(600), np.zeros(400)]
-    folds = drive_folds([run_of((0.1, 9.0)), run_of((0.1, 9.0))], residuals)
-    assert folds.blocks == round(600 / length) + round(400 / length)
-    assert folds.fold.tolist() == folds.run.tolist() == [0] * 600 + [1] * 400
-
-
-def test_few_blocks_are_all_held_out(banded, monkeypatch):
-    monkeypatch.setattr(ds, "block_length", lambda residuals: 20)
-    folds = drive_folds([run_of((0.1, 9.0))], [np.zeros(60)])
-    assert not folds.by_run
-    assert folds.fold.tolist() == [0] * 20 + [1] * 20 + [2] * 20
-    five = drive_folds([run_of((0.1, 9.0))], [np.zeros(100)])
-    assert np.unique(five.fold[80:]).tolist() == [0]
-    assert five.blocks == 5
-
-
 def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():
     squares = {NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.009, terms("play"): 1.011}
     assert ds.rivals(MadeUp(squares), terms("lag"), "lag") == ("delay",)
@@ -174,22 +114,6 @@ def test_the_gear_is_what_surely_explains_what_is_left(squares, others, gear):
     search = MadeUp(squares, others)
     assert ds._with_gear(search, NOTHING) == gear
     assert (search.fitted == []) == (search.mean_square(NOTHING) < 1.15)
-
-
-def test_a_gear_that_is_there_is_tried_with_the_rest_alone():
-    rest = MadeUp({PLAY: 4.0, GEAR: 1.0})
-    assert ds._with_gear(rest, PLAY) == GEAR
-    assert rest.fitted == [GEAR]
-    assert ds._with_gear(MadeUp({GEAR: 4.0}, default=1.0), GEAR) == GEAR
-
-
-def test_a_gear_that_lags_explain_as_well_is_left_out(monkeypatch):
-    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("lag") | gear)
-    search = MadeUp({terms("lag", "play", "ripple"): 1.0, terms("lag", "ripple"): 1.01}, 9.0)
-    named = terms("lag", "play", "ripple")
-    assert ds._without_idle_gear(search, named) == terms("lag", "ripple")
-    needed = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 3.0})
-    assert ds._without_idle_gear(needed, terms("lag", "play")) == terms("lag", "play")
 
 
 def chirped(kind, size=1000, highest_Hz=20.0):

@@ -1,13 +1,17 @@
 """What the sensors make of true values, against readings made by hand, and back again."""
 
+import math
+
 import numpy as np
 import pytest
 
 from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
+from tsas_cli.numerics.settling import lag_after
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.sensors import low_pass, true_value
 
 TIME_S = np.arange(UP_AND_DOWN.size) * 0.02
 DRIFTED = (1.0 - np.exp(-0.1 * TIME_S)) / 0.1
@@ -67,3 +71,63 @@ def test_without_times_nothing_is_late():
     rig = with_values(GROUP_A, {"channel_delay.f_in_delay_s": 0.1})
     without = simulate(GROUP_A, DriveInput(UP_AND_DOWN))
     np.testing.assert_array_equal(simulate(rig, DriveInput(UP_AND_DOWN)).f_in_N, without.f_in_N)
+
+
+LAG = 0.08
+UNEVEN = np.cumsum(np.random.default_rng(3).uniform(0.0, 0.04, 400))
+
+
+def filtered(values, time_s, lag_s=LAG):
+    return low_pass(values, time_s, lag_s, np.full(5, np.nan))
+
+
+def test_a_line_is_followed_with_the_lag_of_its_rate():
+    """y = r (t − τ (1 − e^(−t/τ))), at any sampling."""
+    t = UNEVEN - UNEVEN[0]
+    exact = 3.0 * (t - LAG * (1.0 - np.exp(-t / LAG)))
+    np.testing.assert_allclose(filtered(7.0 + 3.0 * t, UNEVEN), 7.0 + exact, atol=1e-12)
+
+
+def test_a_sine_loses_amplitude_and_phase():
+    """By 1/√(1 + (ωτ)²) and atan ωτ, once it has settled."""
+    t, omega = np.arange(0.0, 4.0, 1e-3), 9.0
+    y = filtered(np.sin(omega * t), t)
+    gain, phase = 1.0 / math.hypot(1.0, omega * LAG), math.atan(omega * LAG)
+    settled = t > 15.0 * LAG
+    expected = gain * np.sin(omega * t - phase)
+    np.testing.assert_allclose(y[settled], expected[settled], atol=2e-5)
+
+
+def test_after_a_step_a_low_pass_comes_by_an_exponential():
+    behind = 4.0
+    for _ in range(3):
+        behind = lag_after(behind, 0.0, 0.05, LAG)
+    assert behind == pytest.approx(4.0 * math.exp(-0.15 / LAG))
+    assert lag_after(4.0, 9.0, math.inf, LAG) == 0.0
+
+
+@pytest.mark.parametrize(("channel", "unit"), [("f_in", "N"), ("f_out", "N"), ("x_out", "mm")])
+def test_one_channel_is_filtered_and_no_other(channel, unit):
+    plain, read = run({}), run({f"sensor_lag.{channel}_lag_s": LAG})
+    time_s = np.arange(UP_AND_DOWN.size) * 0.02
+    for name in ("x_in_mm", "f_in_N", "f_out_N", "x_out_mm"):
+        true = getattr(plain, name)
+        expected = filtered(true, time_s) if name == f"{channel}_{unit}" else true
+        np.testing.assert_allclose(getattr(read, name), expected, atol=1e-10)
+
+
+def test_without_times_nothing_is_filtered():
+    rig = with_values(GROUP_A, {"sensor_lag.f_in_lag_s": LAG})
+    without = simulate(GROUP_A, DriveInput(UP_AND_DOWN))
+    np.testing.assert_array_equal(simulate(rig, DriveInput(UP_AND_DOWN)).f_in_N, without.f_in_N)
+
+
+def test_a_measured_load_is_taken_back_to_where_it_was():
+    """To second order in the time constant, by the rate of the reading."""
+    t, omega = np.arange(0.0, 4.0, 1e-3), 2.0
+    rig = with_values(GROUP_A, {"sensor_lag.f_out_lag_s": LAG})
+    wave = 25.0 + np.sin(omega * t)
+    back = true_value("f_out_N", filtered(wave, t), t, rig)
+    np.testing.assert_allclose(back[1:-1], wave[1:-1], atol=1.1 * LAG * omega)
+    settled = slice(1500, -1)
+    np.testing.assert_allclose(back[settled], wave[settled], atol=1e-5)

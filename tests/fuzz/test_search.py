@@ -45,6 +45,7 @@ def test_a_death_of_the_process_is_found(tmp_path, monkeypatch):
     assert b"DEAD" in {path.read_bytes()[:4] for path in found.faults}
 
 
+@pytest.mark.large  # three searches, each in a process that dies
 def test_what_a_library_does_to_the_search_alone_is_no_fault(tmp_path, monkeypatch, capfd):
     pytest.importorskip("atheris")
     monkeypatch.setattr("tests.fuzz.search.MOST_DEATHS", 1)

@@ -42,11 +42,6 @@ def test_what_the_answer_is_limited_by_is_said_and_nothing_else(monkeypatch, how
     assert [part in note for part, note in zip(said, found, strict=True)] == [True] * len(said)
 
 
-def test_notes_come_in_order(monkeypatch):
-    said = notes(monkeypatch, model=Model(()), steps=200, unsettled=[1], unstable=["unstable"])
-    assert [note.split()[0] for note in said] == ["the", "unstable", "200", "aborted"]
-
-
 def unstable(damping_times, *, whole=True):
     critical = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan")))
     damping = damping_times * bristles_of(critical).damping

@@ -8,7 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification import extension as e
-from tsas_cli.identification.extension import Bench, _parameters
+from tsas_cli.identification.extension import _parameters
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.fit_problem import FitProblem, unknown_of
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -30,13 +30,6 @@ def test_without_a_force_a_compliance_at_the_load_is_not_fitted():
     with_force, without = (_parameters(["load_law"], has_force=known) for known in (True, False))
     assert set(with_force) - set(without) == {"load_law.compliance_mm_per_N"}
     assert not any(name.endswith(("travel_mm", "low_mm", "high_mm")) for name in with_force)
-
-
-def test_what_the_closed_form_does_not_hold_for_needs_a_mesh():
-    bench = SimpleNamespace(never_closed=False)
-    assert not Bench.on_mesh(bench, ["free_tendon", "backlash"])
-    assert Bench.on_mesh(bench, ["free_tendon", "presliding"])
-    assert Bench.on_mesh(SimpleNamespace(never_closed=True), [])
 
 
 ZERO = "x_in_zero_mm"
@@ -114,83 +107,6 @@ def bench(monkeypatch):
         return e.bench_of(FittedModel(problem, values, (0, 2), errors, Model(()), None, ()))
 
     return make
-
-
-@pytest.fixture
-def asked(monkeypatch):
-    """Have fits end at 3 and 4 mm, and further values at 2 and 5; return what they are asked."""
-    asked = {}
-
-    def solve(unknowns, runs, residuals, *, tolerance, known, values_only):
-        values = np.array([3.0, 4.0, 2.0, 5.0][: len(unknowns)])
-        found = [residuals(k, values) for k in range(runs)]
-        asked.update(found=found, known=known, tolerance=tolerance)
-        left = np.zeros(sum(f.size for f in found))
-        return Solution(values, np.zeros(values.size, bool), left, None, True, "", 1)
-
-    monkeypatch.setattr(e, "solve", solve)
-    return asked
-
-
-def test_an_effect_is_freed_beside_the_base_from_where_its_fit_ended(asked, bench):
-    made = bench()
-    assert [rig.preload_N for rig in made.rigs] == [pytest.approx(30.0), GROUP_A.preload_N]
-    assert made.channels == ["a_N", "b_N", "f_in_N"]
-    trial = made.fit(["free_tendon"], {DISTAL: 3.0 * SIZE})
-    other = QUANTITIES[DISTAL].size
-    assert [(u.name, u.run, u.initial) for u in trial.unknowns] == [
-        (ZERO, 0, 1.0),
-        (ZERO, 1, 2.0),
-        (PROXIMAL, None, 0.0),
-        (DISTAL, None, pytest.approx(3.0 * SIZE / other)),
-    ]
-    first, second = asked["found"]
-    assert first[:3] == pytest.approx([3.0, 2.0 * SIZE, 5.0 * other])
-    assert second[:3] == pytest.approx([4.0, 2.0 * SIZE, 5.0 * other])
-    assert trial.sizes == (5, 5)
-    assert made.rig(trial, 1).x_in_zero_mm == 4.0
-
-
-def test_near_a_trial_it_begins_there_with_its_slopes(asked, bench):
-    J = np.arange(9.0).reshape(3, 3)
-    sought = [zero_of(0), zero_of(1), unknown_of(PROXIMAL)]
-    near = trial_of(sought, [7.0, 8.0, 9.0], np.full(3, 2.0), J=J)
-    made = bench()
-    trial = made.fit(["free_tendon"], near=near)
-    assert asked["tolerance"] == pytest.approx(4.0 * e.TOLERANCE)  # by the mean square
-    assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
-    np.testing.assert_array_equal(asked["known"], np.column_stack((J, np.full(3, np.nan))))
-    told = made.fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
-    assert told.unknowns[2].initial == pytest.approx(0.5)
-
-
-@pytest.mark.parametrize(
-    ("closed", "on_mesh", "meshed"),
-    [
-        ((True, True), False, False),
-        ((True, True), True, True),  # asked for
-        ((True, False), False, True),  # one run without a closed form is enough
-    ],
-)
-def test_a_mesh_is_used_where_it_is_asked_for_or_needed(asked, bench, closed, on_mesh, meshed):
-    made = bench(closed)
-    trial = made.fit(on_mesh=on_mesh)
-    assert trial.on_mesh == meshed
-    used, other = (made.meshed, made.closed) if meshed else (made.closed, made.meshed)
-    assert made.errors_for(trial) is used
-    assert [run.asked.x_in_zero_mm for run in used] == [3.0, 4.0]
-    assert not any(hasattr(run, "asked") for run in other)
-
-
-def test_a_first_look_changes_some_values_and_keeps_the_others(bench):
-    made = bench()
-    for mesh in (False, True):
-        trial = trial_of([zero_of(0), zero_of(1)], [5.0, 6.0], mesh=mesh)
-        found = made.errors_at(trial, {PROXIMAL: 123.0})
-        assert found[[0, 1, 2, 5, 6]] == pytest.approx([5.0, 123.0, 0.0, 6.0, 123.0])
-        assert made.errors_at(trial, {})[[0, 1]] == pytest.approx([5.0, 0.0])
-    assert hasattr(made.coarse[0], "asked")
-    assert not hasattr(made.meshed[0], "asked")
 
 
 def test_an_uneven_sheath_is_bent_by_a_twentieth_more_here_than_there(bench):

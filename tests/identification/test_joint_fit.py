@@ -187,10 +187,3 @@ def test_what_is_fixed_is_said_once_for_each_reason():
         "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
     ]
     assert problem.ids == ["a", "b"]
-
-
-def test_damping_that_nobody_knows_is_critical():
-    name = "bristles.damping_N_s_per_mm"
-    assert j._fixed_value(Model(()), name, "") == "its critical value"
-    known = Model((Estimate(name, 0.5, "N s/mm", "given"),))
-    assert j._fixed_value(known, name, "") == "0.5 N s/mm"

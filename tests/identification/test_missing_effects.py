@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from tests.counted import Counted
 from tsas_cli.identification import missing_effects as m
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -99,50 +98,3 @@ def test_where_no_effect_explains_it_the_nominal_interval_counts_too(widened, me
     found = widened(trial("a", mean_square, 20.0))
     low = 9.0 if own_too else 10.0
     assert ends(found) == [(low, 21.0), (4.0, 6.0) if own_too else (5.0, 5.0)]
-
-
-@pytest.fixture
-def tried(monkeypatch):
-    """Run the search on effects whose parts, meshes and fits are told by name."""
-
-    def search(parts, mean_squares=None, *, converged=(), on_mesh=()):
-        effects = [SimpleNamespace(name=name) for name in parts]
-        monkeypatch.setattr(m, "EFFECTS", effects)
-        monkeypatch.setattr(m, "projector", lambda t: f"basis of {t.effects[0]}")
-        seen_from, step = [], Counted()
-
-        def screen(bench, t, effect, basis):
-            assert basis == f"basis of {t.effects[0]}"
-            seen_from.append(t.effects[0])
-            return SimpleNamespace(effect=effect, part=parts[effect.name], initial=effect.name)
-
-        def fit(names=(), start=None, *, near=None, on_mesh=False):
-            if not names:
-                return trial("mesh" if on_mesh else "closed", 9.0)
-            (name,) = names
-            assert (start, near.effects[0]) == (name, seen_from[list(parts).index(name)])
-            square = (mean_squares or {}).get(name, 1.0)
-            return trial(name, square, converged=not converged or name in converged)
-
-        monkeypatch.setattr(m, "screen", screen)
-        bench = SimpleNamespace(fit=fit, on_mesh=lambda names: names[0] in on_mesh)
-        found = m._best_trials(bench, step)
-        assert step.all_of(least=len(parts))
-        return [t.effects[0] for t in found], seen_from
-
-    return search
-
-
-def test_effects_that_explain_half_as_much_as_the_best_are_fitted(tried):
-    assert tried({"a": 0.4, "b": 0.8, "c": 0.39, "d": 0.41})[0] == ["a", "b", "d"]
-
-
-def test_each_is_seen_from_the_fit_that_its_mesh_asks_for(tried):
-    found = tried(dict.fromkeys("abc", 0.5), on_mesh="b")
-    assert found == (["a", "b", "c"], ["closed", "mesh", "closed"])
-
-
-def test_fits_that_fail_or_are_no_better_are_left_out(tried):
-    squares = {"a": 8.9, "b": 9.0, "c": 9.1, "d": 2.0}
-    assert tried(dict.fromkeys("abcd", 0.5), squares)[0] == ["a", "d"]
-    assert tried(dict.fromkeys("abcd", 0.5), squares, converged="d")[0] == ["d"]

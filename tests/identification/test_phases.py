@@ -105,12 +105,6 @@ def test_a_run_may_end_right_after_a_reversal(left):
     assert abs(parts[-1].first - 99) <= 1
 
 
-def test_the_border_is_the_geometric_mean_of_the_strokes_that_show_both():
-    slopes = [(100.0, 4.0), (400.0, 1.0), (100.0, 4.0), (math.nan, 3.0), (50.0, 0.0)]
-    assert p._border(slopes) == pytest.approx(20.0)
-    assert p._border([(math.nan, 1.0), (5.0, 0.0)]) is None
-
-
 @pytest.fixture
 def cut_as(monkeypatch):
     """Cut strokes of ten samples, up and down in turns, as told; a run goes 0, 2, 4 … inside."""
@@ -155,3 +149,125 @@ def test_what_no_slope_tells_is_unknown(cut_as):
     assert cut_as(BOTH, alone)[-1] == (10, 20, "unknown")
     steep = (None, (200.0, math.nan))
     assert cut_as(steep, steep) == [(0, 10, "unknown"), (10, 20, "unknown")]
+
+
+def run_of(x, turns=(), *, sd=0.01, noise=0.05, **measured):
+    x = np.asarray(x, dtype=float)
+    conditioned = SimpleNamespace(values=x, sd=np.full(x.size, sd), reversals=np.array(turns))
+    return SimpleNamespace(
+        conditioned={"x_in_mm": conditioned},
+        measured=measured,
+        noise=dict.fromkeys(measured, noise),
+        time_s=0.1 * np.arange(x.size),
+        drive_column="x_in_mm",
+    )
+
+
+def resting(way=1.0, noise=0.05, *, channel="f_in_N"):
+    """A drive that goes, rests from sample 50 on and turns at 100; unloading begins at 70."""
+    t = np.arange(140)
+    x = way * np.interp(t, [0, 50, 100, 139], [0.0, 5.0, 5.0, 1.0])
+    tension = way * np.interp(t, [0, 50, 70, 139], [25.0, 45.0, 45.0, 10.0])
+    return run_of(x, (0, 100, 139), noise=noise, **{channel: tension})
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_resting_drive_has_turned_where_the_tension_does(way):
+    """The mean of eight samples falls by 5/√8 of the noise some samples after 70."""
+    found = p._start_of_unloading(resting(way), 100)
+    assert 62 <= found <= 70
+    assert p._start_of_unloading(resting(way, noise=1e6), 100) == 100
+
+
+def test_strokes_go_from_turn_to_turn_and_cover_the_run():
+    run = resting(channel="f_out_N")
+    first, second = p._strokes(run)
+    assert (first.first, first.end, second.first, second.end) == (0, 100, 100, 140)
+    assert (first.up, second.up) == (True, False)
+    x = run.conditioned["x_in_mm"].values
+    np.testing.assert_allclose(second.travel, np.abs(x[100:] - x[100]))
+    expected = run.measured["f_out_N"][100:] / 0.05
+    np.testing.assert_allclose(second.channels["f_out_N"], expected)
+
+
+def test_segments_in_a_file_end_where_the_next_one_begins():
+    segments = [p.Segment(0, 50, "dead_band_up"), p.Segment(50, 140, "contraction")]
+    told = p.segment_records(resting(), segments)
+    assert [(s.start_s, round(s.end_s, 9), s.phase) for s in told] == [
+        (0.0, 5.0, "dead_band_up"),
+        (5.0, 13.9, "contraction"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("x", "up"), [([0, -1, -2, 1], True), ([0, 1, 2, -1], False), ([0, 1, 2, 0], True)]
+)
+def test_the_way_of_the_last_stroke_is_told_by_the_last_sample(x, up):
+    """A drive that comes back to where it was goes up."""
+    assert [s.up for s in p._strokes(run_of(x, (0, 3)))] == [up]
+
+
+N, CUT = 120, 45
+TRAVEL = np.linspace(0.0, 12.0, N)
+
+
+def stroke(channels, travel=TRAVEL):
+    n = travel.size
+    return p._Stroke(0, n, True, np.arange(n), travel, channels)
+
+
+def f_in(slip=20.0, dead=100.0, noise=0.0, seed=1):
+    """Tension over noise: along the front's law up to the cut, straight after it."""
+    D = TRAVEL
+    band = 40.0 * np.sqrt(D) + dead * D
+    line = band[CUT] + slip * (D - D[CUT])
+    return np.where(D[CUT] > D, band, line) + noise * np.random.default_rng(seed).standard_normal(N)
+
+
+def f_out(noise=0.0, seed=2):
+    still = np.where(TRAVEL[CUT] > TRAVEL, 0.0, 15.0 * (TRAVEL - TRAVEL[CUT]))
+    return still + noise * np.random.default_rng(seed).standard_normal(N)
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3])
+def test_squares_that_a_fit_to_the_first_samples_leaves(columns):
+    basis = np.column_stack([TRAVEL**0.5**k for k in range(columns)])
+    basis[:, 0] = 1.0
+    values = 7.0 + np.random.default_rng(3).standard_normal(N)
+    left = p._residual_squares(basis, values)
+    assert left.size == N + 1
+    assert left[0] == 0.0
+    for k in (1, 2, 5, 40, N):
+        fit = np.linalg.lstsq(basis[:k], values[:k], rcond=None)[0]
+        direct = np.sum((values[:k] - basis[:k] @ fit) ** 2)
+        assert left[k] == pytest.approx(direct, abs=1e-5)
+
+
+@pytest.mark.parametrize("names", [("f_in_N",), ("f_out_N",), ("f_in_N", "f_out_N")])
+def test_the_cut_is_where_both_laws_meet(names):
+    channels = {"f_in_N": f_in(noise=1.0), "f_out_N": f_out(noise=1.0)}
+    found = p._transition(stroke({name: channels[name] for name in names}))
+    assert abs(found - CUT) <= 2
+
+
+def test_a_stroke_that_one_law_is_enough_for_is_not_cut():
+    noise = np.random.default_rng(4).standard_normal(N)
+    assert p._transition(stroke({"f_in_N": 20.0 * TRAVEL + noise})) is None
+    band = 40.0 * np.sqrt(TRAVEL) + 100.0 * TRAVEL + noise
+    assert p._transition(stroke({"f_in_N": band})) is None
+    assert p._transition(stroke({"f_out_N": noise})) is None
+
+
+def test_a_drive_that_slows_down_slips_along_a_line_too():
+    """Samples that lie closer and closer: what is straight is so over travel, not over time."""
+    travel = 12.0 * np.sin(np.linspace(0.0, 1.4, N))
+    values = np.where(np.arange(N) < CUT, 0.0, 40.0 * (travel - travel[CUT]))
+    assert abs(p._transition(stroke({"f_out_N": values}, travel)) - CUT) <= 1
+
+
+def test_a_load_that_moves_slips():
+    """Its slope counts inverted: a load that stands quite still is in the dead band."""
+    load = np.where(TRAVEL[CUT] > TRAVEL, 0.0, -4.0 * (TRAVEL - TRAVEL[CUT]))
+    before, after = p._slopes(stroke({"x_out_mm": load}), CUT)
+    assert before > 1e9
+    assert after == pytest.approx(1.0 / 4.0)

@@ -102,43 +102,6 @@ def test_what_drives_a_run():
     assert ready(measured={"x_out_mm": np.ones(30)}).drive.start_f_in_N is None
 
 
-def test_a_column_is_as_measured_or_as_conditioned():
-    run = ready()
-    assert run.channel("f_in_N") is run.measured["f_in_N"]
-    assert run.channel("x_in_mm") is run.conditioned["x_in_mm"].values
-    assert run.channel("x_out_mm") is None
-
-
-def test_how_columns_were_conditioned_is_told():
-    told = ready().conditioning()
-    assert told["x_in_mm"] == {
-        "method": p.METHOD, "window_s": 0.25, "noise": 0.1, "unit": "mm", "reversals": 1,
-    }  # fmt: skip
-    assert told["f_out_N"] == {
-        "method": "none: the column has no noise",
-        "window_s": 0.0, "noise": 0.0, "unit": "N", "reversals": 0,
-    }  # fmt: skip
-
-
-def test_noise_that_all_samples_have_told_is_taken():
-    assert ready(noise={"f_in_N": 0.25, "x_out_mm": 9.0}).noise == {"f_in_N": 0.25}
-    assert ready().noise == {"f_in_N": 0.0}
-
-
-@pytest.mark.parametrize(
-    ("noise", "tolerance"),
-    [(1.0, 1e-3), (1e-3, 6e-6), (1e-5, 1e-7), (0.0, 1e-3), (NAN, 1e-3), (None, 1e-3)],
-)
-def test_a_step_s_error_is_hidden_by_noise(monkeypatch, noise, tolerance):
-    """3 % of the noise, over the largest tension of 5 N; between 1e-7 and the usual tolerance."""
-    monkeypatch.setattr(p, "TOLERANCE", 1e-3)
-    tension = np.where(np.arange(30) == 3, -5.0, 1.0)
-    tension[4] = NAN
-    channel, noise = ("x_out_mm", 1e-3) if noise is None else ("f_in_N", noise)
-    run = ready(noise={channel: noise}, measured={channel: tension})
-    assert run.step_tolerance == pytest.approx(tolerance)
-
-
 def test_a_run_begins_seconds_after_the_first_of_its_dataset():
     first, later = datetime(2025, 1, 1, tzinfo=UTC), datetime(2025, 1, 1, 0, 2, tzinfo=UTC)
     assert p.seconds_into(first, later) == 120.0

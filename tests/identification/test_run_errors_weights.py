@@ -16,7 +16,6 @@ from tsas_cli.physics.ends import DriveInput
 X = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0])
 N = X.size
 TURN_AT = np.array([0, 5, 10])
-WAY = np.array([1.0] * 6 + [-1.0] * 5)
 NOISE = {"f_in_N": 2.0, "f_out_N": 0.5}
 LOAD = 7.0 * np.ones(N)
 EVERY = np.arange(N)
@@ -116,24 +115,6 @@ def test_a_channel_without_noise_has_next_to_none(model):
     np.testing.assert_allclose(errors_of(run).weights["f_in_N"], 1e-9)
 
 
-def test_what_a_hidden_turn_does_is_added_with_its_neighbours(monkeypatch, model):
-    """k = 3: to turn back by 0.5 mm at sample 7 is 1.5 N, there and beside it."""
-    back = np.where(EVERY == 7, 0.5, 0.0)
-    monkeypatch.setattr(r, "_reversed_at_rest", lambda conditioned, _: conditioned.values + back)
-    added = np.where((EVERY >= 6) & (EVERY <= 8), 1.5**2, 0.0)
-    found = errors_of(run_of()).weights["f_in_N"]
-    np.testing.assert_allclose(found, np.sqrt(4.0 + 0.09 + added))
-
-
-def test_a_run_is_answered_as_it_is_asked_for(model):
-    """From rest, with the steps of its own tolerance, on no mesh but where nodes are asked for."""
-    r.meshed(errors_of(run_of()), 12).errors(3.0)
-    (_, drive, _, first), *_, (_, _, _, last) = model.asked
-    assert drive.start_f_in_N is None
-    assert (first["nodes"], first["tolerance"]) == (None, 1e-5)
-    assert last["nodes"] == 12
-
-
 LATER = np.arange(1, N)  # a fit never holds the first sample: nothing is forgotten there
 
 
@@ -160,18 +141,6 @@ def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(mo
     np.testing.assert_allclose(found.predict(2.0)["f_in_N"], 2.0 * X)
 
 
-def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(model):
-    found = errors_of(run_of(), dynamics="lugre")
-    own = [how["step_ends_s"] is rs.OWN_STEPS for *_, how in model.asked]
-    assert own == [True, False, True, True, True]  # its steps, its answer, errors of the drive
-    model.asked.clear()
-    found.errors(9.0)
-    assert [how["step_ends_s"].tolist() for *_, how in model.asked] == [[0.25, 0.5]]
-    model.asked.clear()
-    r.reweighted(found, 9.0)
-    assert len(model.asked) == 5  # its old predictions had other steps
-
-
 def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, model):
     """Simulated are 0, 4 and 10: at 2 half way from 0 to 4, at 7 half way from 4 to 0."""
     monkeypatch.setattr(rs, "points", lambda run: np.array([0, 4, 10]))
@@ -186,29 +155,3 @@ def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, mo
     assert drive.values.tolist() == [0.0, 4.0, 0.0]
     assert drive.load_values.tolist() == [0.0, 8.0, 0.0]
     assert drive.time_s == pytest.approx([0.0, 0.4, 1.0])
-
-
-@pytest.mark.parametrize(
-    ("memory", "window_s", "longest", "length"),
-    [
-        (3, 0.05, 100, 3),  # as long as the errors remember
-        (1, 0.2, 100, 4),  # twice as long as the drive was smoothed: four samples
-        (1, 0.2, 2, 2),  # but leave some
-        (50, 0.05, 100, 5),  # and two of a run
-    ],
-)
-def test_a_block_is_longer_than_the_memory_of_errors(
-    monkeypatch, model, memory, window_s, longest, length
-):
-    samples = {"f_in_N": EVERY, "f_out_N": np.array([0, 9])}
-    found = r.run_errors(run_of(), samples, 3.0)
-    monkeypatch.setattr(r, "block_length", lambda residuals: memory)
-    found.run.conditioned["x_in_mm"].window_s = window_s
-    found.run.conditioned["other"] = SimpleNamespace(window_s=0.001)
-    expected = [k // length for k in [*range(N), 0, 9]]
-    assert found.blocks(3.0, longest).tolist() == expected
-
-
-def test_blocks_leave_eight_of_all_runs():
-    made = [SimpleNamespace(length=n, blocks=lambda rig, longest: (rig, longest)) for n in (30, 50)]
-    assert r.blocks_of(made, ["a", "b"]) == [("a", 10), ("b", 10)]

@@ -55,11 +55,6 @@ def test_the_drive_has_to_travel_as_far_again(forgets):
     assert kept(run_of(UP)) == {"f_in_N": list(range(N - 1))}
 
 
-def test_what_never_forgets_keeps_nothing(forgets):
-    forgets(None)
-    assert kept(run_of(UP)) == {}
-
-
 def test_gaps_of_the_drive_and_of_a_channel_do_not_count(forgets):
     forgets(5)
     out = np.zeros(N)
@@ -124,23 +119,3 @@ def test_a_long_run_is_thinned_but_after_its_reversals():
     assert points(30_000, [0, 29_990, 29_999])[-10:].tolist() == list(range(29_990, 30_000))
     for short in (9, 7999):
         assert points(short, [0, short - 1]).tolist() == list(range(short))
-
-
-def test_many_strokes_have_three_hundred_samples_each():
-    """12,000 samples are thinned to 4,000, by three; with 20 strokes to 6,000, by two."""
-    few = points(12_000, [0, 6_001, 11_999])
-    assert set(np.diff(few[20:1_000])) == {3}
-    many = points(12_000, np.linspace(0, 11_999, 21).astype(int))
-    assert {1, 2} == set(np.diff(many))
-    assert 12_000 / 2 < many.size < 12_000 / 2 + 20 * 4 + 2
-    fewer = points(11_999, np.linspace(0, 11_998, 21).astype(int))
-    assert fewer.tolist() == list(range(11_999))
-
-
-@pytest.mark.parametrize(
-    ("size", "stride"), [(0, 1), (1, 1), (1000, 1), (1001, 2), (2000, 2), (5500, 6)]
-)
-def test_no_more_than_a_thousand_means_of_as_many_samples(size, stride):
-    edges = s.mean_edges(size)
-    assert edges.tolist() == list(range(0, size, stride))
-    assert edges.size <= 1000

@@ -13,13 +13,8 @@ from tsas_cli.physics.course import (
     DIRECTION,
     DRIVE,
     LOAD,
-    LOST,
-    PULLED,
-    RELEASED,
     STEP,
-    TIME,
     TRAVEL,
-    VISCOUS,
 )
 from tsas_cli.physics.ends import (
     DriveInput,
@@ -147,23 +142,6 @@ def test_the_direction_is_that_of_the_last_motion():
     x = np.array([1.0, 1.0, 2.0, 2.0, 1.5, 1.5])
     assert last_direction(x).tolist() == [0.0, 0.0, 1.0, 1.0, -1.0, -1.0]
     assert last_direction(x, -1.0).tolist() == [-1.0, -1.0, 1.0, 1.0, -1.0, -1.0]
-
-
-def test_positions_before_a_run_are_passed_at_no_known_speed():
-    ends = ends_of(VARYING, DriveInput(np.array([0.5, 0.7, 0.4, 0.6]), time_s=TIME_S))
-    later = ends.after([9.0, 8.0])
-    assert later.drive.tolist() == [9.0, 8.0, 0.5, 0.7, 0.4, 0.6]
-    given = [PULLED, RELEASED, VISCOUS, LOST, LOAD, TIME]
-    np.testing.assert_array_equal(later.course[given, 2:], ends.course[given])
-    np.testing.assert_array_equal(later.course[STEP, 3:], ends.course[STEP, 1:])
-    for k in range(2):
-        np.testing.assert_array_equal(later.course[given, k], ends.course[given, 0])
-    assert later.course[STEP, :3].tolist() == [math.inf] * 3
-    assert later.course[DIRECTION].tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
-    assert later.boundary == ends.boundary
-    first = ends.first()
-    np.testing.assert_array_equal(first.course, ends.course[:, :1])
-    assert first.course[DIRECTION].tolist() == [0.0]
 
 
 MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])

@@ -5,9 +5,15 @@ import sys
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
+from tests.recordings.rewritten import rewrite
+from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.parquet_files import column_of, floats_from
+from tsas_cli.recordings.run_files import open_run
+from tsas_cli.recordings.writing import columns_of
+from tsas_cli.support.errors import InputError
 
 NAN = float("nan")
 
@@ -57,3 +63,50 @@ def test_pandas_is_not_loaded_for_it():
         "assert 'pandas' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", call], check=True)
+
+
+def rewritten(folder, table):
+    return open_run(folder, rewrite(folder, pa.table(table)))
+
+
+def test_columns_are_those_of_the_recording(dataset, columns):
+    data = read_dataset(dataset)
+    run, whole = open_run(dataset, data.runs[0]), data["a"]
+    assert run.names == list(columns)
+    assert run.rows == 500
+    for name in run.names:
+        assert (run.read(name) == whole.columns[name]).all()
+
+
+def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
+    table = {"time_s": [0.0, 1.0, 2.0], "f_in_N": [1.0, None, 3.0], "own": [7.0, 8.0, 9.0]}
+    run = rewritten(dataset, table | {"text": ["a", "b", "c"]})
+    assert run.names == ["time_s", "f_in_N", "own"]
+    assert np.isnan(run.read("f_in_N")).tolist() == [False, True, False]
+    assert run.read("own").tolist() == [7.0, 8.0, 9.0]
+    with pytest.raises(InputError, match="column text is missing; there are: time_s, f_in_N, own"):
+        run.read("text")
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"f_in_N": [1.0, 2.0]}, "time_s is missing"),
+        ({"time_s": [0.0], "f_in_N": [1.0]}, "short"),
+    ],
+)
+def test_a_file_without_time_is_refused(dataset, table, message):
+    with pytest.raises(InputError, match=message):
+        rewritten(dataset, table)
+
+
+def test_time_that_runs_backwards_is_refused_when_it_is_read(dataset):
+    run = rewritten(dataset, {"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]})
+    with pytest.raises(InputError, match="row 2: time_s does not increase"):
+        run.read("time_s")
+
+
+def test_a_column_that_a_stage_has_not_written_is_named(tmp_path):
+    pq.write_table(pa.table({"f_in_N": [1.0]}), tmp_path / "a.parquet")
+    with pytest.raises(InputError, match=r"a\.parquet: column f_out_N is missing$"):
+        columns_of(tmp_path / "a.parquet", ["f_in_N", "f_out_N"])

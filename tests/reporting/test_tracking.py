@@ -173,20 +173,6 @@ def test_runs_that_are_not_beside_the_file_are_refused(tmp_path):
         read_inputs([folder, tmp_path / "elsewhere"])
 
 
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
-        (lambda content: content.pop("results"), "results is missing"),
-        (lambda content: content.update(results=[]), "results"),
-        (lambda content: content["results"][0].pop("run"), "results.0.run is missing"),
-        (lambda content: content.update(format=2), "format"),
-    ],
-)
-def test_a_file_that_is_not_whole_is_refused(spoiled, spoil, said):
-    with pytest.raises(InputError, match=re.escape(said)):
-        read_inputs([spoiled(spoil)])
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_the_commands_of_the_page_make_the_same_page(tmp_path, monkeypatch, here):
     """What `tsas track` writes, the page reads; and its commands do it again."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.lugre.lumps import GH, LAST, STEP, N, cleared, nodes, run, segments
+from tests.physics.lugre.lumps import LAST, STEP, cleared, nodes, run, segments
 from tests.physics.references import (
     DRIVEN_BY_FORCE,
     GROUP_A,
@@ -15,9 +15,8 @@ from tests.physics.references import (
     at,
     course_of,
 )
-from tsas_cli.physics.boundary import FORCE, share_before_sensor
+from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.course import DRIVE, LOAD
-from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre import state as rows
 from tsas_cli.physics.lugre.balance import balance, set_limits
 from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, phase_of
@@ -30,13 +29,8 @@ from tsas_cli.physics.lugre.ends import (
     Samples,
     Span,
     StepEnds,
-    end_stiffnesses,
-    input_error,
-    secant_stiffness,
     write_samples,
 )
-from tsas_cli.physics.lugre.frames import write_slack_frames
-from tsas_cli.physics.lugre.input import next_reversal
 from tsas_cli.physics.lugre.slack import (
     end_of_slack,
     is_slack,
@@ -47,7 +41,6 @@ from tsas_cli.physics.lugre.slack import (
 )
 from tsas_cli.physics.lugre.start import rest_at
 from tsas_cli.physics.lugre.state import Given, Step
-from tsas_cli.physics.lugre.step import bdf2, newton, step_error
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import with_values
 
@@ -98,101 +91,11 @@ def test_limits_of_friction_follow_tension_way_and_speed(exponent, excess, sign)
         assert each[0] == each[LAST] == 0.0
 
 
-def test_a_lump_without_tension_has_a_limit_all_the_same():
-    s, law = lumps(GROUP_A, tensions=(0.0,) * 4)
-    set_limits(s, STEP, law)
-    assert nodes(s, rows.LIMIT)[1:LAST].tolist() == [1e-9] * 3
-
-
-def test_an_end_that_is_moved_keeps_the_bristle_that_it_had():
-    """It rubs only where a force pulls at it: its deflection waits for that."""
-    rig = with_values(GROUP_A, {"drive_friction.friction_N": 2.0})
-    s, law = lumps(rig, speeds=(0.0, 1.0, -1.0, 0.5, 0.3))
-    s[rows.DEFLECTION_NEW] = 0.125
-    for boundary, bent in ((LOADED_BY_SPRING, 0.125), (DRIVEN_BY_FORCE, 0.0)):
-        balance(s, STEP, at(law, boundary))
-        assert s[rows.DEFLECTION_NEW] == bent
-
-
-@pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, DRIVEN_BY_FORCE])
-def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
-    s, law = lumps(GROUP_A, tensions=(F0,) * 4)
-    segments(s, rows.TENSION_SLOPE)[:] = segments(s, rows.STIFFNESS) * GH
-    if boundary.drive == FORCE:
-        step = STEP._replace(frame=NONE, drive=Given(math.inf, 0.0))
-    else:
-        step = STEP._replace(frame=NONE, lost_N=math.inf)
-    assert newton(s, step, at(law, boundary), 1e-6) == (0, False)
-
-
-def test_an_end_whose_place_is_given_goes_there_and_the_guess_is_that_it_does():
-    """So that the guess of a step has no error at the ends; all is relative to the drive."""
-    s, law = lumps(GROUP_A, speeds=(0.3, 0.1, 0.3, -0.2, 0.7))
-    s[rows.POSITION_HISTORY + LAST], step = 0.5, STEP._replace(frame=Given(4.0, 1.5))
-    assert newton(s, step, at(law, LOADED_BY_DISPLACEMENT), math.inf) == (0, True)
-    expected = pytest.approx([0.0, 0.1, 0.3, -0.2, (STEP.load.value - 4.0 - 0.5) / GH])
-    assert nodes(s, rows.RATE).tolist() == nodes(s, rows.RATE_PREDICTED).tolist() == expected
-
-
-def test_turns_stops_and_starts_of_what_is_given_end_a_step():
-    times, law = np.arange(8.0), cleared(GROUP_A)[1]
-    small = 0.1 * np.array([0.0, 1.0, 2.0, 2.0, 2.0, 3.0, 2.0, 1.0])
-    course = course_of(small, GROUP_A, load=0.1 * np.abs(times - 1.0), time_s=times)
-    assert [next_reversal(course, k, law) for k in range(7)] == [2, 2, 4, 4, 5, 7, 7]
-    assert next_reversal(course, 0, at(law, LOADED_BY_FORCE)) == 1
-
-
-def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
-    """Backward Euler leaves out h²/2 of the acceleration, which the guess has not seen."""
-    s, law = lumps(GROUP_A, speeds=(0.0, 0.1, 0.3, -0.2, 0.0))
-    nodes(s, rows.RATE_PREDICTED)[:] = 0.0, 0.1, 0.1, 0.1, 0.0
-    stretched = segments(s, rows.STIFFNESS) * np.abs(np.diff([0.0, 0.0, 0.2, -0.3, 0.0]))
-    first = bdf2(0.2, math.inf, math.inf)
-    assert (first.gh, first.near, first.far) == (0.2, 1.0, 0.0)
-    assert step_error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
-
-
 ENDS = StepEnds(
     EndState(Given(1.0, 2.0), 0.0, 0.0, 30.0, 0.0),
     EndState(Given(10.0, 3.0), 0.0, 0.0, 20.0, 0.0),
     0.5,
 )
-
-
-@pytest.mark.parametrize("boundary", BOUNDARIES[:3])
-def test_what_a_step_does_not_see_is_told_by_how_each_end_answers(boundary):
-    """Drive and load leave the straight lines that the step sees by 0.1 and 0.02."""
-    times = np.linspace(0.0, 1.0, 11)
-    course = course_of(1.0 + 2.0 * times, GROUP_A, load=10.0 + 3.0 * times, time_s=times)
-    end = STEP._replace(drive=Given(3.0, 2.0), load=Given(13.0, 3.0))
-    law = at(cleared(GROUP_A)[1], boundary)
-
-    def not_seen():
-        return input_error(course, Samples(1, 9), Span(0.0, 1.0), ENDS, end, (2.0, 50.0), law)
-
-    assert not_seen() == pytest.approx(0.0, abs=1e-12)
-    course[DRIVE, 5] += 0.1
-    course[LOAD, 3] -= 0.02
-    assert not_seen() == pytest.approx(0.2 if boundary == LOADED_BY_SPRING else 0.2 + 1.0)
-
-
-def test_how_tensions_answered_what_was_given():
-    drive = ENDS.drive._replace(given=Given(1.5, 2.0), tension=27.0)
-    load = ENDS.load._replace(given=Given(9.0, 3.0), tension=23.0)
-    later = ENDS._replace(drive=drive, load=load)
-    assert end_stiffnesses(ENDS, later, 1.0) == (6.0, 3.0)
-    assert end_stiffnesses(ENDS, later, 5.0) == (6.0, 5.0)
-    unmoved = ENDS._replace(drive=ENDS.drive._replace(tension=99.0))
-    assert end_stiffnesses(ENDS, unmoved, 1.0) == (1.0, 1.0)
-    assert secant_stiffness(ENDS.drive, drive._replace(tension=26.0), 2.0) == 8.0
-
-
-@pytest.mark.parametrize(("before_N", "share"), [(1.5, 1.0 / 3.0), (0.0, 0.0)])
-def test_the_share_of_the_guide_that_the_sensor_does_not_feel(before_N, share):
-    rubs = {"load_friction.before_sensor_N": before_N, "load_friction.after_sensor_N": 3.0}
-    law = cleared(with_values(GROUP_A, rubs))[1]
-    assert share_before_sensor(at(law, LOADED_BY_SPRING).load) == pytest.approx(share)
-    assert share_before_sensor(at(law, LOADED_BY_DISPLACEMENT).load) == (before_N > 0.0)
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
@@ -336,15 +239,6 @@ def test_a_drive_without_pull_lets_the_tendon_hang_and_goes_where_it_is_straight
         assert is_slack(s, course, 0, 0.5, there) == hangs
 
 
-def test_along_a_slack_tendon_there_is_no_tension_and_nothing_slips():
-    frames = empty_frames(np.array([1, 4, 5]), N)
-    frames.tension_N[:], frames.slip[:], frames.front[:] = 7.0, 1, 7.0
-    assert [write_slack_frames(frames, 1, last) for last in (3, 4)] == [1, 2]
-    assert (frames.tension_N[:, 0].tolist(), frames.front.tolist()) == ([7.0, 0.0, 7.0],) * 2
-    assert frames.slip.tolist() == [[1] * N, [SLACK] * N, [1] * N]
-    assert write_slack_frames(frames, 2, 9) == 3
-
-
 REST = [[0.0], [0.0], [F0], [F0]]
 
 
@@ -394,13 +288,3 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
     assert 0.5 - 1e-9 < progress.reached_s < 0.5 + 1e-12
     assert progress.tries > progress.step_ends_s.size
     assert progress.step_ends_s[-1] == progress.reached_s
-
-
-def test_a_run_that_ends_slack_says_so():
-    times = np.linspace(0.0, 1.0, 6)
-    output, progress = run(np.linspace(0.0, -30.0, 6), times, tolerance=1e-2)
-    assert output.phase[-1] == SLACK
-    assert (output.f_in[-1], output.f_out[-1]) == (0.0, 0.0)
-    assert output.x_out[-1] == pytest.approx(-F0 / KL)
-    assert output.x_in.tolist() == np.linspace(0.0, -30.0, 6).tolist()
-    assert progress.reached_s == 1.0

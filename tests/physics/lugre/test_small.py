@@ -25,15 +25,14 @@ from tests.physics.references import (
     course_of,
 )
 from tsas_cli.physics.bristles import Bristle, Bristles, friction, friction_now
-from tsas_cli.physics.course import LOAD
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre import state as rows
-from tsas_cli.physics.lugre.balance import balance, residual_sum
-from tsas_cli.physics.lugre.chain import OWN_STEPS, sample_after, sample_before
-from tsas_cli.physics.lugre.ends import Samples, Span, ends_after, interpolation_error, write_cubic
+from tsas_cli.physics.lugre.balance import balance
+from tsas_cli.physics.lugre.chain import OWN_STEPS
+from tsas_cli.physics.lugre.ends import Samples, Span, ends_after, write_cubic
 from tsas_cli.physics.lugre.input import DRIVE, Cubic, hermite, hermite_slope, slope_at
 from tsas_cli.physics.lugre.state import Given
-from tsas_cli.physics.lugre.step import accept_step, bdf2, largest_increment, predict, step_error
+from tsas_cli.physics.lugre.step import bdf2, predict, step_error
 from tsas_cli.physics.rig import with_values
 
 EVERYTHING = {
@@ -157,17 +156,6 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
     assert total == pytest.approx(np.abs(left).sum(), rel=1e-6)
 
 
-@pytest.mark.parametrize("count", range(1, 10))
-def test_sums_and_largest_ones_miss_no_node(count):
-    for place in range(count):
-        s = np.zeros(rows.ROWS * rows.PITCH)
-        s[rows.RESIDUAL + place], s[rows.INCREMENT + place] = -3.0, 3.0
-        s[[rows.RESIDUAL + count, rows.INCREMENT + count]] = 7.0  # one more is not theirs
-        assert residual_sum(s, count) == 3.0
-        if count > 1:
-            assert largest_increment(s, count) == 3.0
-
-
 def test_usual_constants_are_those_of_table_1_for_the_whole_sheath():
     """Yang 2025: 100 N/mm for each of 50 lumps, 0.25 kg for 100 m, 0.1 N s/mm for each of 50."""
     critical = math.nan  # the paper's damping diverges
@@ -236,37 +224,6 @@ def test_the_error_of_a_step_is_that_of_a_cubic(times):
     assert step_error(s, law, formula) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize(("before_s", "speed"), [(math.inf, 0.0), (0.2, -3.0)])
-def test_the_first_step_is_guessed_at_rest_and_the_second_one_straight_on(before_s, speed):
-    """Each lump by its own speed; what has been before is not known."""
-    (s, law), scale = cleared(GROUP_A), np.arange(1.0, N + 3.0)
-    formula = bdf2(0.3, before_s, math.inf)
-    nodes(s, rows.POSITION)[:], nodes(s, rows.POSITION_1)[:] = scale, scale * 1.6
-    nodes(s, rows.POSITION_2)[:] = 99.0
-    predict(s, law, formula)
-    np.testing.assert_allclose(nodes(s, rows.RATE), speed * scale, atol=1e-12)
-    there = nodes(s, rows.POSITION_HISTORY) + formula.gh * nodes(s, rows.RATE)
-    np.testing.assert_allclose(there, scale * (1.0 + 0.3 * speed))
-
-
-def test_what_is_kept_moves_one_step_back(lively):
-    s, law = lively
-    moves = {
-        rows.POSITION_2: rows.POSITION_1,
-        rows.POSITION_1: rows.POSITION,
-        rows.POSITION: rows.POSITION_NEW,
-        rows.SPEED_1: rows.SPEED,
-    }
-    for k, row in enumerate(sorted({*moves, *moves.values()})):
-        nodes(s, row)[:] = 10.0 * k + np.arange(N + 2)
-    before = s.copy()
-    accept_step(s, STEP, law)
-    for now, then in moves.items():
-        np.testing.assert_array_equal(nodes(s, now), nodes(before, then))
-    speed = nodes(before, rows.RATE) + STEP.frame.rate
-    np.testing.assert_array_equal(nodes(s, rows.SPEED), speed)
-
-
 def test_the_ends_after_a_step_have_the_rates_of_their_tensions(lively):
     s, law = lively
     balance(s, STEP, at(law, LOADED_BY_SPRING))
@@ -302,24 +259,6 @@ def test_samples_within_a_step_are_read_off_the_cubic_with_its_values_and_rates(
         assert hermite_slope(part, h, ends) == pytest.approx(CURVE.deriv()(t + part * h))
 
 
-@pytest.mark.parametrize(("bumped", "seen"), [(4, 0.0), (7, 0.25), (9, 0.0)])
-def test_what_leaves_the_cubic_within_a_step_is_seen(bumped, seen):
-    """Three of the samples in between are looked at, of eight."""
-    times = np.linspace(0.0, 1.0, 12)
-    t, end = 0.5 * (times[1] + times[2]), times[10]
-    span, ends = Span(t, end - t), cubic(t, end)
-    course = course_of(CURVE(times), GROUP_A, load=CURVE(times), time_s=times)
-    for bump, expected in ((0.0, 0.0), (0.25, seen)):
-        course[LOAD, bumped] += bump
-        off = interpolation_error(course, LOAD, Samples(2, 9), span, ends)
-        assert off == pytest.approx(expected, abs=1e-12)
-    assert interpolation_error(course, LOAD, Samples(bumped, bumped), span, ends) == 0.0
-
-
-def test_an_input_of_one_sample_stands_still():
-    assert slope_at(course_of([3.0], GROUP_A), DRIVE, 0) == 0.0
-
-
 @pytest.mark.parametrize(
     ("drive", "slopes"),  # Fritsch and Butland's means within, a parabola's at the ends
     [
@@ -330,14 +269,6 @@ def test_an_input_of_one_sample_stands_still():
 def test_the_curve_through_samples_keeps_their_shape(drive, slopes):
     course = course_of(drive, GROUP_A, time_s=[0.0, 1.0, 2.0])
     assert [slope_at(course, DRIVE, k) for k in range(3)] == pytest.approx(slopes)
-
-
-def test_samples_before_and_after_a_time():
-    times = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
-    course = course_of(times, GROUP_A, time_s=times)
-    assert [sample_before(course, 0, t) for t in (0.5, 1.0, 1.5, 4.0)] == [0, 0, 1, 3]
-    assert sample_before(course, 2, 2.5) == 2
-    assert [sample_after(times, 0, t) for t in (-1.0, 0.0, 1.5, 4.0)] == [0, 1, 2, 5]
 
 
 STRIBECK = {"stribeck_friction.excess": 0.05, "stribeck_friction.velocity_mm_per_s": 3.0}

@@ -16,7 +16,6 @@ from tsas_cli.physics.plant.turntable import (
     Tangent,
     Turntable,
     across_play,
-    advance_turntable,
     ripple_tangent,
     spring_of,
     turntable_at,
@@ -29,7 +28,6 @@ from tsas_cli.physics.slip.state import (
     Moment,
     chain_at_rest,
     slip_laws,
-    with_drive,
 )
 
 F0, H = 25.0, 0.01
@@ -115,30 +113,6 @@ def test_the_way_across_the_play(x, p, held, expected):
     # The same where what the gear gives out is half of what it is turned, and moved by 1 mm.
     halved = across_play(x, 2.0, 0.5 * p + 1.0, Tangent(1.0, 0.5), Play(0.1, held))
     assert halved == pytest.approx(expected)
-
-
-def test_a_step_moves_all_that_is_remembered_back():
-    after = advance_turntable(TABLE, 2.2, 33.0, 5.0, H)
-    v = (3.0 * 2.2 - 4.0 * 2.0 + 1.9) / (2.0 * H)
-    assert after == pytest.approx(Turntable(2.2, 2.0, v, 9.0, 33.0, 5.0))
-
-
-def test_a_spring_more_at_the_tendons_end_changes_nothing_else():
-    rig = with_values(
-        GROUP_A,
-        {
-            "proximal_spring.stiffness_N_per_mm": 4.0,
-            "drive_friction.friction_N": 2.0,
-            "load_inertia.mass_kg": 3.0,
-            "presliding.length_mm": 0.05,
-            "load_dependent_friction.exponent": 0.3,
-            "load_friction.before_sensor_N": 1.5,
-            "load_spring_nonlinearity.cubic_per_mm2": 0.1,
-        },
-    )
-    laws = slip_laws(rig, 3, DRIVEN_BY_FORCE)
-    stiffer = laws.drive._replace(spring_N_per_mm=104.0)
-    assert with_drive(laws, stiffer) == laws._replace(drive=stiffer)
 
 
 @pytest.mark.parametrize(

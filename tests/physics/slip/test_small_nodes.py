@@ -14,11 +14,8 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
 from tsas_cli.physics.slip.ends import drive_tangent, load_tangent, update_ends
 from tsas_cli.physics.slip.nodes import (
-    accept,
     breakaway,
     capstan_ratio,
-    extrapolate,
-    is_linear,
     set_friction,
     slip_after_backwards,
     slips_backwards,
@@ -75,14 +72,6 @@ def test_a_way_that_would_turn_stops_at_its_turning(chain):
     assert chain[rows.SHARE + 2] == pytest.approx(-0.5)
 
 
-def test_rounding_turns_no_way_of_a_node_that_rests(chain):
-    """Else its step would never settle: the sign of a way of 1e-18 mm changes for ever."""
-    nodes(chain, rows.POSITION)[:] = nodes(chain, rows.POSITION_BEFORE) + 1e-15
-    nodes(chain, rows.TRAVEL)[:] = -1e-15
-    assert not update_travel(chain, BRISTLY)
-    assert not nodes(chain, rows.TRAVEL).any()
-
-
 @pytest.mark.parametrize("slip", [1.0, -1.0])
 def test_a_node_that_goes_against_its_slip_is_held(chain, slip):
     chain[rows.SLIP + 2] = slip
@@ -112,14 +101,6 @@ def test_a_node_is_pulled_loose_outside_of_the_capstan_ratio(chain):
         assert breakaway(2, 2.0 * half, chain) == expected
 
 
-def test_a_load_without_a_guide_is_asked_to_balance(chain):
-    """To a billionth of the tensions there, which a tangent that is not straight may miss."""
-    chain[rows.POSITION + N + 1] = 2.0
-    for off, wrong in ((0.0, False), (4e-8, False), (6e-8, True), (-6e-8, True)):
-        chain[rows.TENSION + N] = F0 - 2.0 + KL * 2.0 + off
-        assert update_ends(chain, NOW, at(laws(), LOADED_BY_SPRING, 0.01)) == wrong
-
-
 def test_a_spring_without_pull_is_where_its_force_is_zero():
     straight = laws().load
     assert unloaded_position(3.0, F0, straight) == pytest.approx(-F0 / KL)
@@ -140,30 +121,6 @@ def test_friction_is_that_of_the_size_of_both_tensions_together(chain):
         chain[rows.TENSION + 1 :][:2] = tensions
         found = [capstan_ratio(way, 2, chain) for way in (1.0, -1.0)]
         assert found == pytest.approx([math.exp(-0.2 * sign), math.exp(0.15 * sign)])
-
-
-def test_a_step_of_straight_laws_is_known_as_such():
-    bent = {"friction rises with tension", "friction is the same at any tension", "presliding"}
-    bent |= {"a mass", "a load that yields", "a load at a pulley", "a bent spring"}
-    straight = {"friction alone", "free tendon", "a damper", "friction falls with speed"}
-    found = {name: is_linear(laws(EFFECTS[name])) for name in bent | straight}
-    assert {name for name, linear in found.items() if linear} == straight
-
-
-def test_a_step_of_bent_laws_begins_where_the_last_one_would_lead(chain):
-    """Positions and tensions of all nodes and ends go on as they went."""
-    x, T = chain[rows.POSITION :][: N + 2], chain[rows.TENSION :][: N + 2]
-    nodes(chain, rows.SHARE)[:] = 0.995, 0.985, -0.995
-    accept(chain, BRISTLY)
-    assert nodes(chain, rows.SLIP).tolist() == [1.0, 0.0, -1.0]  # from 99 % of the limit on
-    assert nodes(chain, rows.SHARE_BEFORE).tolist() == [0.995, 0.985, -0.995]
-    moves, rises = np.array([1.0, -2.0, 3.0, 0.5, -0.2]), np.array([0.5, 1.0, -1.5, 2.0, 3.0])
-    there = np.array((x + 2.0 * moves, T + 2.0 * rises))
-    x += moves
-    T += rises
-    accept(chain, BRISTLY)
-    extrapolate(chain, BRISTLY)
-    np.testing.assert_allclose((x, T), there, atol=1e-12)
 
 
 @pytest.mark.parametrize("slip", [1.0, -1.0])

@@ -23,7 +23,7 @@ from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
-from tsas_cli.physics.slip.chain import ChainEnds, between, go_slack, initial_state, rest_after
+from tsas_cli.physics.slip.chain import ChainEnds, go_slack, initial_state, rest_after
 from tsas_cli.physics.slip.chain import follow as go_on
 from tsas_cli.physics.slip.chain import moment as moment_of
 from tsas_cli.physics.slip.outputs import phase_of, tension_at_sensor
@@ -53,15 +53,6 @@ def test_a_load_that_its_guide_holds_does_not_move_at_all():
     assert x_out[30] > 0.5
     assert set(x_out[31:36].tolist()) == {x_out[30]}
     assert x_out[-1] < x_out[30] - 0.1
-
-
-def test_the_way_between_two_samples_is_straight():
-    start = Moment(1.0, 2.0, Losses(0.3, 0.4, 5.0, 6.0), 0.1)
-    end = Moment(3.0, 6.0, Losses(0.5, 0.8, 9.0, 14.0), 0.2)
-    drive, load, losses, step_s = between(start, end, 0.25, 0.05)
-    assert losses == pytest.approx((0.35, 0.5, 6.0, 8.0))
-    assert (drive, load, step_s) == (1.5, 3.0, 0.05)
-    assert between(start, end, 1.0, 0.15) == end._replace(step_s=0.15)
 
 
 @pytest.mark.parametrize(
@@ -189,24 +180,6 @@ def test_a_run_may_be_followed_in_two_parts(rig, boundary, drive, load):
         np.testing.assert_array_equal(np.concatenate(pieces), column)
     assert state.before == moment_of(course, m - 1)
     assert (*state.ends, state.unconverged) == (*(column[-1] for column in whole[:4]), 0)
-
-
-@pytest.mark.parametrize(
-    ("boundary", "ends"),
-    [
-        (LOADED_BY_SPRING, (0.0, 0.0)),
-        (LOADED_BY_FORCE, (0.0, F0)),
-        (DRIVEN_BY_FORCE, (F0, 0.0)),
-        (LOADED_BY_DISPLACEMENT, (0.0, 0.0)),
-    ],
-)
-def test_a_run_starts_from_rest_at_the_preload(boundary, ends):
-    """What is given by force is the preload there, and what is given by place is zero."""
-    course = course_of([30.0], GROUP_A, load=20.0, pulled=0.6, released=0.4)
-    state = initial_state(course, GROUP_A, boundary, 3)
-    assert state.before == (*ends, (0.6, 0.4, 0.0, 0.0), math.inf)
-    assert row(state.chain, rows.TENSION).tolist() == [F0] * 5
-    assert (*state.ends, state.unconverged) == (0.0, 0.0, 0.0, 0.0, 0)
 
 
 @pytest.mark.parametrize(("unsettled", "given_up"), [(10, False), (11, True)])

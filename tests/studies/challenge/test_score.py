@@ -204,15 +204,6 @@ def test_the_rest_of_the_summary(sealed, entry):
     assert content["no_answer"] == dict.fromkeys(("a4", "d3"), "no diagnosis.json")
 
 
-def test_the_classes_by_effect(sealed, entry):
-    none = {"exact": 0, "rivals": 0, "false": 0, "none": 0, "no answer": 0}
-    assert scored(sealed, entry)["effects"] == [
-        none | {"effect": "backlash", "size": 1.0, "cases": 2, "exact": 1, "false": 1},
-        none | {"effect": "drive_friction", "size": 1.0, "cases": 1, "rivals": 1},
-        none | {"effect": "drive_friction", "size": 0.4, "cases": 1, "no answer": 1},
-    ]
-
-
 def test_the_confusions_say_who_was_taken_for_whom(sealed, entry):
     found = {(c["hidden"], c["said"]): c["cases"] for c in scored(sealed, entry)["confusion"]}
     assert found == {
