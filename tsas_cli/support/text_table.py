@@ -26,11 +26,11 @@ def table_text(
     widths = _widths(cells, math.inf if width is None else width)
     for row in (cells[0], ["-" * wide for wide in widths], *cells[1:]):
         wrapped = (
-            [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False)
-            for cell, width in zip(row, widths, strict=True)
+            [cell] if len(cell) <= wide else wrap(cell, max(wide, 1), break_on_hyphens=False)
+            for cell, wide in zip(row, widths, strict=True)
         )
         for line in zip_longest(*wrapped, fillvalue=""):
-            parts = (part.ljust(width) for part, width in zip(line, widths, strict=True))
+            parts = (part.ljust(wide) for part, wide in zip(line, widths, strict=True))
             yield (INDENT + GAP.join(parts)).rstrip()
 
 

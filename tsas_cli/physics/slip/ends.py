@@ -43,13 +43,20 @@ def speed_tangent(chain: Floats, step_s: float, end: int) -> tuple[float, float]
 
 
 @kernel
-def acceleration_tangent(chain: Floats, step_s: float, end: int) -> tuple[float, float]:
-    """Return slope and value at x = 0 of the acceleration of a mass at an end [1/s², mm/s²]."""
-    slope, speed = speed_tangent(chain, step_s, end)
+def acceleration_of_speed(chain: Floats, step_s: float, end: int) -> tuple[float, float]:
+    """Return slope [1/s] and value at rest [mm/s²] of a mass's acceleration over its speed."""
     rows = (at.SPEED_BEFORE + end, at.SPEED_EARLIER + end)
     per_speed, value = backward_difference(rows, chain, step_s)
     share = 1.0 / (1.0 + SLIPS_ALONG_S * per_speed)
-    return share * per_speed * slope, share * (per_speed * speed + value)
+    return share * per_speed, share * value
+
+
+@kernel
+def acceleration_tangent(chain: Floats, step_s: float, end: int) -> tuple[float, float]:
+    """Return slope and value at x = 0 of the acceleration of a mass at an end [1/s², mm/s²]."""
+    slope, speed = speed_tangent(chain, step_s, end)
+    per_speed, at_rest = acceleration_of_speed(chain, step_s, end)
+    return per_speed * slope, per_speed * speed + at_rest
 
 
 @kernel
@@ -111,12 +118,11 @@ def update_end_speeds(chain: Floats, step_s: float, n: int) -> None:
         stop_ends(chain, n)
         return
     for end in (0, n + 1):
-        x = chain[at.POSITION + end]
         slope, value = speed_tangent(chain, step_s, end)
-        per_mm_s2, acceleration = acceleration_tangent(chain, step_s, end)
-        late = SLIPS_ALONG_S * (per_mm_s2 * x + acceleration)
+        speed = slope * chain[at.POSITION + end] + value
+        per_speed, at_rest = acceleration_of_speed(chain, step_s, end)
         chain[at.SPEED_EARLIER + end] = chain[at.SPEED_BEFORE + end]
-        chain[at.SPEED_BEFORE + end] = slope * x + value - late
+        chain[at.SPEED_BEFORE + end] = speed - SLIPS_ALONG_S * (per_speed * speed + at_rest)
         chain[at.POSITION_EARLIER + end] = chain[at.POSITION_BEFORE + end]
     chain[at.STEP_BEFORE] = step_s
 

@@ -45,14 +45,12 @@ def tables(path: Path) -> list[str]:
     return list(_tables(read_json(path), ""))
 
 
+def _is_numbers(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
+
+
 def _tables(content: Any, key: str) -> Iterator[str]:
-    if (
-        key
-        and isinstance(content, dict)
-        and all(
-            isinstance(v, list) and v and isinstance(v[0], int | float) for v in content.values()
-        )
-    ):
+    if key and isinstance(content, dict) and all(map(_is_numbers, content.values())):
         yield key
     elif isinstance(content, dict):
         for name, value in content.items():
