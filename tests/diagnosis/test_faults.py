@@ -5,7 +5,7 @@ The recordings are those of the independent rig.
 
 import pytest
 
-from tsas_cli.diagnosis.faults.candidates import Candidate
+from tsas_cli.diagnosis.faults.beside import Candidate
 from tsas_cli.diagnosis.faults.words import record_of
 from tsas_cli.stages.diagnose import diagnose
 from tsas_studies.challenge.cases import Case, Hidden

@@ -80,7 +80,10 @@ class RunErrors:
 
     def errors(self, rig: Rig) -> dict[str, Floats]:
         """Return the weighted residuals of each channel, at the samples that enter the fit."""
-        predicted = self.predict(rig)
+        return self.weighted(self.predict(rig))
+
+    def weighted(self, predicted: Mapping[str, Floats]) -> dict[str, Floats]:
+        """Return the weighted residuals of each channel for a prediction at all samples."""
         return {n: self._weighted(n, predicted[n] - self.run.measured[n]) for n in self.samples}
 
     def _weighted(self, name: str, difference: Floats) -> Floats:

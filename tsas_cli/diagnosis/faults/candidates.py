@@ -1,18 +1,22 @@
 """Every fault of a recording by one unknown, with the squares of the residual that it takes away.
 
-The zero or the gain of a channel over a part of a run, its delay, the pace of its clock, the
-friction or the stiffness of one run; in all runs a coupling to AC, a saturation, or a swing.
+The zero or the gain of a channel over a part of a run, its delay, also since a moment, its lag, the
+pace of its clock, the friction or the stiffness of one run; in all runs a coupling to AC, a
+saturation, or a swing.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
+from scipy.linalg import block_diag
 
+from tsas_cli.diagnosis.faults.beside import Beside, Candidate, beside, one
 from tsas_cli.diagnosis.faults.hum import swings
 from tsas_cli.diagnosis.faults.shapes import (
+    LATE_S,
     RATES,
     WINDOWS,
     ReadRun,
@@ -21,84 +25,21 @@ from tsas_cli.diagnosis.faults.shapes import (
     shapes_of,
 )
 from tsas_cli.diagnosis.friction_scatter import SCATTER, friction_of_runs
-from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
-from tsas_cli.identification.screening import orthogonal_to
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
 STIFFNESS, OWN_FRICTION = "tendon_stiffness_N", "run-friction"
+SINCE = ("lost-samples", "repeated-buffer")  # a channel that is early, or late, since a moment
+OF_A_SIZE = ("run-delay", "run-lag", *SINCE)  # their columns are of a size that is tried
 OF_THE_CATALOGUE = "channel_delay"  # no fault of a run: the search for causes finds it
 CONSTANTS_S = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)  # of amplifiers coupled to AC
 LEVELS = np.linspace(0.4, 0.98, 16)  # of all values, below which a sensor may not saturate
-TINY = 1e-9
 STIFFER = 0.01  # step of a finite difference, relative
 MOST_SCATTER = 3.0  # standard deviations of the friction from run to run
+LEAST_SHARE = 0.3  # of the squares, in the run in which a channel comes late since a moment
 ONCE = (0.5, 2.0)  # the amount of an effect whose size its shape tells
 HELD_BACK = (0.1, 1.5)  # the share that a saturated sensor holds back, with a scatter
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A fault by one unknown: what it is, where, the amount, and the squares that it takes away.
-
-    `run` is None for a fault of all runs; `edges` counts the ends of the part of the run that it
-    is in, from `first_s` to `last_s`. A run is `alone` if no other has its bend. `steps` are the
-    times and amounts of several steps of a zero.
-    """
-
-    code: str
-    run: int | None
-    channels: tuple[str, ...]
-    amount: float
-    reduction: float
-    edges: int = 0
-    first_s: float | None = None
-    last_s: float | None = None
-    alone: bool = False
-    steps: tuple[tuple[float, float], ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class Beside:
-    """The residual of a trial beside its parameters and tolerances, and columns beside them."""
-
-    basis: Floats  # orthonormal, of residuals and priors, shape (n + m, p)
-    residual: Floats
-    squares: float
-
-    def project(self, columns: Floats) -> Floats:
-        """Return columns, shape (n, m), beside the basis."""
-        n = columns.shape[0]
-        padded = np.vstack((columns, np.zeros((self.basis.shape[0] - n, columns.shape[1]))))
-        return np.asarray(padded - self.basis @ (self.basis.T @ padded))
-
-    def without(self, column: Floats) -> "Beside":
-        """Return the residual beside a column too, shape (n,)."""
-        own = self.project(column[:, None])
-        own = own / np.linalg.norm(own)
-        residual = self.residual - own[:, 0] * float(own[:, 0] @ self.residual)
-        return Beside(np.hstack((self.basis, own)), residual, float(residual @ residual))
-
-
-def beside(trial: HypothesisFit, tolerated: Floats, run: Indices, *, alike: bool = False) -> Beside:
-    """Return the residual that neither the parameters of a trial nor tolerances explain.
-
-    The friction of the runs has a tolerance, unless it is `alike` in all of them.
-    """
-    free = trial.solution.jacobian[:, ~trial.solution.at_bound]
-    frictions = friction_of_runs(trial, run)
-    if alike:
-        frictions = frictions[:, :0]
-    own = np.column_stack((frictions, tolerated))
-    count = own.shape[1]
-    size = np.linalg.norm(free, axis=0)
-    columns = np.hstack((free[:, size > 0.0] / size[size > 0.0], own))
-    priors = np.hstack((np.zeros((count, np.count_nonzero(size))), np.eye(count)))
-    basis = np.linalg.qr(np.vstack((columns, priors)))[0]
-    residual = np.append(trial.solution.residual, np.zeros(count))
-    residual = orthogonal_to(basis, residual)
-    return Beside(basis, residual, float(residual @ residual))
 
 
 def candidates(
@@ -112,7 +53,8 @@ def candidates(
         *(c for constant_s in CONSTANTS_S for c in of_amplifiers(reads, left, constant_s)),
         *_of_saturation(reads, left),
         *_of_manifest(bench, trial, left, run),
-        *_of_hum(bench, trial, left, run),
+        *_of_hum(reads, left),
+        *(c for late_s in LATE_S for c in _of_shifts(reads, left, run, late_s)),
     ]
     return sorted(found, key=lambda c: -c.reduction)
 
@@ -166,7 +108,7 @@ def _of_run(k: int, shapes: RunShapes, left: Beside, run: Indices) -> Iterator[C
         for rate in RATES:
             whole = _in_run(shapes.at_pace(channels, rate)[:, None], run == k)
             column = left.project(whole)[:, 0]
-            yield from _of_rate(one("clock", k, channels, column, left), rate)
+            yield from _of_size(one("clock", k, channels, column, left), rate)
 
 
 def _of_clocks(shapes: Sequence[RunShapes], left: Beside) -> Iterator[Candidate]:
@@ -179,19 +121,19 @@ def _of_clocks(shapes: Sequence[RunShapes], left: Beside) -> Iterator[Candidate]
     for channels in _groups(tuple(shapes[0].clocked)):
         for rate in RATES if all(set(channels) <= set(own.clocked) for own in shapes) else ():
             parts = [own.at_pace(channels, rate) for own in shapes]
-            yield from _of_rate(_of_all("clock", channels, parts, left), rate)
+            yield from _of_size(_of_all("clock", channels, parts, left), rate)
 
 
-def _of_rate(found: Iterator[Candidate], rate: float) -> Iterator[Candidate]:
-    """Yield clocks whose pace is about the one that their columns are calculated with."""
+def _of_size(found: Iterator[Candidate], size: float) -> Iterator[Candidate]:
+    """Yield faults whose amount is about the one that their columns are calculated with."""
     for c in found:
         if ONCE[0] < c.amount < ONCE[1]:
-            yield replace(c, amount=rate * c.amount)
+            yield replace(c, amount=size * c.amount)
 
 
 def of_amplifiers(reads: Sequence[ReadRun], left: Beside, constant_s: float) -> Iterator[Candidate]:
     """Yield a coupling to AC of a tension in all runs, of about the size that it has."""
-    for name in _common(reads):
+    for name in _tensions(reads):
         columns = []
         for read in reads:
             values = read.values(name)
@@ -203,7 +145,7 @@ def of_amplifiers(reads: Sequence[ReadRun], left: Beside, constant_s: float) -> 
 
 def _of_saturation(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
     """Yield a tension whose sensor holds back a share of all beyond a level, in all runs."""
-    for name in _common(reads):
+    for name in _tensions(reads):
         values = [read.values(name) for read in reads]
         for level in np.quantile(np.concatenate(values), LEVELS):
             beyond = [np.maximum(own - level, 0.0) for own in values]
@@ -215,9 +157,13 @@ def _of_saturation(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate
 
 
 def _common(reads: Sequence[ReadRun]) -> list[str]:
-    """Return the tensions that all runs compare with the model."""
-    names = [name for name in reads[0].errors.samples if name.endswith("_N")]
-    return [name for name in names if all(name in read.errors.samples for read in reads)]
+    """Return the channels that all runs compare with the model."""
+    first = reads[0].errors.samples
+    return [name for name in first if all(name in read.errors.samples for read in reads)]
+
+
+def _tensions(reads: Sequence[ReadRun]) -> list[str]:
+    return [name for name in _common(reads) if name.endswith("_N")]
 
 
 def _sum(columns: Mapping[str, Floats], channels: tuple[str, ...]) -> Floats:
@@ -250,23 +196,38 @@ def _of_manifest(
         yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)
 
 
-def _of_hum(bench: Bench, trial: HypothesisFit, left: Beside, run: Indices) -> Iterator[Candidate]:
+def _of_hum(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
     """Yield a swing of a channel at one frequency in all runs."""
-    at = signals_at_residuals(bench, trial)
-    for name, frequency, columns in swings(bench, trial, at, left.residual[: run.size], run):
-        basis = np.linalg.qr(left.project(columns))[0]
+    for name, frequency, columns in swings(reads, _common(reads)):
+        basis = np.linalg.qr(left.project(block_diag(*columns)))[0]
         along = basis.T @ left.residual
         yield Candidate("hum", None, (name,), frequency, float(along @ along))
 
 
-def one(
-    code: str, k: int | None, channels: tuple[str, ...], column: Floats, left: Beside
+def _of_shifts(
+    reads: Sequence[ReadRun], left: Beside, run: Indices, late_s: float
 ) -> Iterator[Candidate]:
-    """Yield a fault by its column beside the basis, shape (n + m,), if it changes anything."""
-    square = float(column @ column)
-    if square > TINY:
-        along = float(column @ left.residual)
-        yield Candidate(code, k, channels, along / square, along**2 / square)
+    """Yield channels of a run that come late by about that, all along or since a moment, or lag."""
+    squares = np.bincount(run, left.residual[: run.size] ** 2)
+    for k, read in enumerate(reads):
+        if squares[k] < LEAST_SHARE * left.squares:
+            continue
+        here = run == k
+        late = {
+            name: left.project(_in_run(read.since(name, read.late(name, late_s)), here))
+            for name in read.errors.samples
+        }
+        for channels in _groups(tuple(late)):
+            columns = _sum(late, channels)
+            for part, first_s in enumerate(read.time_s[read.starts]):
+                code = SINCE[late_s > 0.0] if part else "run-delay"
+                since = float(first_s) if part else None
+                for found in _of_size(one(code, k, channels, columns[:, part], left), late_s):
+                    yield replace(found, edges=int(part > 0), first_s=since)
+        for name in read.errors.samples if late_s > 0.0 else ():
+            lagging = _in_run(read.changed(name, read.lagging(name, late_s))[:, None], here)
+            lags = one("run-lag", k, (name,), left.project(lagging)[:, 0], left)
+            yield from _of_size(lags, late_s)
 
 
 def _in_run(own: Floats, here: Mask) -> Floats:

@@ -6,7 +6,8 @@ simpler explanation, and the search for causes goes on.
 
 from collections.abc import Iterator
 
-from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION, beside
+from tsas_cli.diagnosis.faults.beside import beside
+from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION
 from tsas_cli.diagnosis.faults.search import FoundFault
 from tsas_cli.diagnosis.hypotheses import Names
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, LINEAR, Search

@@ -10,25 +10,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tsas_cli.diagnosis.faults.beside import TINY, Beside, Candidate, beside, one
 from tsas_cli.diagnosis.faults.candidates import (
+    OF_A_SIZE,
     OF_THE_CATALOGUE,
     OWN_FRICTION,
-    TINY,
-    Beside,
-    Candidate,
-    beside,
     candidates,
     of_amplifiers,
     of_frictions,
-    one,
 )
 from tsas_cli.diagnosis.faults.shapes import WINDOWS, ReadRun, runs_at
-from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, Search
 from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_EXCESS = 0.05  # of the squares of the noise, that a fault is sought for
-MOST = 0.7  # of the excess, that a fault has to explain
-RIVAL, MOST_RIVALS = 0.9, 2  # of the best reduction, by a fault that is said beside it
+MOST, LEAST = 0.9, 0.7  # of the excess, that a fault has to explain; where only noise is left
+TWICE, NOISE, MOST_RIVALS = 2.0, 0.1, 2  # what a rival leaves, over the best, and over the noise
 AS_GOOD = 0.97  # of the best reduction, by a fault that is simpler
 CLOSER = 0.7  # of the best reduction, by a fault that is looked at more closely
 FINER = np.arange(-8, 9) / 8.0  # of a part of the run, or powers of two of a time constant
@@ -80,23 +77,26 @@ def simplest(found: Sequence[Candidate]) -> Candidate:
 def _judged(found: Sequence[Candidate], squares: float, count: int) -> FoundFault:
     """Return the simplest of the best faults, with those that are as good elsewhere."""
     best = simplest(found)
+    excess = squares - count
+    most = TWICE * max(excess - best.reduction, 0.0) + NOISE * count
     where = {(best.run, best.channels)}
     rivals: list[Candidate] = []
     for other in found:
-        if other.reduction < RIVAL * best.reduction or len(rivals) == MOST_RIVALS:
+        if excess - other.reduction > most or len(rivals) == MOST_RIVALS:
             break
         known = other.code == OF_THE_CATALOGUE or (other.run, other.channels) in where
         if not known and other.edges <= best.edges:
             where.add((other.run, other.channels))
             rivals.append(other)
-    excess = squares - count
     share = best.reduction / max(excess, TINY)
     return FoundFault((best, *rivals), share, excess, squares - best.reduction)
 
 
 def _convinces(fault: FoundFault, count: int) -> bool:
     known = fault.found[0].code == OF_THE_CATALOGUE
-    return not known and fault.excess > LEAST_EXCESS * count and fault.share > MOST
+    only_noise = fault.rest < (1.0 + EXCESS_OF_COMPLETE_MODEL) * count
+    least = LEAST if only_noise else MOST
+    return not known and fault.excess > LEAST_EXCESS * count and fault.share > least
 
 
 def _closer(
@@ -113,6 +113,8 @@ def _closer(
         if c.code == "ac-coupled":
             constants = c.amount * 2.0**FINER
             closer += [s for constant in constants for s in of_amplifiers(reads, left, constant)]
+        elif c.run is not None and c.code in OF_A_SIZE:
+            closer.append(_with_size(c, reads[c.run], left, run))
         elif c.run is not None and c.edges:
             closer.append(_with_ends(c, reads[c.run], left, run))
     zero = next((c for c in found if c.code == "run-offset"), None)
@@ -133,18 +135,37 @@ def _with_ends(c: Candidate, read: ReadRun, left: Beside, run: Indices) -> Candi
     return c
 
 
+def _with_size(c: Candidate, read: ReadRun, left: Beside, run: Indices) -> Candidate:
+    """Return a delay or a lag with the size, and the moment, that take most away."""
+    for step in (1.0, 0.25, 0.0625):
+        sizes = [replace(c, amount=c.amount * 2.0 ** (step * f)) for f in FINER]
+        fitted = [_fitted(size, _of_part(size, read, run), left) for size in sizes]
+        best = max(fitted, key=lambda other: other.reduction)
+        c = _with_ends(best, read, left, run)
+    return c
+
+
 def _fitted(c: Candidate, column: Floats, left: Beside) -> Candidate:
     """Return a fault with the amount that fits best, by its column, shape (n,)."""
     beside_it = left.project(column[:, None])[:, 0]
     for found in one(c.code, c.run, c.channels, beside_it, left):
-        return replace(c, amount=found.amount, reduction=found.reduction)
+        amount = c.amount if c.code in OF_A_SIZE else found.amount
+        return replace(c, amount=amount, reduction=found.reduction)
     return replace(c, reduction=0.0)
 
 
 def _of_part(c: Candidate, read: ReadRun, run: Indices) -> Floats:
     """Return the change of all residuals by one unit of a fault of a part of a run, shape (n,)."""
     column = np.zeros(run.size)
-    column[run == c.run] = read.changed_in(c.code, c.channels[0], c.first_s, c.last_s)
+    for name in c.channels:
+        reading = np.ones(read.time_s.size)
+        if c.code == "run-gain":
+            reading = read.values(name)
+        elif c.code == "run-lag":
+            reading = read.lagging(name, c.amount)
+        elif c.code in OF_A_SIZE:
+            reading = read.late(name, c.amount)
+        column[run == c.run] += read.changed_in(name, reading, c.first_s, c.last_s)
     return column
 
 

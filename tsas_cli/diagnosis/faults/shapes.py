@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -11,10 +10,11 @@ from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.run_simulation import Predictions, predict_driven
 from tsas_cli.physics.rig import Rig
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Indices
 
 WINDOWS = 24  # parts of a run whose zero or gain may differ
 RATES = tuple(sign * rate for rate in (0.001, 0.002, 0.003, 0.004, 0.005) for sign in (-1.0, 1.0))
+LATE_S = tuple(sign * 0.01 * 2.0**k for k in range(7) for sign in (-1.0, 1.0))  # to 0.64 s
 SMALL = 5.0  # times the noise of a driving end: the step that its columns are calculated with
 
 
@@ -59,14 +59,33 @@ class ReadRun:
         return self.errors.changed(changes)
 
     def changed_in(
-        self, code: str, name: str, first_s: float | None, last_s: float | None
+        self, name: str, reading: Floats, first_s: float | None, last_s: float | None
     ) -> Floats:
-        """Return the change of the residuals by a zero or a gain of a part of the run, (r,)."""
-        scale = self.values(name) if code == "run-gain" else np.ones(self.time_s.size)
-        since = self.changed(name, scale * (self.time_s >= (first_s or 0.0)))
+        """Return the change of the residuals where that is so in a part of the run, shape (r,)."""
+        since = self.changed(name, reading * (self.time_s >= (first_s or 0.0)))
         if last_s is None:
             return since
-        return since - self.changed(name, scale * (self.time_s >= last_s))
+        return since - self.changed(name, reading * (self.time_s >= last_s))
+
+    def late(self, name: str, late_s: float) -> Floats:
+        """Return how much more a channel reads that comes late by that, shape (n,)."""
+        values = self.values(name)
+        return np.interp(self.time_s - late_s, self.time_s, values) - values
+
+    def lagging(self, name: str, constant_s: float) -> Floats:
+        """Return how much more a channel reads behind a low pass, shape (n,)."""
+        values = self.values(name)
+        return -passed(self.time_s, values - values[0], constant_s)
+
+    @property
+    def starts(self) -> Indices:
+        """The first sample of each part of the run, shape (parts,)."""
+        return np.linspace(0, self.time_s.size, WINDOWS + 1).astype(int)[:-1]
+
+    def since(self, name: str, reading: Floats) -> Floats:
+        """Return `changed` where that is so since the start of each part, shape (r, parts)."""
+        later = np.arange(self.time_s.size) >= self.starts[:, None]
+        return np.column_stack([self.changed(name, reading * own) for own in later])
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,17 +120,12 @@ def runs_at(bench: Bench, trial: HypothesisFit) -> list[ReadRun]:
 def shapes_of(read: ReadRun) -> RunShapes:
     """Return what faults of a run do to its residuals."""
     time_s = read.time_s
-    edges = np.linspace(0, time_s.size, WINDOWS + 1).astype(int)
-    inside = np.zeros((WINDOWS, time_s.size))
-    for window, (start, stop) in enumerate(pairwise(edges)):
-        inside[window, start:stop] = 1.0
-    since = np.cumsum(inside[::-1], axis=0)[::-1]  # from each start to the end
     offset, gain, late, pace, clocked = {}, {}, {}, {}, {}
     for name in read.channels:
         values = read.values(name)
         speed = np.gradient(values, time_s)
-        offset[name] = _parts(np.array([read.changed(name, s) for s in since]))
-        gain[name] = _parts(np.array([read.changed(name, s * values) for s in since]))
+        offset[name] = _parts(read.since(name, np.ones(time_s.size)))
+        gain[name] = _parts(read.since(name, values))
         late[name] = read.changed(name, -speed)
         pace[name] = read.changed(name, speed * time_s)
         if name in read.errors.samples:
@@ -119,7 +133,7 @@ def shapes_of(read: ReadRun) -> RunShapes:
                 rate: read.changed(name, np.interp((1.0 + rate) * time_s, time_s, values) - values)
                 for rate in RATES
             }
-    return RunShapes(time_s[edges[:-1]], offset, gain, late, pace, clocked)
+    return RunShapes(time_s[read.starts], offset, gain, late, pace, clocked)
 
 
 def passed(time_s: Floats, values: Floats, constant_s: float) -> Floats:
@@ -131,5 +145,5 @@ def passed(time_s: Floats, values: Floats, constant_s: float) -> Floats:
 
 
 def _parts(since: Floats) -> Floats:
-    """Return the columns of the parts, (r, parts), from those of all that follow, (parts, r)."""
-    return np.asarray((since - np.vstack((since[1:], np.zeros_like(since[:1])))).T)
+    """Return the columns of the parts from those of all that follow, shape (r, parts)."""
+    return since - np.pad(since[:, 1:], ((0, 0), (0, 1)))

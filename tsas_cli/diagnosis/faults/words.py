@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from tsas_cli.diagnosis.faults.candidates import Candidate
+from tsas_cli.diagnosis.faults.beside import Candidate
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.diagnosis import RecordingFault
@@ -88,7 +88,20 @@ def _gain(c: Candidate) -> str:
 def _delay(c: Candidate) -> str:
     verb = ("comes", "come")[len(c.channels) > 1]
     way = "later" if c.amount > 0.0 else "earlier"
-    return f"{listed(c.channels)} {verb} {1e3 * abs(c.amount):.2g} ms {way} than the other channels"
+    late = f"{1e3 * abs(c.amount):.3g} ms"
+    return f"{listed(c.channels)} {verb} {late} {way} than the other channels"
+
+
+def _lag(c: Candidate) -> str:
+    return f"{listed(c.channels)} lags, as behind a low pass of {1e3 * c.amount:.3g} ms"
+
+
+def _lost(c: Candidate) -> str:
+    return f"samples of {listed(c.channels)} are lost: {_delay(c)}"
+
+
+def _repeated(c: Candidate) -> str:
+    return f"samples of {listed(c.channels)} are repeated: {_delay(c)}"
 
 
 def _clock(c: Candidate) -> str:
@@ -152,6 +165,9 @@ _SAID: Mapping[str, Callable[[Candidate], str]] = {
     "run-offset": _offset,
     "run-gain": _gain,
     "run-delay": _delay,
+    "run-lag": _lag,
+    "lost-samples": _lost,
+    "repeated-buffer": _repeated,
     "clock": _clock,
     "ac-coupled": _coupled,
     "run-friction": _friction,
