@@ -198,12 +198,15 @@ def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
     assert rivals_of(search, names(A), A) == rivals
 
 
-@pytest.mark.parametrize(("unsure", "rivals"), [(0.0, ()), (0.025, ()), (0.035, (C,))])
-def test_an_effect_that_leaves_a_little_more_of_a_wrong_model_is_a_rival(made, unsure, rivals):
-    """4 % more: beyond the one per cent that tells right models apart."""
+@pytest.mark.parametrize(
+    ("unsure", "of_forms", "rivals"),
+    [(0.0, 0.0, ()), (0.025, 0.0, ()), (0.035, 0.0, (C,)), (0.0, 0.04, ()), (0.0, 0.06, (C,))],
+)
+def test_an_effect_that_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals):
+    """4 % more: beyond the one per cent that tells right models apart; it takes 5 % less away."""
     search = made({names(): 9.0, names(A): 4.8, names(C): 5.0})
     search.add = lambda before, least=0.0: [(C, CONVINCES)]
-    assert rivals_of(search, names(A), A, unsure) == rivals
+    assert rivals_of(search, names(A), A, unsure, of_forms) == rivals
 
 
 def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):

@@ -9,6 +9,7 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.quantities import QUANTITIES
 
 MODEL_ERROR = 0.1  # of the squares that a wrong model leaves, by which two effects differ by chance
+ONE_CHANNEL = 0.1  # of an effect's reduction: what forms of laws differ by, where one channel tells
 SIMPLER = LEAST_REDUCTION_PER_COMPLEXITY - LEAST_DIFFERENCE  # that a simpler effect leaves more
 
 
@@ -16,7 +17,12 @@ def find_effects(search: Search) -> Hypotheses:
     """Return the effects that are significant together, their rivals, and all other fits."""
     named = exchanged(search, search.run())
     unsure = MODEL_ERROR * search.structure(named)
-    rivals = {e.name: rivals_of(search, named, e.name, unsure) for e in EFFECTS if e.name in named}
+    of_forms = ONE_CHANNEL if len(search.bench.channels) == 1 else 0.0
+    rivals = {
+        e.name: rivals_of(search, named, e.name, unsure, of_forms)
+        for e in EFFECTS
+        if e.name in named
+    }
     screened = tuple(search.screen(frozenset()))
     for names in judged_sets(named):
         search.trial(names, on_mesh=search.bench.on_mesh(named))
@@ -39,19 +45,25 @@ def exchanged(search: Search, named: Names, before: frozenset[Names] = frozenset
     return named
 
 
-def rivals_of(search: Search, named: Names, name: str, unsure: float = 0.0) -> tuple[str, ...]:
+def rivals_of(
+    search: Search, named: Names, name: str, unsure: float = 0.0, of_forms: float = 0.0
+) -> tuple[str, ...]:
     """Return the effects that do as well as a named one in its place, or better.
 
-    Those that leave more by a share that is `unsure` do as well too.
+    Those that leave more by a share that is `unsure` do as well too; so do those whose reduction is
+    smaller by less than the share `of_forms`.
     """
     fewer = named - {name}
+    alike = (1.0 - of_forms) * search.gain(fewer, named).part
     out = []
     for other, found in search.add(fewer, search.reduction(fewer, named)):
         instead = fewer | {other}
         if other in named or not found.convincing:
             continue
-        converged = search.trial(instead).solution.converged
-        if converged and not search.gain(instead, named).beyond(LEAST_DIFFERENCE + unsure):
+        if not search.trial(instead).solution.converged:
+            continue
+        worse = search.gain(instead, named).beyond(LEAST_DIFFERENCE + unsure)
+        if not worse or (of_forms > 0.0 and search.gain(fewer, instead).part > alike):
             out.append(other)
     return tuple(out)
 
