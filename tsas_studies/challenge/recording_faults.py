@@ -22,7 +22,7 @@ RUNS = ("b", "c", "d")
 LASTS_S = 20.0
 GROUPS = (("f_in_N",), ("f_out_N",), ("x_out_mm",), FORCES, ("x_out_mm", "f_out_N"))
 # Codes of checks and of the diagnosis, and effects of the catalogue, that are the fault.
-SLOW = ("filtered", "repeated-values", "slow-channel", "sensor_lag")
+SLOW = ("filtered", "repeated-values", "slow-channel", "sensor_lag", "run-lag")
 OF_A_RUN = ("run-gain", "run-offset", "run-step")
 CLOCK = ("clock", "delay", "run-delay")
 
