@@ -199,6 +199,15 @@ def test_a_fast_turn_that_few_samples_show_is_no_corner_and_a_corner_is():
     assert corners(t, noisy(triangle_mm, 1), 4, NOISE_mm).size > 80
 
 
+def test_stamps_of_a_busy_computer_stop_no_search_for_corners():
+    """Each is late by up to 0.1 s, so that many follow within 5 µs: a window holds few moments."""
+    rng = np.random.default_rng(0)
+    late = np.arange(0.0, 20.0, 0.005) + 0.03 * np.abs(rng.standard_normal(4000))
+    t = np.round(np.maximum.accumulate(late) + 5e-6 * np.arange(late.size), 9)
+    found = corners(t, noisy(13.0 * np.arcsin(np.sin(1.6 * t)), 1), 4, NOISE_mm)
+    assert (found[0], found[-1]) == (0, t.size)
+
+
 @pytest.mark.parametrize("rate_Hz", [25.0, 50.0, 100.0])
 def test_a_motion_that_turns_between_two_samples_turns_where_it_does(rate_Hz):
     """The samples miss the turn by up to 48, 10 and 3 µm: nothing to a smooth model."""

@@ -69,9 +69,9 @@ def fault_of_recording(search: Search, accepted: Collection[str]) -> FoundFault 
 
 
 def simplest(found: Sequence[Candidate]) -> Candidate:
-    """Return the best fault, or one as good with fewer ends."""
+    """Return the best fault, or one as good with fewer ends; of a lag and a delay the delay."""
     good = [c for c in found if c.reduction >= AS_GOOD * found[0].reduction]
-    return min(good, key=lambda c: (c.edges, -c.reduction))
+    return min(good, key=lambda c: (c.edges, c.code == "run-lag", -c.reduction))
 
 
 def _judged(found: Sequence[Candidate], squares: float, count: int) -> FoundFault:
@@ -149,8 +149,8 @@ def _fitted(c: Candidate, column: Floats, left: Beside) -> Candidate:
     """Return a fault with the amount that fits best, by its column, shape (n,)."""
     beside_it = left.project(column[:, None])[:, 0]
     for found in one(c.code, c.run, c.channels, beside_it, left):
-        amount = c.amount if c.code in OF_A_SIZE else found.amount
-        return replace(c, amount=amount, reduction=found.reduction)
+        size = c.amount if c.code in OF_A_SIZE else 1.0
+        return replace(c, amount=size * found.amount, reduction=found.reduction)
     return replace(c, reduction=0.0)
 
 
