@@ -139,6 +139,11 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "at the reversals.",
             _one(coefficient_N_s_per_mm=0.5),
         ),
+        "sheath_drag": Signature(
+            "In f_in over f_out the line of the pull moves up and that of the release down, in "
+            "parallel; after a reversal f_in takes a wider dead band to cross between them.",
+            _one(force_N=4.0),
+        ),
         "load_dependent_friction": Signature(
             "In f_in over f_out the lines of pull and release bend apart as the tension rises.",
             _one(exponent=0.5),

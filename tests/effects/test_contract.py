@@ -166,6 +166,7 @@ def test_no_energy_comes_from_an_effect(effect):
         "drive_friction.friction_N",
         "stribeck_friction.excess",
         "viscous_friction.coefficient_N_s_per_mm",
+        "sheath_drag.force_N",
         "drive_damping.coefficient_N_s_per_mm",
         "load_damping.coefficient_N_s_per_mm",
         "load_hysteresis.force_N",

@@ -9,7 +9,7 @@ from tsas_cli.effects import Effects, FreeTendon, StribeckFriction, ViscousFrict
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.closed_form.branches import branches_at_rest, follow_branches, with_room
 from tsas_cli.physics.closed_form.static import StaticState, follow_static
-from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
+from tsas_cli.physics.course import DRAG, DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import chain
 
@@ -65,7 +65,7 @@ def follow(drive, *, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=30, **given):
     return slip_chain(course_of(drive, rig, **given), rig, boundary, n)
 
 
-ROWS = {"load": LOAD, "pulled": PULLED, "released": RELEASED, "viscous": VISCOUS, "lost": LOST}
+ROWS = {"load": LOAD, "pulled": PULLED, "released": RELEASED, "drag": DRAG, "lost": LOST}
 ROWS |= {"step": STEP, "time_s": TIME}
 
 

@@ -18,15 +18,16 @@ NAMES = (
     *("load_friction.before_sensor_N", "load_friction.after_sensor_N"),
     *("drive_damping.coefficient_N_s_per_mm", "viscous_friction.coefficient_N_s_per_mm"),
     *("load_damping.coefficient_N_s_per_mm", "drive_inertia.mass_kg", "load_inertia.mass_kg"),
+    "sheath_drag.force_N",
 )
-VALUES = dict(zip(NAMES, (0.3, 40, 15, 0.004, 3, 1.5, 1, 0.7, 0.2, 0.3, 0.4, 5, 6), strict=True))
+VALUES = dict(zip(NAMES, (0.3, 40, 15, 0.004, 3, 1.5, 1, 0.7, 0.2, 0.3, 0.4, 5, 6, 2), strict=True))
 
 
 def test_half_of_the_tendon_lies_on_either_side_of_its_friction():
     EA, L, kL = GROUP_A[1], GROUP_A.sheath_length_mm, GROUP_A.load_stiffness_N_per_mm
     before, behind = 0.65 * L / EA + 40.0 / EA + 0.004, 0.65 * L / EA + 15.0 / EA
     pulled = 25.0 + 0.5 * 10.0 / (before + behind + 1.0 / kL)  # half of the stroke
-    loss = pulled * (math.exp(math.pi / 16.0) - math.exp(-math.pi / 16.0))
+    loss = 2.0 + pulled * (math.exp(math.pi / 16.0) - math.exp(-math.pi / 16.0))
     expected = 25.0, 1.0 / before, 1.0 / behind, kL, 3.0, 1.5, loss, 1.7, 0.2, 0.3, 0.4, 5.0, 6.0
     assert lumped_of(with_values(GROUP_A, VALUES), 10.0) == pytest.approx(expected)
     assert set(HELD) == {name.split(".")[0] for name in VALUES}

@@ -54,6 +54,7 @@ from tsas_cli.effects.presliding import PRESLIDING, Presliding
 from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
 from tsas_cli.effects.sensor_lag import SENSOR_LAG, SensorLag
 from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompression
+from tsas_cli.effects.sheath_drag import SHEATH_DRAG, SheathDrag
 from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION, StribeckFriction
 from tsas_cli.effects.uneven_friction import UNEVEN_FRICTION, UnevenFriction
 from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
@@ -73,6 +74,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     DIRECTION_DEPENDENT_FRICTION,
     STRIBECK_FRICTION,
     VISCOUS_FRICTION,
+    SHEATH_DRAG,
     LOAD_DEPENDENT_FRICTION,
     POSITION_DEPENDENT_FRICTION,
     UNEVEN_FRICTION,
@@ -124,6 +126,7 @@ class Effects(NamedTuple):
     direction_dependent_friction: DirectionDependentFriction = DirectionDependentFriction()
     stribeck_friction: StribeckFriction = StribeckFriction()
     viscous_friction: ViscousFriction = ViscousFriction()
+    sheath_drag: SheathDrag = SheathDrag()
     load_dependent_friction: LoadDependentFriction = LoadDependentFriction()
     position_dependent_friction: PositionDependentFriction = PositionDependentFriction()
     uneven_friction: UnevenFriction = UnevenFriction()

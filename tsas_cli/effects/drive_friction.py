@@ -5,9 +5,10 @@ and down when a release begins, as high at low tension as at high; f_out and x_o
 f_in over f_out is wider by a constant, its two slopes are unchanged.
 Equation: Coulomb friction independent of the tension T0 behind it: an intercept added to the
 capstan law of Yang 2025, Eq. (7). Not in the paper.
-Mistaken for: a larger friction coefficient (its share grows with tension); load_friction (the
-sheath enlarges it on a pull and reduces it on a release); viscous_friction, drive_damping (grow
-with speed); force_sensor_offset (the same sign in both directions).
+Mistaken for: a larger friction coefficient (its share grows with tension); sheath_drag (builds up
+over the dead band, and x_out knows it); load_friction (the sheath enlarges it on a pull and reduces
+it on a release); viscous_friction, drive_damping (grow with speed); force_sensor_offset (the same
+sign in both directions).
 Not validated: a drive at rest: the friction keeps the sign of the last motion.
 """
 

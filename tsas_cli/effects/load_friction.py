@@ -8,6 +8,7 @@ Equation: Coulomb friction Fc independent of the tension. The sheath transmits i
 f_in has Fc e^(μθ) of it on a pull, Fc e^(−μθ) on a release (Yang 2025, Eq. 7). The paper has no
 friction at its load.
 Mistaken for: drive_friction (the same in f_in on pull and release, without effect on x_out);
+sheath_drag (between both in f_in, without effect on f_out over x_out);
 load_hysteresis (its loop leans over a travel); load_damping (grows with the speed);
 load_spring_nonlinearity (a curve, not a loop); load_dependent_friction (curves in f_in over f_out);
 backlash (f_in is constant too).

@@ -11,7 +11,7 @@ from tsas_cli.physics.phases import Phases
 from tsas_cli.support.arrays import Floats
 
 # Rows of a course; the first four alone are a course of `Losses`.
-PULLED, RELEASED, VISCOUS, LOST = range(4)
+PULLED, RELEASED, DRAG, LOST = range(4)
 DRIVE, LOAD = 4, 5  # displacement [mm] or tension at the sensor [N]; LOAD unused with a spring
 STEP = 6  # time since the sample before, infinite for a quasi-static step [s]
 TIME = 7  # since the start of the run [s]
@@ -26,7 +26,7 @@ class Losses(NamedTuple):
 
     pulled: float  # friction times bend in contraction [1]
     released: float  # friction times bend in loosening [1]
-    viscous_N: float  # tension lost over the whole sheath to viscous friction
+    drag_N: float  # tension lost over the whole sheath to friction independent of the tension
     preload_N: float  # lost at the load spring's anchor
 
 
@@ -60,7 +60,7 @@ def samples_of(output: Output, within: slice) -> Output:
 @kernel
 def losses_of(course: Floats, i: int) -> Losses:
     """Return the losses at one sample."""
-    return Losses(course[PULLED, i], course[RELEASED, i], course[VISCOUS, i], course[LOST, i])
+    return Losses(course[PULLED, i], course[RELEASED, i], course[DRAG, i], course[LOST, i])
 
 
 @kernel
@@ -69,6 +69,6 @@ def losses_between(start: Losses, end: Losses, part: float) -> Losses:
     return Losses(
         start.pulled + part * (end.pulled - start.pulled),
         start.released + part * (end.released - start.released),
-        start.viscous_N + part * (end.viscous_N - start.viscous_N),
+        start.drag_N + part * (end.drag_N - start.drag_N),
         start.preload_N + part * (end.preload_N - start.preload_N),
     )

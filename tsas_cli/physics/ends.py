@@ -16,6 +16,7 @@ from tsas_cli.effects.friction_drift import friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
+from tsas_cli.effects.sheath_drag import drag_over
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.wave import rippled
@@ -218,6 +219,7 @@ def losses_at(time_s: float, position: float, speed: float, session_s: float, ri
     return Losses(
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),
-        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm),
+        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
+        + drag_over(1.0, effects.sheath_drag.force_N),
         lost_preload(effects.preload_loss, time_s),
     )

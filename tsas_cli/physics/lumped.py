@@ -38,7 +38,7 @@ class Lumped(NamedTuple):
 HELD = (
     "drive_compliance", "drive_damping", "drive_friction", "drive_inertia", "free_tendon",
     "load_damping", "load_friction", "load_inertia", "proximal_spring", "sheath_compression",
-    "viscous_friction",
+    "sheath_drag", "viscous_friction",
 )  # fmt: skip
 
 
@@ -64,7 +64,8 @@ def lumped_of(rig: Rig, stroke_mm: float) -> Lumped:
         drive_friction_N=e.drive_friction.friction_N,
         sheath_friction_N=2.0
         * tension
-        * math.sinh(0.5 * rig.friction_coefficient * rig.total_bend_rad),
+        * math.sinh(0.5 * rig.friction_coefficient * rig.total_bend_rad)
+        + e.sheath_drag.force_N,
         load_friction_N=e.load_friction.after_sensor_N + e.load_friction.before_sensor_N,
         drive_damping_N_s_per_mm=e.drive_damping.coefficient_N_s_per_mm,
         sheath_damping_N_s_per_mm=e.viscous_friction.coefficient_N_s_per_mm,

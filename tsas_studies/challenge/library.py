@@ -80,6 +80,7 @@ def terms(run: Prepared) -> Iterator[Term]:
     falling = np.exp(-((v / VELOCITY_MM_PER_S) ** 2))
     yield Term("stribeck_friction", "f_in θ sign(v) exp(−v²)", rubbed(bend * falling))
     yield Term("viscous_friction", "v", {"f_in_N": v})
+    yield Term("sheath_drag", "(1 + f_in/f_out) sign(v)", {"f_in_N": (1.0 + ratio) * s})
     level = np.log(np.maximum(tension, 0.1) / max(float(tension.mean()), 0.1))
     yield Term("load_dependent_friction", "f_in θ sign(v) log f_in", rubbed(bend * level))
     yield Term("position_dependent_friction", "f_in θ sign(v) x", rubbed(bend * x))

@@ -92,6 +92,7 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
         sized(preload_N=25.0, friction_ratio=(0.8, 1.25), f_in_share=(1.0, 1.0)),
         sized(preload_N=25.0, friction_ratio=(0.8, 1.25), f_in_share=(0.0, 0.0)),
     ),
+    "sheath_drag": (sized(force_N=2.0),),
 }  # fmt: skip
 
 

@@ -66,6 +66,7 @@ def any_effects(rng, rig, x_in, x_out):
         "load_relaxation.time_s": between(1e-2, 10.0),
         "force_sensor_hysteresis.f_out_share": between(1e-2, 0.3),
         "sensor_lag.f_in_lag_s": between(1e-3, 0.3),
+        "sheath_drag.force_N": F0 * between(1e-3, 0.5),
     }
     effects = sorted({name.partition(".")[0] for name in values})
     chosen = rng.choice(effects, rng.integers(1, len(effects) + 1), replace=False)

@@ -62,6 +62,8 @@ EFFECTS = {
         "uneven_friction.slope": -1.2,
         "load_dependent_friction.exponent": -0.25,
     },
+    "drag": {"sheath_drag.force_N": 6.0},
+    "drag and presliding": {"sheath_drag.force_N": 6.0, "presliding.length_mm": 0.02},
     "uneven presliding": {"presliding.length_mm": 0.02, "uneven_friction.slope": 1.2},
     "friction falls with speed": FALLING,
     "presliding falls with speed": FALLING | {"presliding.length_mm": 0.02},
@@ -122,7 +124,7 @@ class Nodes:
         self.rig, self.share, self.speed = rig, np.zeros(N + 1), np.zeros(N + 1)
 
     def hold(self, i, way, before, behind, now):
-        pulled, released, viscous_N, _ = now.losses
+        pulled, released, drag_N, _ = now.losses
         mean = 0.5 * (before + behind)
         exponent = self.rig.effects.load_dependent_friction.exponent
         factor = (abs(mean) / self.rig.preload_N) ** exponent
@@ -132,7 +134,7 @@ class Nodes:
         if now.step_s < math.inf:  # friction of the next step
             taken = -math.expm1(-now.step_s / FRICTION_LAGS_S)
             self.speed[i] += taken * (abs(way) / now.step_s - self.speed[i])
-        loss, sign = 0.5 * viscous_N / N, math.copysign(1.0, mean)
+        loss, sign = 0.5 * drag_N / N, math.copysign(1.0, mean)
         length = self.rig.effects.presliding.length_mm
         if length > 0.0:
             limit = 1.0 if way > 0.0 else -1.0
@@ -242,8 +244,8 @@ def varying(drive, rig, **given):
 @pytest.mark.parametrize("name", EFFECTS)
 def test_every_effect_at_a_spring(name):
     rig = with_values(SPRINGY, EFFECTS[name])
-    viscous = np.linspace(0.5, 1.5, UP_AND_DOWN.size)
-    course = varying(UP_AND_DOWN, rig, viscous=viscous)
+    drag = np.linspace(0.5, 1.5, UP_AND_DOWN.size)
+    course = varying(UP_AND_DOWN, rig, drag=drag)
     ways = hold_everywhere(course, rig, LOADED_BY_SPRING)
     assert ways[1:3, 1:].min() > 0.05  # all nodes, and the load, are pulled, and later let go
     assert ways[10, 1:].max() < -0.05

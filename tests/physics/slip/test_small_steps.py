@@ -167,7 +167,7 @@ def test_a_run_may_be_followed_in_two_parts(rig, boundary, drive, load):
         load=load,
         pulled=np.linspace(0.3, 0.6, m),
         released=np.linspace(0.5, 0.2, m),
-        viscous=np.linspace(0.5, 1.5, m),
+        drag=np.linspace(0.5, 1.5, m),
         lost=np.linspace(0.0, 2.0, m),
         step=0.05,
     )

@@ -2,8 +2,9 @@
 
 Each lump: m dv/dt = T before − T behind − f (Yang 2025, Eqs. 10 to 14), f by `bristles` with the
 limit g = μ N, N by the mean of both tensions (Eq. 17; 2 tanh(μθ/2n) for its sine, so that the
-tension ratio over a sliding lump is e^(−μθ/n), Eq. 7). The ends have no mass: their forces balance.
-The residual depends on the speeds of a node and its two neighbours: the Jacobian is tridiagonal.
+tension ratio over a sliding lump is e^(−μθ/n), Eq. 7), and the sheath's drag. The ends have no
+mass: their forces balance. The residual depends on the speeds of a node and its two neighbours: the
+Jacobian is tridiagonal.
 """
 
 from tsas_cli.effects.drive_damping import drive_damper_force
@@ -85,6 +86,8 @@ def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
             s[at.LIMIT_BY_T + i] *= factor
     if laws.lump.stribeck.excess != 0.0:
         set_stribeck(s, step, laws)
+    for i in range(1, laws.n + 1):
+        s[at.LIMIT + i] += laws.lump.drag_N
 
 
 @kernel

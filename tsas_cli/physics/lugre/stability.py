@@ -116,7 +116,7 @@ def sliding_friction(
     for i in range(speed.size):
         factor = stribeck_factor(speed[i], laws.lump.stribeck)
         factor *= load_factor(tension[i] / laws.preload_N, laws.lump.friction_exponent)
-        limit[i] = wrap * factor * abs(tension[i])
+        limit[i] = wrap * factor * abs(tension[i]) + laws.lump.drag_N
         force[i], rate[i] = friction_now(deflection[i], speed[i], limit[i], laws.lump.bristle)
     return limit, force, rate
 

@@ -2,6 +2,7 @@
 
 import math
 
+from tsas_cli.effects.sheath_drag import drag_over
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import SPRING, Boundary, DriveEnd, drive_end, load_end
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
@@ -25,6 +26,7 @@ def bristles_of(rig: Rig) -> Bristle:
     stiffness = rig.bristles.stiffness_N_per_mm
     travel = rig.effects.presliding.length_mm
     limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
+    limit += rig.effects.sheath_drag.force_N
     damping = bristle_damping(rig.bristles, rig.sheath_length_mm, limit, travel)
     viscous = rig.effects.viscous_friction.coefficient_N_s_per_mm
     return Bristle(stiffness, damping, viscous, travel)
@@ -39,6 +41,7 @@ def lugre_laws(rig: Rig, n: int, boundary: Boundary) -> LugreLaws:
         Bristle(whole.stiffness / n, whole.damping / n, whole.viscous / n, whole.travel),
         effects.load_dependent_friction.exponent,
         effects.uneven_friction.slope,
+        drag_over(1.0 / n, effects.sheath_drag.force_N),
         effects.stribeck_friction,
     )
     end_bristle = Bristle(whole.stiffness, whole.damping, 0.0, 0.0)

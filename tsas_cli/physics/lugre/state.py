@@ -36,6 +36,7 @@ class Lump(NamedTuple):
     bristle: Bristle
     friction_exponent: float
     friction_slope: float  # along the sheath, over the mean
+    drag_N: float  # friction that is independent of the tension
     stribeck: StribeckFriction
 
 

@@ -143,9 +143,11 @@ def play_friction(tension: float, rig: Rig) -> float:
     """Return the friction of the drive while it crosses its play [N].
 
     The play is crossed up and down at different tensions T1 and T2; without a friction of at least
-    (T1 − T2)/(T1 + T2), which is tanh(μθ) in full slip, a cycle would create energy.
+    (T1 − T2)/(T1 + T2), which is tanh(μθ) in full slip, or more by up to the sheath's drag, a cycle
+    would create energy.
     """
-    return tension * math.tanh(rig.friction_coefficient * rig.total_bend_rad)
+    wrap = rig.friction_coefficient * rig.total_bend_rad
+    return tension * math.tanh(wrap) + rig.effects.sheath_drag.force_N
 
 
 @kernel

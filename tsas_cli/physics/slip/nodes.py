@@ -114,7 +114,7 @@ def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         slip = chain[at.SLIP + i]
         if slip != 0.0:
             ratio = capstan_ratio(slip, i, chain)
-            half = 0.5 * slip * now.losses.viscous_N / n
+            half = 0.5 * slip * now.losses.drag_N / n
             changed = changed or ratio != chain[at.FACTOR + i]
             chain[at.FACTOR + i], chain[at.DROP + i] = ratio, half + ratio * half
     return changed
@@ -124,13 +124,13 @@ def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     """Set the relations of sliding nodes by tangents; those of sticking nodes too.
 
-    The tangent of (T[i] + w z/2) = E (T[i−1] − w z/2), half of the viscous loss w on either side
+    The tangent of (T[i] + w z/2) = E (T[i−1] − w z/2), half of the drag w on either side
     of the bend, E = e^(∓a f z/n), z the ratio of friction to its limit. Friction that depends on
     the tension adds dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a bristle adds dz/dx
     of the node's travel.
     """
     n = laws.n
-    loss = now.losses.viscous_N / n
+    loss = now.losses.drag_N / n
     unbalanced = 0
     for i in range(1, n + 1):
         share, mean = chain[at.SHARE + i], chain[at.TENSION + i - 1] + chain[at.TENSION + i]

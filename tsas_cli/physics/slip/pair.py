@@ -68,7 +68,7 @@ def solve_pair(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 def seen_by_second(now: Moment, laws: SlipLaws) -> Moment:
     """Return a moment with the losses of the second tendon, which is released where x rises."""
     losses, ratio = now.losses, laws.antagonist.friction_ratio
-    own = Losses(ratio * losses.released, ratio * losses.pulled, losses.viscous_N, 0.0)
+    own = Losses(ratio * losses.released, ratio * losses.pulled, losses.drag_N, 0.0)
     return Moment(now.drive, now.load, own, now.step_s)
 
 

@@ -194,7 +194,7 @@ def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, limit: int, re
     Returns the number of changed nodes, at most `limit`, from the drive on.
     """
     n = laws.n
-    loss = now.losses.viscous_N / n
+    loss = now.losses.drag_N / n
     changed = 0
     for i in range(1, n + 1):
         before = chain[at.SLIP + i]

@@ -2,8 +2,8 @@
 
 Nodes cluster towards both ends (Chebyshev–Lobatto points); each node carries the friction of the
 half cells beside it, each cell one tension. Friction per length is μ κ T (T/F0)^n φ, where the
-state φ follows Dahl's law (dahl.py), and viscous friction w v of each node's own speed v adds to
-it. At δ = 5e-6 mm a front is a few mm wide.
+state φ follows Dahl's law (dahl.py); viscous friction w v of each node's own speed v and its drag,
+d φ, add to it. At δ = 5e-6 mm a front is a few mm wide.
 
 Units: mm, N, s, tonne. Displacements u count towards the drive, from rest at the preload.
 """
@@ -33,9 +33,9 @@ class Tendon(NamedTuple):
 
     bend: bend angle of each node [rad]; k: stiffness of each cell [N/mm]; c_in: compliance
     between the drive and the sheath [mm/N]; p, r: the distal end, p T_out = q + r u_end + what
-    the load adds; c_out: compliance between the sheath and the load; viscous: friction of each
-    node [N s/mm]; surface: what friction depends on at each place; stiffening: a cell's stiffness
-    grows by this share per newton [1/N].
+    the load adds; c_out: compliance between the sheath and the load; viscous, drag: friction of
+    each node by its speed [N s/mm] and at any tension [N]; surface: what friction depends on at
+    each place; stiffening: a cell's stiffness grows by this share per newton [1/N].
     """
 
     bend: Floats
@@ -49,6 +49,7 @@ class Tendon(NamedTuple):
     load: Load
     friction: Friction
     viscous: Floats
+    drag: Floats
     surface: Surface
     stiffening: float
 
@@ -128,8 +129,8 @@ def stretched(
 ) -> tuple[bool, Floats, float, float]:
     """Return whether a step between two displacements converged, what moved, and both tensions."""
     good, du = _solve(state, AT_REST, tendon, ends, h)
-    tension, _, e = _stretched(state, du, tendon, ends.mu)
-    return good, du, _at_drive(tendon, tension, e, du, h), _at_load(tendon, tension, e, du, h)
+    tension, _, e, w = _stretched(state, du, tendon, ends.mu, h)
+    return good, du, _at_drive(tension, e, w), _at_load(tension, e, w)
 
 
 @compiled
@@ -152,8 +153,8 @@ def _advance(
         step = (to - done) * h
         converged, du = _solve(state, load, tendon, here, step)
         if converged:
-            tension, _, e = _stretched(state, du, tendon, here.mu)
-            ends = (_at_drive(tendon, tension, e, du, step), _at_load(tendon, tension, e, du, step))
+            tension, _, e, w = _stretched(state, du, tendon, here.mu, step)
+            ends = (_at_drive(tension, e, w), _at_load(tension, e, w))
             y = state.u[-1] + du[-1] - tendon.c_out * (ends[1] - tendon.preload)
             load = moved(tendon.load, load, y, step)
             keep(state, du, tendon, step)
@@ -218,10 +219,13 @@ def _load_factor(i: int, tension: Floats, tendon: Tendon) -> float:
 
 @compiled
 def _stretched(
-    state: State, du: Floats, tendon: Tendon, mu: float
-) -> tuple[Floats, Floats, Floats]:
-    """Return tension [N] and stiffness [N/mm] of each cell, and e = μ θ φ (T/F0)^n / 2 by node."""
-    u, stiffening = state.u, tendon.stiffening
+    state: State, du: Floats, tendon: Tendon, mu: float, h: float
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return tension [N] and stiffness [N/mm] of each cell; by node e and the other friction [N].
+
+    Friction by the tension is 2 e T, e = μ θ φ (T/F0)^n / 2; the other one is viscous or drag.
+    """
+    u, stiffening, w = state.u, tendon.stiffening, tendon.viscous * du / h
     tension, k, e = np.empty(u.size - 1), tendon.k.copy(), np.empty(u.size)
     for i in range(u.size - 1):
         more = du[i] - du[i + 1]
@@ -235,19 +239,20 @@ def _stretched(
         turned = _turned(du[i], i, state, tendon)
         e[i] = 0.5 * mu * tendon.bend[i] * turned * _load_factor(i, tension, tendon)
         e[i] *= state.rough[i]
-    return tension, k, e
+        w[i] += tendon.drag[i] * turned
+    return tension, k, e, w
 
 
 @compiled
-def _at_drive(tendon: Tendon, tension: Floats, e: Floats, du: Floats, h: float) -> float:
+def _at_drive(tension: Floats, e: Floats, w: Floats) -> float:
     """Return the tension on the drive's side of the first node [N]."""
-    return float((tension[0] * (1.0 + e[0]) + tendon.viscous[0] * du[0] / h) / (1.0 - e[0]))
+    return float((tension[0] * (1.0 + e[0]) + w[0]) / (1.0 - e[0]))
 
 
 @compiled
-def _at_load(tendon: Tendon, tension: Floats, e: Floats, du: Floats, h: float) -> float:
+def _at_load(tension: Floats, e: Floats, w: Floats) -> float:
     """Return the tension on the load's side of the last node [N]."""
-    return float((tension[-1] * (1.0 - e[-1]) - tendon.viscous[-1] * du[-1] / h) / (1.0 + e[-1]))
+    return float((tension[-1] * (1.0 - e[-1]) - w[-1]) / (1.0 + e[-1]))
 
 
 @compiled
@@ -257,22 +262,23 @@ def _unbalanced(
     du: Floats,
     tension: Floats,
     e: Floats,
+    w: Floats,
     tendon: Tendon,
     ends: Ends,
     h: float,
 ) -> tuple[Floats, float]:
     """Return what pulls each node towards the drive [N], and the slope of the load's addition.
 
-    Inside T_{i−1} (1 − e) − T_i (1 + e) − w v.
+    Inside T_{i−1} (1 − e) − T_i (1 + e) − w.
     """
     u = state.u
     pull = np.empty(u.size)
-    at_drive = _at_drive(tendon, tension, e, du, h)
+    at_drive = _at_drive(tension, e, w)
     pull[0] = ends.x_in - u[0] - du[0] - tendon.c_in * (at_drive - tendon.preload)
     for i in range(1, u.size - 1):
         pull[i] = tension[i - 1] * (1.0 - e[i]) - tension[i] * (1.0 + e[i])
-        pull[i] -= tendon.viscous[i] * du[i] / h
-    at_load = _at_load(tendon, tension, e, du, h)
+        pull[i] -= w[i]
+    at_load = _at_load(tension, e, w)
     y = u[-1] + du[-1] - tendon.c_out * (at_load - tendon.preload)
     force, slope = extra_force(tendon.load, load, y, h)
     pull[-1] = tendon.p * at_load - ends.q - tendon.r * (u[-1] + du[-1]) - force
@@ -298,8 +304,8 @@ def _newton_change(
     p, r = tendon.p + tendon.c_out * load_slope, tendon.r + load_slope
     for i in range(n):
         slope = _turned_slope(du[i], i, state, tendon)
+        lag = tendon.viscous[i] / h + tendon.drag[i] * slope
         slope *= 0.5 * mu * tendon.bend[i] * _load_factor(i, tension, tendon) * state.rough[i]
-        lag = tendon.viscous[i] / h
         by_load = e[i] * tendon.friction.load_exponent
         if i == 0:
             below = 0.0
@@ -339,16 +345,16 @@ def _solve(
     """
     cuts = 1 if tendon.friction.round_mm > 0.0 else MAX_CUTS
     du = np.zeros(state.u.size)
-    tension, k, e = _stretched(state, du, tendon, ends.mu)
-    pull, slope = _unbalanced(state, load, du, tension, e, tendon, ends, h)
+    tension, k, e, w = _stretched(state, du, tendon, ends.mu, h)
+    pull, slope = _unbalanced(state, load, du, tension, e, w, tendon, ends, h)
     for _ in range(MAX_ITERATIONS):
         change = _newton_change(state, du, tension, k, e, pull, slope, tendon, ends.mu, h)
         work = np.dot(change[1:-1], pull[1:-1])
         part = 1.0
         for _ in range(cuts):
             trial = du + part * change
-            tension, k, e = _stretched(state, trial, tendon, ends.mu)
-            pull, slope = _unbalanced(state, load, trial, tension, e, tendon, ends, h)
+            tension, k, e, w = _stretched(state, trial, tendon, ends.mu, h)
+            pull, slope = _unbalanced(state, load, trial, tension, e, w, tendon, ends, h)
             after = np.dot(change[1:-1], pull[1:-1])
             if work <= 0.0 or after >= -0.5 * work:
                 break

@@ -20,6 +20,7 @@ class Friction(NamedTuple):
     load_exponent: float = 0.0  # it is μ (T/F0)^exponent at each place
     # Force per speed of the tendon as a whole; each place has its own speed.
     viscous_N_s_per_mm: float = 0.0
+    drag_N: float = 0.0  # of the whole sheath, even along it, the same at any tension
     # Displacement over which friction reverses, beyond the rig's own; the work lost until it has
     # turned is that of a friction that changes by its limit per such displacement.
     presliding_mm: float = 0.0

@@ -34,6 +34,7 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "friction", excess="stribeck_excess", velocity_mm_per_s="stribeck_velocity_mm_per_s"
     ),
     "viscous_friction": places("friction", coefficient_N_s_per_mm="viscous_N_s_per_mm"),
+    "sheath_drag": places("friction", force_N="drag_N"),
     "load_dependent_friction": places("friction", exponent="load_exponent"),
     "presliding": places("friction", length_mm="presliding_mm"),
     "bend_drift": places(

@@ -155,6 +155,7 @@ def _tendon(rig: Rig) -> continuum.Tendon:
     s = continuum.nodes(rig.sheath_length_mm, rig.cells)
     c_out, kL = rig.distal_length_mm / EA, rig.load_stiffness_N_per_mm
     p, r = _ends_of(rig.load, kL, c_out)
+    share: Floats = np.diff(_edges(s)) / rig.sheath_length_mm
     return continuum.Tendon(
         bend=_bend_per_node(rig, s),
         k=EA / np.diff(s) / (1.0 + rig.sheath_compliance_ratio),
@@ -166,7 +167,8 @@ def _tendon(rig: Rig) -> continuum.Tendon:
         c_out=c_out,
         load=Load(rig.load_end, rig.restraint, Spring(kL, rig.preload_N)),
         friction=f,
-        viscous=f.viscous_N_s_per_mm * np.diff(_edges(s)) / rig.sheath_length_mm,
+        viscous=f.viscous_N_s_per_mm * share,
+        drag=f.drag_N * share,
         surface=rig.surface,
         stiffening=rig.stiffening_per_N,
     )

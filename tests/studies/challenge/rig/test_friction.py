@@ -39,6 +39,18 @@ def test_viscous_friction_adds_evenly_along_the_sheath():
     assert columns["f_in_N"][i] - plain["f_in_N"][i] > 1.5
 
 
+@pytest.mark.parametrize("bend", [math.pi, 1e-6])
+def test_drag_adds_evenly_along_the_sheath_at_any_tension(bend):
+    """dT/ds = ∓(μκT + D/L): T_out = (T_in + D/a) e^(−a) − D/a on a pull, with −a on a release."""
+    a, motion = 0.125 * bend, through([UP, DOWN, DOWN + 0.5], speed_mm_s=4.0, rate_Hz=200.0)
+    rig = Rig(cells=80, total_bend_rad=bend, friction=Friction(drag_N=2.0))
+    columns = simulate(rig, motion).columns
+    for i, sign in ((int(UP * 50), 1.0), (int((2.0 * UP - DOWN) * 50), -1.0)):
+        f_in, f_out = columns["f_in_N"][i], columns["f_out_N"][i]
+        expected = (f_in + 2.0 / a) * math.exp(-sign * a) - 2.0 / a
+        assert f_out == pytest.approx(expected, rel=1e-3)
+
+
 def test_friction_and_bend_never_turn_negative():
     motion = through([10.0], speed_mm_s=4.0, rate_Hz=100.0)
     for gone in (Friction(rate_per_s=-1.0), Friction(bend_rate_rad_per_s=-4.0)):
