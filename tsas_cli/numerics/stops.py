@@ -39,7 +39,8 @@ def widths_with_gaps(longest: float) -> Floats:
 @kernel
 def beyond_gap(states: Values) -> Values:
     """Return the force of springs with a gap over that at full width, of any shape [1]."""
-    return np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
+    beyond: Values = np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
+    return beyond
 
 
 @kernel
@@ -67,7 +68,7 @@ def move_elements(value: float, widths: Floats, memory: Floats) -> None:
 
 
 @kernel
-def curve_at(value: float, low: float, high: float, heights: Sequence[float]) -> float:
+def curve_at(value: float, low: float, high: float, heights: Sequence[float] | Floats) -> float:
     """Return a curve of straight lines between heights at even distances, constant outside."""
     last = len(heights) - 1
     if value <= low:

@@ -8,8 +8,8 @@ below 0. μ is the friction far from a reversal at the low end and at low speed,
 are 0. The paper's μ is constant.
 Mistaken for: a cause. A law describes what no proven cause explains: breakaway, ageing, rolling
 strands, coatings, other laws of speed, and whatever else the friction depends on.
-Not validated: displacements, tensions and speeds beyond those that it was fitted to; controlled
-drives, whose plants have a constant μ.
+Not validated: displacements, tensions and speeds beyond those that it was fitted to; loops with a
+friction that changes by more than half over the speeds, which shakes the simulated drive.
 """
 
 import math
