@@ -113,6 +113,14 @@ ALONG = {
     "load spring": {"load_spring_nonlinearity.quadratic_per_mm": 0.03},
     "friction drift": {"friction_drift.rate_per_s": 0.05},
     "position-dependent friction": {"position_dependent_friction.slope_per_mm": 0.04},
+    "law of the sheath": {
+        "tendon_law.travel_mm": 4.0,
+        "tendon_law.start_1": 0.3,
+        "tendon_law.high_mm": 25.0,
+        "tendon_law.curve_4": 0.3,
+        "tendon_law.fast_mm_per_s": 30.0,
+        "tendon_law.speed_3": -0.2,
+    },
 }
 # The load turns later than the force, and yields with a kink that the path smooths.
 LATE = {
@@ -152,6 +160,9 @@ def test_the_motor_winds_up_the_gear_by_what_hangs_at_it():
         "drive_friction.friction_N": 3.0,
         "drive_damping.coefficient_N_s_per_mm": 0.5,
         "drive_inertia.mass_kg": 2.0,
+        "drive_law.travel_mm": 4.0,
+        "drive_law.friction_2_N": 2.0,
+        "drive_law.share_3": 0.05,
     }
     soft = STIFF._replace(stiffness_N_per_mm=52.0)
     rig = with_values(GROUP_A, values)

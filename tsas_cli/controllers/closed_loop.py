@@ -17,6 +17,14 @@ from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.plant.laws import (
+    AHEAD,
+    PlantLaws,
+    beside_drive,
+    friction_of_tendon,
+    laws_at_rest,
+    plant_laws,
+)
 from tsas_cli.physics.plant.lugre_plant import (
     lumps_at_rest,
     step_lumped_plant,
@@ -78,6 +86,7 @@ class PlantStart(NamedTuple):
     motor: Motor
     table: Turntable
     chain: Floats  # the tendon, overwritten
+    laws: Floats  # the state of the laws of unnamed origin, overwritten
 
 
 class LoopPlant(NamedTuple):
@@ -85,6 +94,7 @@ class LoopPlant(NamedTuple):
 
     actuator: Actuator
     rigs: tuple[Rig, Rig]
+    laws: tuple[PlantLaws, PlantLaws]  # of the rigs
     change_at: int
     substeps: int  # of the plant in one sample
     nodes: int
@@ -103,9 +113,11 @@ def plant_at_rest(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> Plan
         stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
         f_in = float(output.f_in[-1])
         f_in += proximal_spring_force(float(state.chain[POSITION]), stiffness)
+    laws = laws_at_rest(ends.drive, f_in, plant_laws(rig))
+    f_in += float(laws[AHEAD])
     motor_mm = drive_mm + (f_in - rig.preload_N) / actuator.stiffness_N_per_mm
     table = Turntable(drive_mm, drive_mm, 0.0, 0.0, f_in, 0.0)
-    return PlantStart(Motor(0.0, motor_mm), table, state.chain)
+    return PlantStart(Motor(0.0, motor_mm), table, state.chain, laws)
 
 
 @kernel
@@ -122,22 +134,24 @@ def close_loop(
     of the slip chain at the start, else the slip chain; only the one in use is compiled.
     """
     path, n, actuator, substeps = wanted.path, plant.nodes, plant.actuator, plant.substeps
-    motor, table, chain = plant.start
+    motor, table, chain, law_state = plant.start
     m = path.shape[1]
     columns = np.zeros((COLUMNS, m))
     memory, state = np.zeros(MEMORY), np.zeros(3)
     initial_memory(laws, memory)
-    rig = plant.rigs[0]
+    rig, laws_of_rig = plant.rigs[0], plant.laws[0]
     chain_laws = slip_laws(rig, n, DRIVEN)
     now = Moment(table.f_in, 0.0, Losses(0.0, 0.0, 0.0, 0.0), np.inf)
     if lumps is not None:
         lump_laws = lugre_laws(rig, n, DRIVEN)
-        tendon = lumps_at_rest(lumps, chain, table.f_in, rig, n)
+        friction = friction_of_tendon(law_state, chain[POSITION], laws_of_rig)
+        f_in = table.f_in - law_state[AHEAD]
+        tendon = lumps_at_rest(lumps, chain, f_in, rig, n, friction)
     h = sensor.step_s / substeps
     applied, limited, unconverged = 0.0, False, 0
     for k in range(m):
         if k == plant.change_at:
-            rig = plant.rigs[1]
+            rig, laws_of_rig = plant.rigs[1], plant.laws[1]
             chain_laws = slip_laws(rig, n, DRIVEN)
             set_compliances(chain, rig, n)
             if lumps is not None:
@@ -164,9 +178,13 @@ def close_loop(
         columns[ASKED, k], columns[MOTOR, k], columns[DISTANCE, k] = asked, motor.rpm, s
         for j in range(MEMORY):
             columns[MEMORY_AT + j, k] = memory[j]
+        tendon_rows = chain if lumps is None else lumps  # the end at the drive is the first of both
+        friction = friction_of_tendon(law_state, tendon_rows[POSITION], laws_of_rig)
         for sub in range(substeps):
             motor = advance_motor(motor, asked, actuator, h)
-            step = DriveStep(actuator, motor.mm, (k + (sub + 1) / substeps) * sensor.step_s, h)
+            time_s = (k + (sub + 1) / substeps) * sensor.step_s
+            beside = beside_drive(law_state, tendon_rows[POSITION], table, h, laws_of_rig)
+            step = DriveStep(actuator, motor.mm, time_s, h, beside, friction)
             if lumps is not None:
                 table, tendon, converged = step_lumped_plant(
                     table, lumps, tendon, rig, lump_laws, step

@@ -7,18 +7,29 @@ acceleration, and rates are exact differences of the means. Where the path is sm
 adds x″ crossing_s²/96. The ripple of the gear is inverted last, unsmoothed.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
+from tsas_cli.effects.laws.drive_law import DriveLaw, drive_law_force
+from tsas_cli.effects.laws.tendon_law import tendon_law_factor
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck_factor
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.stops import ELEMENTS, GAPS
 from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.course import PULLED, RELEASED
-from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, rate_of
+from tsas_cli.physics.ends import (
+    NO_TENDON_LAW,
+    force_of_motion,
+    last_direction,
+    losses_over,
+    rate_of,
+    since_reversal,
+)
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -72,11 +83,15 @@ def follow(
         rig.effects.position_dependent_friction.slope_per_mm != 0.0
         or stribeck.excess != 0.0
         or rig.effects.viscous_friction.coefficient_N_s_per_mm != 0.0
+        or rig.effects.tendon_law != NO_TENDON_LAW
     )
     for _ in range(ITERATIONS if depends_on_path else 1):
         losses = losses_over(np.maximum(time_s, 0.0), end, speed, 0.0, rig)
         if stribeck.excess != 0.0:
             losses[[PULLED, RELEASED]] *= [stribeck_factor(v, stribeck) for v in speed]
+        come = np.concatenate(([0.0], end))  # from x_in = 0
+        travel = since_reversal(come, last_direction(come), math.inf)[1:]
+        losses[[PULLED, RELEASED]] *= tendon_law_factor(rig.effects.tendon_law, end, travel, speed)
         end, tension, missed = inverse_chain(padded, losses, step_s, by_drive, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate(
@@ -88,9 +103,16 @@ def follow(
     force += drive_friction_force(1.0, rig.effects.drive_friction.friction_N) * direction
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
     force += force_of_motion(rate_of(end, time_s), time_s, rig.effects)
+    force += law_force(end, speed, force + rig.preload_N, rig.effects.drive_law)
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
     return DrivePath(drive, drive + wound, missed)
+
+
+def law_force(end: Floats, speed: Floats, tension: Floats, law: DriveLaw) -> Floats:
+    """Return the force of the drive's law along the path of the tendon's end, from x_in = 0 [N]."""
+    x, v, beside = (np.concatenate(([0.0], values)) for values in (end, speed, tension))
+    return drive_law_force(law, x, x, v, beside, np.full(1 + ELEMENTS + GAPS, np.nan))[1:]
 
 
 def geared_at(end: Floats, effects: Effects) -> Floats:

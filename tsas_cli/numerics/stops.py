@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Values
 
 ELEMENTS, GAPS, KNOTS = 6, 4, 5  # elements without and with a gap
 RATIO = 0.25  # width of each element over that of the one before
@@ -36,9 +36,11 @@ def widths_with_gaps(longest: float) -> Floats:
     return np.array([longest * 0.5**k for k in range(GAPS)])
 
 
-def beyond_gap(states: Floats) -> Floats:
+@kernel
+def beyond_gap(states: Values) -> Values:
     """Return the force of springs with a gap over that at full width, of any shape [1]."""
-    return np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
+    beyond: Values = np.sign(states) * np.maximum(np.abs(states) - GAP, 0.0) / (1.0 - GAP)
+    return beyond
 
 
 @kernel
@@ -49,27 +51,49 @@ def states_of(values: Floats, widths: Floats, memory: Floats) -> Floats:
     in place; with NaN, at the start of a run, the elements are without force at the first value.
     """
     out = np.empty((widths.size, values.size))
-    last = memory[0]
-    for k in range(widths.size):
-        state, last = memory[1 + k], memory[0]
-        for i in range(values.size):
-            state = 0.0 if np.isnan(last) else yielded(state, (values[i] - last) / widths[k], 1.0)
-            last = values[i]
-            out[k, i] = state
-        memory[1 + k] = state
-    memory[0] = last
+    for i in range(values.size):
+        move_elements(values[i], widths, memory)
+        for k in range(widths.size):
+            out[k, i] = memory[1 + k]
     return out
 
 
-def curve_of(values: Floats, low: float, high: float, heights: Sequence[float]) -> Floats:
+@kernel
+def move_elements(value: float, widths: Floats, memory: Floats) -> None:
+    """Move the elements to the next value of their input; `memory` is that of `states_of`."""
+    rise = value - memory[0]
+    for k in range(widths.size):
+        memory[1 + k] = 0.0 if np.isnan(rise) else yielded(memory[1 + k], rise / widths[k], 1.0)
+    memory[0] = value
+
+
+@kernel
+def curve_at(value: float, low: float, high: float, heights: Sequence[float] | Floats) -> float:
     """Return a curve of straight lines between heights at even distances, constant outside."""
-    return np.interp(values, np.linspace(low, high, len(heights)), heights)
+    last = len(heights) - 1
+    if value <= low:
+        return heights[0]
+    if value >= high:
+        return heights[last]
+    place = (value - low) / (high - low) * last
+    k = min(int(place), last - 1)
+    return heights[k] + (place - k) * (heights[k + 1] - heights[k])
 
 
-def speed_curve(speed: Floats, slow: float, fast: float, heights: Sequence[float]) -> Floats:
+@kernel
+def curve_of(values: Floats, low: float, high: float, heights: Sequence[float]) -> Floats:
+    """Return `curve_at` for each of the values."""
+    out = np.empty(values.size)
+    for i in range(values.size):
+        out[i] = curve_at(values[i], low, high, heights)
+    return out
+
+
+@kernel
+def speed_curve_at(speed: float, slow: float, fast: float, middle: float, highest: float) -> float:
     """Return a curve over the logarithm of the speed, 0 at the low speed and constant outside.
 
-    `heights` are those at the middle and at the high speed.
+    The heights are those at the middle and at the high speed.
     """
-    values = np.log(np.maximum(np.abs(speed), slow))
-    return curve_of(values, math.log(slow), math.log(fast), (0.0, *heights))
+    value = math.log(max(abs(speed), slow))
+    return curve_at(value, math.log(slow), math.log(fast), (0.0, middle, highest))

@@ -30,6 +30,7 @@ class DriveEnd(NamedTuple):
     given: int
     friction_N: float
     spring_N_per_mm: float
+    spring_N: float  # its force at x = 0
     damping_N_s_per_mm: float
     mass_kg: float
 
@@ -56,16 +57,19 @@ def drive_end(rig: Rig, given: int) -> DriveEnd:
         given,
         effects.drive_friction.friction_N,
         effects.proximal_spring.stiffness_N_per_mm,
+        0.0,
         effects.drive_damping.coefficient_N_s_per_mm,
         effects.drive_inertia.mass_kg,
     )
 
 
 @kernel
-def with_spring(drive: DriveEnd, given: int, spring_N_per_mm: float) -> DriveEnd:
+def with_spring(
+    drive: DriveEnd, given: int, spring_N_per_mm: float, spring_N: float = 0.0
+) -> DriveEnd:
     """Return a proximal end with another given quantity and another spring."""
     damping, mass = drive.damping_N_s_per_mm, drive.mass_kg
-    return DriveEnd(given, drive.friction_N, spring_N_per_mm, damping, mass)
+    return DriveEnd(given, drive.friction_N, spring_N_per_mm, spring_N, damping, mass)
 
 
 @kernel

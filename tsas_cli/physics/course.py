@@ -64,6 +64,13 @@ def losses_of(course: Floats, i: int) -> Losses:
 
 
 @kernel
+def with_friction(losses: Losses, factor: float) -> Losses:
+    """Return the losses with the friction coefficient times a factor."""
+    pulled, released = losses.pulled * factor, losses.released * factor
+    return Losses(pulled, released, losses.viscous_N, losses.preload_N)
+
+
+@kernel
 def losses_between(start: Losses, end: Losses, part: float) -> Losses:
     """Return the losses interpolated linearly between two moments, `part` from 0 to 1."""
     return Losses(

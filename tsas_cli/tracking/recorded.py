@@ -19,7 +19,7 @@ from tsas_cli.controllers.closed_loop import (
 )
 from tsas_cli.controllers.path import DrivePath
 from tsas_cli.controllers.sliding_mode import SlidingSettings
-from tsas_cli.effects import LAWS, Effects
+from tsas_cli.effects.laws.drive_law import DriveLaw
 from tsas_cli.identification.comparison import unstable_sliding
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
@@ -50,6 +50,7 @@ def table_of(
 
     x_in, phase = columns[X_SEEN], np.zeros(time_s.size, dtype=np.int8)
     true = Output(x_in, columns[X_OUT], columns[F_IN], columns[F_OUT], phase)
+    rig = rig._replace(effects=rig.effects._replace(drive_law=DriveLaw()))
     signals = sensed(true, time_s, rig, Boundary(DISPLACEMENT, SPRING), new_memory())
 
     def seen(channel: Channel, values: Floats, noise: float) -> Floats:
@@ -123,10 +124,6 @@ def run_notes(
             f"the reference asks for more than the motor's {limit:g} rpm in "
             f"{(asked > limit).sum()} samples, up to {asked.max():.0f} rpm"
         )
-    neutral, effects = Effects(), plant.rig.effects
-    laws = [law.name for law in LAWS if getattr(effects, law.name) != getattr(neutral, law.name)]
-    if laws:
-        yield f"{' and '.join(laws)} of the model describe recordings: the plant moves without them"
     for result in results:
         at_limit = result.scores.at_limit_percent.mean or 0.0
         if at_limit > OFTEN_PERCENT:

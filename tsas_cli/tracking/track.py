@@ -21,6 +21,7 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.path import DrivePath, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.physics.ends import last_direction
+from tsas_cli.physics.plant.laws import plant_laws
 from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
@@ -147,6 +148,7 @@ def run_loop(
         LoopPlant(
             actuator=plant.actuator,
             rigs=(plant.rig, plant.later or plant.rig),
+            laws=(plant_laws(plant.rig), plant_laws(plant.later or plant.rig)),
             change_at=change_at,
             substeps=settings.loop.substeps,
             nodes=nodes,

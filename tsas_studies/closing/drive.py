@@ -23,6 +23,7 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.drive.file import read_drive
+from tsas_cli.physics.plant.laws import plant_laws
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.writing import write_dataset
@@ -81,6 +82,7 @@ def driven(rpm: Floats, bench: Settings, seed: int) -> Floats:
         LoopPlant(
             actuator=drive,
             rigs=(rig, rig),
+            laws=(plant_laws(rig), plant_laws(rig)),
             change_at=-1,
             substeps=SUBSTEPS,
             nodes=NODES,

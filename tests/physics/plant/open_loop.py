@@ -16,6 +16,7 @@ from tsas_cli.controllers.closed_loop import (
 )
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
+from tsas_cli.physics.plant.laws import plant_laws
 from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.tracking.settings import Settings
 
@@ -45,6 +46,7 @@ def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, l
         LoopPlant(
             actuator=actuator,
             rigs=(rig, later or rig),
+            laws=(plant_laws(rig), plant_laws(later or rig)),
             change_at=at,
             substeps=substeps,
             nodes=n,

@@ -18,13 +18,15 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.stops import (
     ELEMENTS,
     GAPS,
+    KNOTS,
     beyond_gap,
-    curve_of,
-    speed_curve,
-    states_of,
+    curve_at,
+    move_elements,
+    speed_curve_at,
     widths_of,
     widths_with_gaps,
 )
@@ -72,6 +74,11 @@ FIRST = 5  # of the weights
 LAST = FIRST + 2 * (ELEMENTS + GAPS)
 
 
+def drive_law_widths(law: DriveLaw) -> Floats:
+    """Return the widths of the elements, those with a gap last, shape (ELEMENTS + GAPS,) [mm]."""
+    return np.concatenate((widths_of(law.travel_mm), widths_with_gaps(law.travel_mm)))
+
+
 def drive_law_force(
     law: DriveLaw, x: Floats, moved: Floats, speed: Floats, tension: Floats, memory: Floats
 ) -> Floats:
@@ -80,16 +87,41 @@ def drive_law_force(
     `moved` is the displacement that the elements follow, `speed` its speed; `memory` is that of the
     elements, updated in place.
     """
-    widths = np.concatenate((widths_of(law.travel_mm), widths_with_gaps(law.travel_mm)))
-    states = states_of(moved, widths, memory)
-    states[ELEMENTS:] = beyond_gap(states[ELEMENTS:])
-    friction, share, gap_friction, gap_share = np.split(
-        np.array(law[FIRST:LAST]), (ELEMENTS, 2 * ELEMENTS, 2 * ELEMENTS + GAPS)
-    )
-    force: Floats = np.concatenate((friction, gap_friction)) @ states
-    force += (np.concatenate((share, gap_share)) @ states) * tension
-    force *= 1.0 + speed_curve(speed, law.slow_mm_per_s, law.fast_mm_per_s, law[-2:])
-    return force + curve_of(x, law.low_mm, law.high_mm, law[LAST:-2])
+    return _forces(np.array(law), drive_law_widths(law), x, moved, speed, tension, memory)
+
+
+@kernel
+def _forces(
+    law: Floats,
+    widths: Floats,
+    x: Floats,
+    moved: Floats,
+    speed: Floats,
+    tension: Floats,
+    memory: Floats,
+) -> Floats:
+    out = np.empty(x.size)
+    for i in range(x.size):
+        move_elements(moved[i], widths, memory)
+        out[i] = drive_law_at(law, memory, x[i], speed[i], tension[i])
+    return out
+
+
+@kernel
+def drive_law_at(law: Floats, memory: Floats, x: float, speed: float, tension: float) -> float:
+    """Return the force beside the tendon at one moment [N].
+
+    `law` are the fields of `DriveLaw` in a row, shape (32,): as a record they would take a minute
+    to compile. `memory` is that of the elements at this moment.
+    """
+    force = 0.0
+    for k in range(ELEMENTS):
+        force += (law[FIRST + k] + law[FIRST + ELEMENTS + k] * tension) * memory[1 + k]
+    for k in range(GAPS):
+        at = FIRST + 2 * ELEMENTS + k
+        force += (law[at] + law[at + GAPS] * tension) * beyond_gap(memory[1 + ELEMENTS + k])
+    force *= 1.0 + speed_curve_at(speed, law[3], law[4], law[LAST + KNOTS], law[LAST + KNOTS + 1])
+    return force + curve_at(x, law[1], law[2], law[LAST : LAST + KNOTS])
 
 
 DRIVE_LAW = Effect(

@@ -8,16 +8,18 @@ below 0. μ is the friction far from a reversal at the low end and at low speed,
 are 0. The paper's μ is constant.
 Mistaken for: a cause. A law describes what no proven cause explains: breakaway, ageing, rolling
 strands, coatings, other laws of speed, and whatever else the friction depends on.
-Not validated: displacements, tensions and speeds beyond those that it was fitted to; controlled
-drives, whose plants have a constant μ.
+Not validated: displacements, tensions and speeds beyond those that it was fitted to; loops with a
+friction that changes by more than half over the speeds, which shakes the simulated drive.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.numerics.stops import RATIO, curve_of, speed_curve
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.stops import RATIO, curve_at, speed_curve_at
 from tsas_cli.support.arrays import Floats
 
 STARTS = 4
@@ -49,12 +51,25 @@ def tendon_law_factor(law: TendonLaw, x: Floats, travel: Floats, speed: Floats) 
     From displacement, travel since the last reversal and speed of the tendon's end at the drive,
     shape (n,) each.
     """
-    starts, curve, speeds = law[5:9], (0.0, *law[9:13]), law[13:]
-    factor = 1.0 + curve_of(x, law.low_mm, law.high_mm, curve)
-    for k, start in enumerate(starts, 1):
-        factor += start * np.exp(-travel / (law.travel_mm * RATIO ** (k - 1)))
-    factor += speed_curve(speed, law.slow_mm_per_s, law.fast_mm_per_s, speeds)
-    return np.maximum(factor, 0.0)
+    return _factors(np.array(law), x, travel, speed)
+
+
+@kernel
+def _factors(law: Floats, x: Floats, travel: Floats, speed: Floats) -> Floats:
+    out = np.empty(x.size)
+    for i in range(x.size):
+        out[i] = tendon_law_at(law, x[i], travel[i], speed[i])
+    return out
+
+
+@kernel
+def tendon_law_at(law: Floats, x: float, travel: float, speed: float) -> float:
+    """Return the factor at one moment [1]; `law` are the fields of `TendonLaw`, shape (15,)."""
+    factor = 1.0 + curve_at(x, law[1], law[2], (0.0, law[9], law[10], law[11], law[12]))
+    for k in range(STARTS):
+        factor += law[5 + k] * math.exp(-travel / (law[0] * RATIO**k))
+    factor += speed_curve_at(speed, law[3], law[4], law[13], law[14])
+    return max(factor, 0.0)
 
 
 TENDON_LAW = Effect(

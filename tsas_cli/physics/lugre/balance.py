@@ -142,7 +142,7 @@ def balance_drive(s: Floats, step: Step, laws: LugreLaws) -> None:
     inertia = drive_inertia_force(1.0, laws.drive.mass_kg) / step.gh
     s[at.DIAGONAL] = s[at.TENSION_SLOPE] + stiffness * step.gh + by_speed + damping + inertia
     beside = friction_force + drive_damper_force(s[at.RATE], damping)
-    beside += inertia * (s[at.RATE] - s[at.SPEED_HISTORY])
+    beside += inertia * (s[at.RATE] - s[at.SPEED_HISTORY]) + laws.drive.spring_N
     s[at.RESIDUAL] = (
         step.drive.value - s[at.TENSION] - proximal_spring_force(position, stiffness) - beside
     )

@@ -20,6 +20,7 @@ from tsas_cli.physics.boundary import (
     share_before_sensor,
     with_spring,
 )
+from tsas_cli.physics.course import with_friction
 from tsas_cli.physics.ends import losses_at
 from tsas_cli.physics.lugre import state as at
 from tsas_cli.physics.lugre.balance import balance_drive
@@ -80,13 +81,18 @@ def empty_lumps() -> Floats:
 
 
 @kernel
-def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> LumpedTendon:
-    """Set lumps at rest in the state of a slip chain, with a force at the drive [N]."""
+def lumps_at_rest(
+    s: Floats, chain: Floats, f_in: float, rig: Rig, n: int, friction: float
+) -> LumpedTendon:
+    """Set lumps at rest in the state of a slip chain, with a force at the drive [N].
+
+    `friction` is a factor of the friction coefficient.
+    """
     laws, start = lugre_laws(rig, n, DRIVEN), np.empty((2, n + 2))
     clear_state(s, rig, n)
     for j in range(n + 2):
         start[0, j], start[1, j] = chain[slip.POSITION + j], chain[slip.TENSION + j]
-    step = step_of_rest(f_in, 0.0, start[0, 0], rig, n)
+    step = step_of_rest(f_in, 0.0, start[0, 0], rig, n, friction)
     ends = rest_at(s, start, step, laws)
     if s[at.POSITION] < taut_position(s, step, laws):
         return slack_tendon(step, laws)
@@ -117,14 +123,14 @@ def step_lumped_plant(
     """
     p, h = s[at.POSITION], step.h
     spring = spring_of(table, p, rig, step)
-    given = step_of_rest(spring.force, step.time_s, p, rig, laws.n)
+    given = step_of_rest(spring.force, step.time_s, p, rig, laws.n, step.friction)
     if tendon.touched != spring.touches and not tendon.slack:
         tendon = restarted(tendon.ends, spring.touches)
     solved, arrived, x, f_in = True, True, spring.x, table.f_in
     drive = laws.drive
     if spring.touches:
-        stiffness = drive.spring_N_per_mm + spring.stiffness
-        driven = with_drive(laws, with_spring(drive, FORCE, stiffness))
+        stiffness = drive.spring_N_per_mm + spring.stiffness + step.beside.slope
+        driven = with_drive(laws, with_spring(drive, FORCE, stiffness, step.beside.ahead))
         if tendon.slack:
             tendon, solved = pull_slack(s, given, driven, h)
     else:
@@ -137,7 +143,8 @@ def step_lumped_plant(
         f_in += tendon.ends.drive.tension - tension
     else:
         if tendon.ends.drive.tension < 0.0 and s[at.POSITION] <= taut_position(s, given, laws):
-            s[at.POSITION] = (given.drive.value - s[at.FRICTION]) / driven.drive.spring_N_per_mm
+            force = given.drive.value - s[at.FRICTION] - driven.drive.spring_N
+            s[at.POSITION] = force / driven.drive.spring_N_per_mm
             tendon = slack_tendon(given, laws)
         if arrived:
             x, f_in = turntable_at(s[at.POSITION], spring)
@@ -223,9 +230,14 @@ def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
 
 
 @kernel
-def step_of_rest(force: float, time_s: float, position: float, rig: Rig, n: int) -> Step:
-    """Return a step of zero length with a force at the drive [N], which is at a position [mm]."""
-    losses = losses_at(time_s, position, 0.0, 0.0, rig)
+def step_of_rest(
+    force: float, time_s: float, position: float, rig: Rig, n: int, friction: float
+) -> Step:
+    """Return a step of zero length with a force at the drive [N], which is at a position [mm].
+
+    `friction` is a factor of the friction coefficient.
+    """
+    losses = with_friction(losses_at(time_s, position, 0.0, 0.0, rig), friction)
     pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
     none = Given(0.0, 0.0)
     return Step(NO_TIME_S, Given(force, 0.0), none, none, pulled, released, losses.preload_N)

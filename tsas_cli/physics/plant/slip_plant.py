@@ -2,6 +2,7 @@
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import with_spring
+from tsas_cli.physics.course import with_friction
 from tsas_cli.physics.ends import losses_at
 from tsas_cli.physics.plant.turntable import (
     DriveStep,
@@ -31,11 +32,11 @@ def step_plant(
     converged, now, x, f_in = True, before, spring.x, table.f_in
     mass_speed = chain[at.SPEED_BEFORE]
     if spring.touches:
-        losses = losses_at(step.time_s, p, table.speed, 0.0, rig)
+        losses = with_friction(losses_at(step.time_s, p, table.speed, 0.0, rig), step.friction)
         now = Moment(spring.force, 0.0, losses, step.h)
         drive = laws.drive
-        stiffness = drive.spring_N_per_mm + spring.stiffness
-        driven = with_drive(laws, with_spring(drive, drive.given, stiffness))
+        stiffness = drive.spring_N_per_mm + spring.stiffness + step.beside.slope
+        driven = with_drive(laws, with_spring(drive, drive.given, stiffness, step.beside.ahead))
         converged = advance(chain, before, now, driven)
         if chain[at.TENSION] < 0.0:
             go_slack(chain, now, laws)

@@ -5,7 +5,8 @@
     p = play(x + ripple(x))                                          the tendon's end
 
 Yang 2025, Eqs. (23) to (25), with the reaction k_d (x − x_m) of the drive's stiffness that Eq. (25)
-lacks. F is the force of the slip chain, the drive's friction and a spring parallel to the tendon.
+lacks. F is the force of the slip chain and of all that is beside it: the drive's friction, a spring
+parallel to the tendon, the law of unnamed origin at the drive (`plant.laws`).
 
 Discretisation: the motor exactly for a constant command, the turntable by BDF2 with a constant step
 (second order), in which F is implicit: a turntable after a step is a linear spring of stiffness
@@ -75,6 +76,8 @@ class DriveStep(NamedTuple):
     motor_mm: float
     time_s: float  # at its end
     h: float  # its length [s]
+    beside: Tangent = Tangent(0.0, 0.0)  # force of the drive's law over the tendon's end [mm, N]
+    friction: float = 1.0  # factor of the friction coefficient by the tendon's law
 
 
 class TurntableSpring(NamedTuple):

@@ -170,7 +170,8 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
 @kernel
 def drive_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
     """Return slope and value at x = 0 of the force beside the tendon at a drive by force."""
-    slope, value = proximal_spring_force(1.0, laws.drive.spring_N_per_mm), 0.0
+    slope = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
+    value = laws.drive.spring_N
     if now.step_s < math.inf:
         per_mm = drive_damper_force(1.0 / now.step_s, laws.drive.damping_N_s_per_mm)
         per_mm_s2, acceleration = acceleration_tangent(chain, now.step_s, 0)

@@ -93,7 +93,7 @@ def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int, revers
 @kernel
 def set_both_in_motion(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set positions and tensions of both tendons for their active sets."""
-    driven = with_drive(laws, DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0))
+    driven = with_drive(laws, DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0, 0.0))
     if laws.drive.given == DISPLACEMENT:
         sweep_both(chain, now.drive, now, driven)
         return

@@ -161,7 +161,7 @@ def laws_of_second(laws: SlipLaws) -> SlipLaws:
         -laws.friction_slope,
         laws.presliding_mm,
         laws.stribeck,
-        DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0),
+        DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0, 0.0),
         with_given(laws.load, DISPLACEMENT),
         laws.antagonist,
     )
