@@ -54,7 +54,8 @@ def _sections(it: Comparison) -> Iterator[Section]:
         how = (_VALUES,) if it.tested else ()
         yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
     if "effects" in printed:
-        said = tuple(f"{name}: {side.reason}" for name, side in it.sides.items() if side.reason)
+        found = {name: side.diagnosis for name, side in it.sides.items()}
+        said = tuple(f"{name}: {one.reason}" for name, one in found.items() if one and one.reason)
         yield Section("effects", "Effects", said, tables=(printed["effects"],))
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
         held = "Each side is held to the recordings that it has read."
