@@ -13,7 +13,6 @@ from tsas_cli.identification.model_file import IN_MEMORY, model_of, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse, read_toml
-from tsas_cli.recordings.storage import recorded_location
 from tsas_cli.records.base import DatasetSource, OfDataset, ParameterValue, parameters_of
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
 from tsas_cli.records.comparison import ParameterPair, ValueDifference
@@ -48,17 +47,24 @@ class Side:
     not_converged: str = ""
 
     @property
-    def _home(self) -> Path:
-        return self.path.parent if self.kind == "model" else self.path
-
-    @property
     def model_file(self) -> Path | None:
         """The file of the model, None of a simulation or a model in memory."""
-        return next((self._home / file for file in self.files if file.endswith(".toml")), None)
+        folder = self.path.parent if self.kind == "model" else self.path
+        return next((folder / file for file in self.files if file.endswith(".toml")), None)
 
     @cached_property
     def _read(self) -> tuple[Dataset | None, str]:
-        return (None, "") if self.source is None else _dataset(self.source, self._home)
+        """The dataset as it was read, with the runs that were; or None, and why."""
+        if self.source is None:
+            return None, ""
+        where = self.path if self.kind == "model" else self.path / next(iter(self.files))
+        try:
+            dataset = read_dataset(self.source.found(where))
+            self.source.check(dataset, where)
+        except InputError as error:
+            return None, error.what if error.where == str(where) else error.line()
+        dataset, chosen = dataset.under(**self.source.conditions), self.source.chosen
+        return (dataset if chosen is None else dataset.only(chosen)), ""
 
     @property
     def dataset(self) -> Dataset | None:
@@ -157,22 +163,6 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     assert isinstance(stage, CalibrationFile)  # noqa: S101  the only other kind
     message = "" if stage.fit.converged else stage.fit.message
     return Side(path, "calibration", files, model, stage.dynamics, source, not_converged=message)
-
-
-def _dataset(source: DatasetSource, home: Path) -> tuple[Dataset | None, str]:
-    """Return the dataset as it was read, with the runs that were; or None, and why."""
-    try:
-        folder = recorded_location(home, source.folder)
-        if not source.folder or not (folder / MANIFEST_FILE).is_file():
-            return None, f"the dataset {source.name} is no longer at {folder}"
-        dataset = read_dataset(folder)
-    except InputError as error:
-        return None, error.line()
-    then = {file: digest.lower() for file, digest in source.hashes.items()}
-    if then != {file: digest.lower() for file, digest in dataset.hashes().items()}:
-        return None, f"the dataset {folder} has changed since it was read"
-    dataset = dataset.under(**source.conditions)
-    return (dataset if source.chosen is None else dataset.only(source.chosen)), ""
 
 
 def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:
