@@ -8,6 +8,7 @@ import pytest
 from tsas_cli.comparing.sides import Side, difference, overlap, pairs, same_runs
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
+from tsas_cli.records.base import DatasetSource
 
 A = Estimate("friction_coefficient", 0.125, "1", "fitted", None, 0.002, 0.121, 0.130)
 B = Estimate("friction_coefficient", 0.150, "1", "fitted", None, 0.002, 0.142, 0.153)
@@ -16,7 +17,8 @@ PRELOAD = Estimate("preload_N", 25.0, "N", "fitted", "a", 0.1, 24.8, 25.2)
 
 
 def side(*estimates, recordings=None):
-    return Side(Path("m.toml"), "model", {}, Model(estimates), recordings=recordings)
+    source = None if recordings is None else DatasetSource(name="bench", hashes=recordings)
+    return Side(Path("m.toml"), "model", {}, Model(estimates), source=source)
 
 
 def test_the_interval_adds_the_ends_that_pull_the_same_way_in_quadrature():

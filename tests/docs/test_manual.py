@@ -19,7 +19,7 @@ from docs.manual.effects import PARTS, _figure, effect_pages, parts_of
 from docs.manual.links import for_site, targets
 from docs.manual.signatures import SIGNATURES
 from tsas_cli.effects import EFFECTS
-from tsas_cli.reporting.colours import ROLES
+from tsas_cli.reporting.colours import STAND_IN
 
 EVERY_EFFECT = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
 LOADED = re.compile(r"""(?:src|srcset)\s*=\s*["']?https?:|url\(["']?https?:|@import|unpkg""")
@@ -213,7 +213,7 @@ def test_a_figure_is_the_same_each_time_and_takes_the_colours_of_the_page():
 
 def test_both_schemes_name_every_colour():
     for scheme in palettes():
-        assert set(re.findall(r"--([\w-]+):", scheme)) >= set(ROLES)
+        assert set(re.findall(r"--([\w-]+):", scheme)) >= set(STAND_IN)
 
 
 def test_every_command_is_in_the_reference_with_an_example():

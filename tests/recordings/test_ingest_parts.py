@@ -5,7 +5,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli import ingest
-from tsas_cli.recordings.readers import delimited, parquet, table
+from tsas_cli.recordings.readers import delimited, parquet
 from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.support.errors import InputError
 
@@ -35,7 +35,7 @@ def parts(monkeypatch):
     """Return a function that lets files be read in parts of so many rows."""
 
     def set_rows(rows):
-        for module in (delimited, parquet, table):
+        for module in (delimited, parquet):
             monkeypatch.setattr(module, "BATCH_ROWS", rows)
 
     return set_rows

@@ -4,7 +4,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from tsas_cli.reporting.colours import ROLES, STAND_IN
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.drawing import picture, shortened
 
 
@@ -39,7 +39,7 @@ def test_every_colour_is_a_variable_of_the_page_and_nothing_holds_for_all_of_it(
     assert "var(--contraction)" in svg
     assert "var(--measured)" in svg
     assert not re.search(r"#[0-9a-fA-F]{6}\b", svg)
-    assert set(re.findall(r"var\(--([\w-]+)\)", svg)) <= set(ROLES)
+    assert set(re.findall(r"var\(--([\w-]+)\)", svg)) <= set(STAND_IN)
     assert "<style" not in svg
     assert "http" not in svg  # nor is a network asked
 

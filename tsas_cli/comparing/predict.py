@@ -26,7 +26,6 @@ from tsas_cli.records.prediction import (
     PredictedChannel,
     PredictingModel,
     PredictionFile,
-    QuantityOutside,
     RangeOfRun,
 )
 from tsas_cli.records.result import Table
@@ -138,7 +137,7 @@ def _ratio(value: float | None, of: float | None) -> float | None:
 def _range(run: str, model: str, here: FittedTo, fitted: FittedTo | None) -> RangeOfRun:
     if fitted is None:
         return RangeOfRun(run=run, model=model, verdict="unknown")
-    outside = [QuantityOutside(**vars(one)) for one in departures(here, fitted)]
+    outside = departures(here, fitted)
     return RangeOfRun(
         run=run,
         model=model,

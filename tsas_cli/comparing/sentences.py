@@ -74,8 +74,9 @@ def _effects(it: Comparison) -> Iterator[str]:
         if alone:
             yield f"{name} alone holds {', '.join(alone)}."
     for name, side in it.sides.items():
-        if side.verdict == "undecided" or side.verdict in INCOMPLETE:
-            yield f"The verdict of diagnosis {name} is {side.verdict}: {side.reason}"
+        found = side.diagnosis
+        if found and (found.verdict == "undecided" or found.verdict in INCOMPLETE):
+            yield f"The verdict of diagnosis {name} is {found.verdict}: {found.reason}"
 
 
 def _held_out(it: Comparison) -> Iterator[str]:

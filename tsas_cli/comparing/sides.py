@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -12,11 +13,10 @@ from tsas_cli.identification.model_file import IN_MEMORY, model_of, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse, read_toml
-from tsas_cli.recordings.storage import recorded_location
 from tsas_cli.records.base import DatasetSource, OfDataset, ParameterValue, parameters_of
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
 from tsas_cli.records.comparison import ParameterPair, ValueDifference
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile, HeldOut, NamedCause
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile, NamedCause
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
@@ -33,9 +33,8 @@ STAGES: tuple[type[OfDataset], ...] = (CalibrationFile, DiagnosisFile, Simulatio
 class Side:
     """What is compared, as far as it is there.
 
-    `recordings` holds the checksum of each recording that was read, by run id; None where a model
-    does not say what it was fitted to. `dataset` is None where it is no longer there as it was
-    read, and `gone` then says why. A simulation does not hold its model.
+    `source` says which recordings were read, None where a model does not say what it was fitted to.
+    A simulation does not hold its model.
     """
 
     path: Path
@@ -44,13 +43,7 @@ class Side:
     model: Model | None = None
     dynamics: Dynamics = "slip"
     source: DatasetSource | None = None
-    dataset: Dataset | None = None
-    gone: str = ""
-    recordings: dict[str, str] | None = None
-    verdict: str = ""
-    reason: str = ""
-    named: tuple[NamedCause, ...] = ()
-    held_out: dict[str, HeldOut] = field(default_factory=dict)
+    diagnosis: DiagnosisFile | None = None
     not_converged: str = ""
 
     @property
@@ -58,6 +51,49 @@ class Side:
         """The file of the model, None of a simulation or a model in memory."""
         folder = self.path.parent if self.kind == "model" else self.path
         return next((folder / file for file in self.files if file.endswith(".toml")), None)
+
+    @cached_property
+    def _read(self) -> tuple[Dataset | None, str]:
+        """The dataset as it was read, with the runs that were; or None, and why."""
+        if self.source is None:
+            return None, ""
+        where = self.path if self.kind == "model" else self.path / next(iter(self.files))
+        try:
+            dataset = read_dataset(self.source.found(where))
+            self.source.check(dataset, where)
+        except InputError as error:
+            return None, error.what if error.where == str(where) else error.line()
+        dataset, chosen = dataset.under(**self.source.conditions), self.source.chosen
+        return (dataset if chosen is None else dataset.only(chosen)), ""
+
+    @property
+    def dataset(self) -> Dataset | None:
+        """The recordings as they were read, None where they are no longer there."""
+        return self._read[0]
+
+    @property
+    def gone(self) -> str:
+        """Why the recordings are not there."""
+        return self._read[1]
+
+    @cached_property
+    def recordings(self) -> dict[str, str] | None:
+        """The checksum of each recording that was read, by run id; None where it is not said.
+
+        Without the dataset the ids are those that the files are named after.
+        """
+        if self.dataset is not None:
+            return {run.id: run.sha256.lower() for run in self.dataset.runs}
+        if self.source is None:
+            return None
+        hashes, chosen = self.source.hashes.items(), self.source.chosen
+        named = {Path(file).stem: d.lower() for file, d in hashes if file != MANIFEST_FILE}
+        return {run: digest for run, digest in named.items() if chosen is None or run in chosen}
+
+    @property
+    def named(self) -> tuple[NamedCause, ...]:
+        """What a diagnosis names."""
+        return () if self.diagnosis is None else self.diagnosis.named
 
     def has_seen(self, digest: str) -> bool | None:
         """Say whether the fit has read the recording of a checksum; None where that is unknown.
@@ -110,76 +146,23 @@ def _of_model(path: Path) -> Side:
     model = read_model(path)
     said = read_toml(path).get("dataset", {})
     source = parse(DatasetSource, said, path) if "hashes" in said else None
-    dataset, gone = (None, "") if source is None else _dataset(source, source, path.parent)
-    return Side(
-        path,
-        "model",
-        {path.name: sha256_of(path)},
-        model,
-        _dynamics_of(model),
-        source,
-        dataset,
-        gone,
-        None if source is None else _recordings(source, source.chosen, dataset),
-    )
+    return Side(path, "model", {path.name: sha256_of(path)}, model, _dynamics_of(model), source)
 
 
 def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     file = path / kind.FILE
     stage = parse(kind, read_json(file), file)
-    files = {kind.FILE: sha256_of(file)}
-    dataset, gone = _dataset(stage.dataset, stage, path)
-    read = _recordings(stage.dataset, stage.chosen, dataset)
+    files, source = {kind.FILE: sha256_of(file)}, stage.source()
     if isinstance(stage, SimulationFile):
-        return Side(
-            path, "simulation", files, None, stage.dynamics, stage.dataset, dataset, gone, read
-        )
+        return Side(path, "simulation", files, None, stage.dynamics, source)
     name = EXTENDED_MODEL if isinstance(stage, DiagnosisFile) else MODEL_FILE
     model = read_model(path / name)
     files[name] = sha256_of(path / name)
     if isinstance(stage, DiagnosisFile):
-        return Side(
-            path, "diagnosis", files, model, "slip", stage.dataset, dataset, gone, read,
-            stage.verdict, stage.reason, stage.named, stage.channels,
-        )  # fmt: skip
+        return Side(path, "diagnosis", files, model, source=source, diagnosis=stage)
     assert isinstance(stage, CalibrationFile)  # noqa: S101  the only other kind
-    return Side(
-        path, "calibration", files, model, stage.dynamics, stage.dataset, dataset, gone, read,
-        not_converged="" if stage.fit.converged else stage.fit.message,
-    )  # fmt: skip
-
-
-def _dataset(
-    source: DatasetSource, read: DatasetSource | OfDataset, home: Path
-) -> tuple[Dataset | None, str]:
-    """Return the dataset as it was read, with the runs that were; or None, and why."""
-    try:
-        folder = recorded_location(home, source.folder)
-        if not source.folder or not (folder / MANIFEST_FILE).is_file():
-            return None, f"the dataset {source.name} is no longer at {folder}"
-        dataset = read_dataset(folder)
-    except InputError as error:
-        return None, error.line()
-    then = {file: digest.lower() for file, digest in source.hashes.items()}
-    if then != {file: digest.lower() for file, digest in dataset.hashes().items()}:
-        return None, f"the dataset {folder} has changed since it was read"
-    dataset = dataset.under(**read.conditions)
-    return (dataset if read.chosen is None else dataset.only(read.chosen)), ""
-
-
-def _recordings(
-    source: DatasetSource, chosen: tuple[str, ...] | None, dataset: Dataset | None
-) -> dict[str, str]:
-    """Return the checksum of each recording that was read, by the id of its run.
-
-    Without the dataset the ids are those that the files are named after.
-    """
-    if dataset is not None:
-        return {run.id: run.sha256.lower() for run in dataset.runs}
-    named = {
-        Path(f).stem: digest.lower() for f, digest in source.hashes.items() if f != MANIFEST_FILE
-    }
-    return {run: digest for run, digest in named.items() if chosen is None or run in chosen}
+    message = "" if stage.fit.converged else stage.fit.message
+    return Side(path, "calibration", files, model, stage.dynamics, source, not_converged=message)
 
 
 def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:

@@ -40,15 +40,15 @@ def record_of(it: Comparison) -> ModelComparison:
 
 
 def _side(side: Side) -> ModelSide:
-    source, read = side.source, side.recordings
+    source, read, found = side.source, side.recordings, side.diagnosis
     return ModelSide(
         path=side.path.as_posix(),
         kind=side.kind,
         files=side.files,
         dataset=source and RecordingsRead(name=source.name, recordings=read),
         dynamics=side.dynamics,
-        verdict=side.verdict or None,
-        reason=side.reason or None,
+        verdict=found and found.verdict,
+        reason=(found and found.reason) or None,
     )
 
 
@@ -73,6 +73,9 @@ def _place(side: Side, effect: str) -> str:
 
 def held_out(it: Comparison) -> list[HeldOutPair]:
     """Return the errors of two diagnoses on held-out data, by channel; none of anything else."""
+    if it.a.diagnosis is None or it.b.diagnosis is None:
+        return []
+    others = it.b.diagnosis.channels
     return [
         HeldOutPair(
             channel=name,
@@ -82,8 +85,8 @@ def held_out(it: Comparison) -> list[HeldOutPair]:
             noise_a=a.noise_floor,
             noise_b=b.noise_floor,
         )
-        for name, a in it.a.held_out.items()
-        if (b := it.b.held_out.get(name)) is not None
+        for name, a in it.a.diagnosis.channels.items()
+        if (b := others.get(name)) is not None
     ]
 
 
@@ -93,7 +96,8 @@ def tables(it: Comparison) -> list[Table]:
     for name, side in it.sides.items():
         source, read = side.source, side.recordings
         known = "unknown" if source is None or read is None else f"{len(read)} of {source.name}"
-        sides.append((name, side.kind, str(side.path), known, side.verdict))
+        verdict = side.diagnosis.verdict if side.diagnosis else ""
+        sides.append((name, side.kind, str(side.path), known, verdict))
     every: list[Table] = [
         ("sides", ("", "kind", "path", "recordings", "verdict"), sides),
         (

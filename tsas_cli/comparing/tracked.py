@@ -26,25 +26,15 @@ TASK = ("plant", "dynamics", "reference", "settings.reference")  # with others t
 
 
 @dataclass(frozen=True)
-class ControllerPair:
-    """One controller under one condition in both folders."""
-
-    a: TrackedResult
-    b: TrackedResult
-
-    def ratio(self, score: str) -> float | None:
-        """Return B over A of a score's mean."""
-        first, second = self.a.scores[score].mean, self.b.scores[score].mean
-        return second / first if first and second is not None else None
-
-
-@dataclass(frozen=True)
 class Tracks:
-    """Two folders of tracked runs: what is said of both, and the results that both have."""
+    """Two folders of tracked runs: what is said of both, and the results that both have.
+
+    `followed` holds those of A and of B for each controller and condition.
+    """
 
     paths: dict[str, Path]
     record: TrackedComparison
-    followed: list[ControllerPair]
+    followed: list[tuple[TrackedResult, TrackedResult]]
 
 
 def are_tracked(a: Path, b: Path) -> bool:
@@ -71,7 +61,10 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
     )
     both = [key for key in first if key in second and key[1] in same]
     paths, settings = {"A": a, "B": b}, _settings(*raw)
-    followed = [ControllerPair(first[key], second[key]) for key in both]
+    followed = [(first[key], second[key]) for key in both]
+    scores = [
+        _score(*results, score, unit) for results in followed for score, unit in SCORES.items()
+    ]
     alone = {
         name: [result.run for key, result in side.items() if key not in both]
         for name, side in (("A", first), ("B", second))
@@ -85,9 +78,9 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
         a=of_a,
         b=of_b,
         settings=settings,
-        scores=_scores(followed),
-        findings=tuple(_findings(followed)),
-        notes=[*change_notes((a, b)), *_notes(settings, followed, alone)],
+        scores=scores,
+        findings=tuple(_findings(scores)),
+        notes=[*change_notes((a, b)), *_notes(settings, scores, alone)],
     )
     return Tracks(paths, record, followed)
 
@@ -107,37 +100,29 @@ def _flat(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, A
             yield f"{prefix}{key}", value
 
 
-def _scores(followed: list[ControllerPair]) -> list[ScorePair]:
-    return [
-        ScorePair(
-            controller=both.a.controller,
-            condition=both.a.condition,
-            score=score,
-            unit=unit,
-            a=both.a.scores[score],
-            b=both.b.scores[score],
-            ratio=both.ratio(score),
-        )
-        for both in followed
-        for score, unit in SCORES.items()
-    ]
+def _score(a: TrackedResult, b: TrackedResult, score: str, unit: str) -> ScorePair:
+    first, second = a.scores[score], b.scores[score]
+    return ScorePair(
+        controller=a.controller,
+        condition=a.condition,
+        score=score,
+        unit=unit,
+        a=first,
+        b=second,
+        ratio=second.mean / first.mean if first.mean and second.mean is not None else None,
+    )
 
 
-def _findings(followed: list[ControllerPair]) -> Iterator[str]:
+def _findings(scores: list[ScorePair]) -> Iterator[str]:
     """Yield the RMSE of B over that of A by controller, in a sentence for each condition."""
-    for condition in dict.fromkeys(both.a.condition for both in followed):
-        ratios = {
-            both.a.controller: ratio
-            for both in followed
-            if both.a.condition == condition and (ratio := both.ratio("rmse_N")) is not None
-        }
-        said = ", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items())
-        if said:
-            yield f"RMSE of the force, {condition}, B over A: {said}."
+    rmse = [one for one in scores if one.score == "rmse_N" and one.ratio is not None]
+    for condition in dict.fromkeys(one.condition for one in rmse):
+        of = (f"{one.controller} {one.ratio:.3g}" for one in rmse if one.condition == condition)
+        yield f"RMSE of the force, {condition}, B over A: {', '.join(of)}."
 
 
 def _notes(
-    settings: list[Setting], followed: list[ControllerPair], alone: dict[str, list[str]]
+    settings: list[Setting], scores: list[ScorePair], alone: dict[str, list[str]]
 ) -> Iterator[str]:
     """Yield what to keep in mind, what could not be matched, and what would give more."""
     if other := [s.name for s in settings if s.name.startswith(TASK)]:
@@ -150,7 +135,7 @@ def _notes(
     for name, runs in alone.items():
         if runs:
             yield f"In {name} alone, by controller and condition: {', '.join(runs)}."
-    if any(both.a.scores["rmse_N"].sd is None for both in followed):
+    if any(one.score == "rmse_N" and one.a.sd is None for one in scores):
         yield "With one seed of noise nothing says how far the scores scatter: take `--seeds 10`."
 
 

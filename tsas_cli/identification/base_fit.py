@@ -56,7 +56,7 @@ def initial_values_of(
 
 
 def _samples(segments: Sequence[Segment], phase: str, values: Floats) -> Floats:
-    parts = [values[s.first : s.end] for s in segments if s.phase == phase]
+    parts = [values[s.rows] for s in segments if s.phase == phase]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 

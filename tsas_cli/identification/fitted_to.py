@@ -8,7 +8,6 @@ friction or bend changes by a tenth; another level of a condition is mostly tens
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from datetime import date
 from typing import Self
 
@@ -20,6 +19,7 @@ from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.units import is_unit
+from tsas_cli.records.prediction import QuantityOutside
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.plausible import LARGEST, AnyNumber
 from tsas_cli.support.strict_table import StrictTable
@@ -53,15 +53,6 @@ class FittedTo(StrictTable):
         return self
 
 
-@dataclass(frozen=True)
-class Departure:
-    """A quantity that leaves the range of a fit: its range, or words, here and there."""
-
-    quantity: str
-    here: Range | tuple[str, ...]
-    fitted: Range | tuple[str, ...]
-
-
 def fitted_to(sheet: RigSheet, runs: Sequence[Prepared]) -> FittedTo:
     """Return the ranges of the conditions and signals of runs, and of the rig's data sheet."""
     ranges: dict[str, Range] = {}
@@ -81,9 +72,9 @@ def fitted_to(sheet: RigSheet, runs: Sequence[Prepared]) -> FittedTo:
     )
 
 
-def departures(here: FittedTo, fitted: FittedTo) -> list[Departure]:
+def departures(here: FittedTo, fitted: FittedTo) -> list[QuantityOutside]:
     """Return what of a run leaves the ranges that a model was fitted to."""
-    out: list[Departure] = []
+    out: list[QuantityOutside] = []
     for name, (low, high) in here.ranges.items():
         known = fitted.ranges.get(name)
         if known is None:
@@ -91,11 +82,11 @@ def departures(here: FittedTo, fitted: FittedTo) -> list[Departure]:
         width = known[1] - known[0]
         below, above = (MARGIN * max(width, abs(end)) for end in known)
         if low < known[0] - below or high > known[1] + above:
-            out.append(Departure(name, (low, high), known))
+            out.append(QuantityOutside(quantity=name, here=(low, high), fitted=known))
     for name, words in here.words.items():
         stated = fitted.words.get(name)
         if stated is not None and not set(words) <= set(stated):
-            out.append(Departure(name, words, stated))
+            out.append(QuantityOutside(quantity=name, here=words, fitted=stated))
     return out
 
 

@@ -43,6 +43,11 @@ class Segment:
     end: int
     phase: Phase
 
+    @property
+    def rows(self) -> slice:
+        """The samples."""
+        return slice(self.first, self.end)
+
 
 @dataclass(frozen=True)
 class _Stroke:

@@ -48,7 +48,7 @@ def slopes(x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> list[Slop
 def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> Slope | None:
     xs, fs = [], []
     for s in segments:
-        x, f = x_in[s.first : s.end], f_in[s.first : s.end]
+        x, f = x_in[s.rows], f_in[s.rows]
         ok = np.isfinite(f) & np.isfinite(x)
         if s.phase == phase and ok.sum() >= FEWEST_SAMPLES:
             xs.append(x[ok] - x[ok].mean())
@@ -139,12 +139,10 @@ def _line(
             continue
         noise = max(noise, run.noise.get("f_out_N", 0.0))
         for part in parts:
-            ok = np.isfinite(f_in[part.first : part.end]) & np.isfinite(
-                f_out[part.first : part.end]
-            )
+            ok = np.isfinite(f_in[part.rows]) & np.isfinite(f_out[part.rows])
             if part.phase == phase and ok.any():
-                at_drive.append(f_in[part.first : part.end][ok])
-                at_load.append(f_out[part.first : part.end][ok])
+                at_drive.append(f_in[part.rows][ok])
+                at_load.append(f_out[part.rows][ok])
                 block.append(np.full(int(ok.sum()), count))
                 count += 1
     if count < 2 or sum(b.size for b in block) < FEWEST_OF_TRANSFER:

@@ -50,15 +50,22 @@ def damaged(path: object, kind: str, error: Exception) -> InputError:
 
 
 @contextmanager
-def foreign(path: object, kind: str) -> Iterator[None]:
-    """Convert the errors of the library for a format to `InputError`."""
+def foreign(
+    path: object, kind: str, errors: tuple[type[Exception], ...] = (Exception,)
+) -> Iterator[None]:
+    """Convert the errors of the library for a format to `InputError`.
+
+    A damaged file raises any of a dozen types, unless `errors` are known.
+    """
     try:
         yield
     except InputError:
         raise
     except MemoryError as error:
         raise out_of_memory(path) from error
-    except Exception as error:  # a damaged file raises any of a dozen types
+    except errors as error:
+        if isinstance(error, OSError) and error.errno is not None:  # not of the content
+            raise InputError(f"cannot be read ({error.strerror})", where=path) from error
         raise damaged(path, kind, error) from error
 
 

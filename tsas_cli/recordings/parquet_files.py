@@ -6,8 +6,8 @@ import mmap
 import struct
 import tempfile
 from collections import OrderedDict
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 from threading import Lock
 from typing import IO, TypeAlias, cast
@@ -16,14 +16,13 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.guards import Expanded, damaged
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Address, Location, NotThereError, check_inside
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
-from tsas_cli.support.limits import out_of_memory
 
 ParquetSource: TypeAlias = Path | pa.NativeFile
 REQUEST_BYTES = 16 * 1024 * 1024
@@ -34,17 +33,10 @@ BUFFER_BYTES = 1 << 20  # read at a time: a row group need not fit into memory
 _TRAILER_BYTES = 8  # at the end: the footer's length and PAR1
 
 
-@contextmanager
-def reading(path: object) -> Iterator[None]:
+def reading(path: object) -> AbstractContextManager[None]:
     """Convert the errors of pyarrow at a damaged or too large file to `InputError`."""
-    try:
-        yield
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:  # the last is of names
-        if isinstance(error, OSError) and error.errno is not None:  # not of the content
-            raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-        raise damaged(path, "Parquet", error) from error
+    errors = pa.ArrowException, OSError, UnicodeDecodeError  # the last is of names
+    return foreign(path, "Parquet", errors)
 
 
 def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.ParquetFile:
@@ -143,6 +135,27 @@ def floats_from(column: pa.ChunkedArray) -> Floats:
     bits = np.unpackbits(np.frombuffer(validity, np.uint8), bitorder="little")
     valid = bits[whole.offset : whole.offset + len(whole)].astype(np.bool_)
     return np.where(valid, values, np.nan)
+
+
+def in_batches(
+    batches: Iterable[pa.RecordBatch], rows: int, *, overlap: int = 0
+) -> Iterator[pa.Table]:
+    """Yield tables of so many rows from batches of any size; the last one may be shorter.
+
+    Consecutive tables share `overlap` rows.
+    """
+    waiting: list[pa.RecordBatch] = []
+    count = shared = 0
+    for batch in batches:
+        waiting.append(batch)
+        count += batch.num_rows
+        while count >= rows:
+            table = pa.Table.from_batches(waiting)
+            yield table.slice(0, rows)
+            shared, count = overlap, count - rows + overlap
+            waiting = table.slice(rows - overlap).to_batches()
+    if count > shared:
+        yield pa.Table.from_batches(waiting)
 
 
 def column_of(values: Floats) -> pa.Array:

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.parquet_files import check_size, reading
+from tsas_cli.recordings.parquet_files import check_size, in_batches, reading
 from tsas_cli.recordings.run_files import (
     RunColumns,
     check_columns,
@@ -84,26 +84,18 @@ def pieces(
     InputError: the file cannot be read, a column is not numeric or holds an implausible value, or
     time does not increase.
     """
-    buffered: dict[str, list[Floats]] = {name: [] for name in names}
-    start = count = read = 0
-    last_s: Floats = np.empty(0)
+    batches = run.file.iter_batches(min(_BATCH_ROWS, MOST_ROWS), columns=list(names))
+    start, last_s = 0, np.empty(0)
     with reading(run.path):
-        for batch in run.file.iter_batches(min(_BATCH_ROWS, MOST_ROWS), columns=list(names)):
-            table = pa.Table.from_batches([batch])
-            for name in names:
-                buffered[name].append(floats_of(table, name, run.path, first_row=read))
-                if strict:
-                    check_magnitude(name, buffered[name][-1], run.path, first_row=read)
-            if strict and TIME in names:
-                time_s = np.concatenate((last_s, buffered[TIME][-1]))
-                check_time(time_s, run.path, first_row=read - last_s.size)
-                last_s = time_s[-1:]
-            read += batch.num_rows
-            count += batch.num_rows
-            while count >= MOST_ROWS:
-                joined = {name: np.concatenate(buffered[name]) for name in names}
-                yield Piece(start, {name: v[:MOST_ROWS] for name, v in joined.items()})
-                buffered = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
-                start, count = start + MOST_ROWS - overlap, count - MOST_ROWS + overlap
-    if count > overlap or start == 0:
-        yield Piece(start, {name: np.concatenate(buffered[name]) for name in names})
+        for table in in_batches(batches, MOST_ROWS, overlap=overlap):
+            columns = {  # copies, as kernels compile anew for read-only arrays
+                name: np.array(floats_of(table, name, run.path, first_row=start)) for name in names
+            }
+            for name, values in columns.items() if strict else ():
+                check_magnitude(name, values, run.path, first_row=start)
+            if strict and TIME in columns:
+                time_s = np.concatenate((last_s, columns[TIME]))
+                check_time(time_s, run.path, first_row=start - last_s.size)
+                last_s = columns[TIME][MOST_ROWS - overlap - 1 : MOST_ROWS - overlap].copy()
+            yield Piece(start, columns)
+            start += table.num_rows - overlap

@@ -20,8 +20,12 @@ from pydantic import (
     model_validator,
 )
 
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.quality.finding import Finding
+from tsas_cli.recordings.storage import Location, recorded_location
 from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import write_json
 from tsas_cli.support.wording import listed
 
@@ -114,6 +118,35 @@ class DatasetSource(Record):
     hashes: dict[str, str]
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
+
+    def found(self, where: Path) -> Location:
+        """Return the dataset's folder, as the file `where` says it.
+
+        InputError: there is no dataset any more.
+        """
+        folder = recorded_location(where.parent, self.folder)
+        if not self.folder or not (folder / MANIFEST_FILE).is_file():
+            raise InputError(
+                f"the dataset {self.name} is no longer at {folder}",
+                where=where,
+                expected=f"a folder with {MANIFEST_FILE}",
+                remedy="give the dataset's folder too",
+            )
+        return folder
+
+    def check(self, dataset: Dataset, where: Path) -> None:
+        """Refuse a dataset that has changed since the stage that wrote `where` has read it."""
+        now = dataset.hashes()
+        for file in sorted(now.keys() | self.hashes.keys()):
+            if now.get(file, "").lower() != self.hashes.get(file, "").lower():
+                raise InputError(
+                    f"{file} of {dataset.folder} has changed since this stage read it",
+                    where=where,
+                    expected=f"SHA-256 {self.hashes[file]}"
+                    if file in self.hashes
+                    else "no such file",
+                    remedy="run the stage again, or give the dataset that it has read",
+                )
 
 
 class StageFile(Record):

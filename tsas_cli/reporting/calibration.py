@@ -12,7 +12,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, missing, table_of
 from tsas_cli.reporting.drawing import legend, picture, shortened
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import BY_KEY, PHASES, label_of
+from tsas_cli.reporting.names import PHASES, label_of, role_of_phase
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 _PARAMETERS_TITLE = "Parameters"
@@ -49,7 +49,7 @@ def section(inputs: Inputs) -> Section:
     if calibration is None:
         return missing("stiffness", _TITLE, what="calibration", stage="calibrate")
     rows = calibration.stiffness
-    by_phase = ((phase.key, [row for row in rows if row.phase == phase.key]) for phase in PHASES)
+    by_phase = ((phase, [row for row in rows if row.phase == phase]) for phase in PHASES)
     pictures = tuple(_picture(key, found) for key, found in by_phase if found)
     return Section(
         "stiffness",
@@ -107,7 +107,7 @@ def _notes(rows: tuple[Stiffness, ...]) -> tuple[str, ...]:
 
 
 def _picture(key: str, rows: list[Stiffness]) -> Picture:
-    label, colour = label_of(key), STAND_IN[BY_KEY[key].colour]
+    label, colour = label_of(key), STAND_IN[role_of_phase(key)]
 
     def draw(figure: Any) -> None:
         """Draw one line per run, the first on top, and the intervals where there are any."""

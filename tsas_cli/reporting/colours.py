@@ -8,26 +8,6 @@ from tsas_cli.controllers import CONTROLLERS
 
 SERIES = ("first", "second", "third", "fourth")  # of controllers, in their order
 MODELS = ("data-sheet", "calibrated", "extended", "true")
-ROLES = (
-    "ink",
-    "muted",
-    "line",
-    "paper",
-    "measured",
-    "simulated",
-    "contraction",
-    "loosening",
-    "dead-band-up",
-    "dead-band-down",
-    "rest",
-    "unknown",
-    "before",
-    "after",
-    "alike",
-    *SERIES,
-    *MODELS,
-)
-STAND_IN = {role: f"#c0ff{number:02x}" for number, role in enumerate(ROLES)}
 
 
 @cache
@@ -37,6 +17,9 @@ def schemes() -> tuple[dict[str, str], dict[str, str]]:
     blocks = re.findall(r":root \{(.*?)\}", style.read_text(encoding="utf-8"), re.DOTALL)
     light, dark = (dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", block)) for block in blocks)
     return light, dark
+
+
+STAND_IN = {role: f"#c0ff{number:02x}" for number, role in enumerate(schemes()[0])}
 
 
 def dark(role: str) -> int:

@@ -54,7 +54,8 @@ def _sections(it: Comparison) -> Iterator[Section]:
         how = (_VALUES,) if it.tested else ()
         yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
     if "effects" in printed:
-        said = tuple(f"{name}: {side.reason}" for name, side in it.sides.items() if side.reason)
+        found = {name: side.diagnosis for name, side in it.sides.items()}
+        said = tuple(f"{name}: {one.reason}" for name, one in found.items() if one and one.reason)
         yield Section("effects", "Effects", said, tables=(printed["effects"],))
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
         held = "Each side is held to the recordings that it has read."
@@ -242,18 +243,18 @@ def _tracked_sections(it: tracked.Tracks) -> Iterator[Section]:
 
 def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
     """Yield the errors over time of each pair whose runs have the same clock."""
-    for number, both in enumerate(it.followed):
+    for number, results in enumerate(it.followed):
         a, b = (
             columns_of(result_file(path, result.run), ("time_s", WANTED, TRUE))
-            for path, result in zip(it.paths.values(), (both.a, both.b), strict=True)
+            for path, result in zip(it.paths.values(), results, strict=True)
         )
         if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
             continue
         first, second = (side[WANTED] - side[TRUE] for side in (a, b))
         panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
-        sizes = (with_spread(r.scores.rmse_N.mean, r.scores.rmse_N.sd) for r in (both.a, both.b))
-        in_a, in_b = sizes
-        words = f"{both.a.controller}, {both.a.condition}: RMSE {in_a} N in A, {in_b} N in B."
+        in_a, in_b = (with_spread(r.scores.rmse_N.mean, r.scores.rmse_N.sd) for r in results)
+        of = f"{results[0].controller}, {results[0].condition}"
+        words = f"{of}: RMSE {in_a} N in A, {in_b} N in B."
         yield picture(
             partial(draw_two_residuals, panels=[panel]),
             key=f"tracked-{number}",

@@ -12,7 +12,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.storage import Location, recorded_location
+from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
@@ -71,9 +71,7 @@ class Inputs:
         if given := self.get(CheckFile):
             return given
         dataset = cast("Dataset", self.dataset)
-        report = check_dataset(dataset)
-        found, silent = report.findings, report.not_checked
-        return CheckFile(**dataset.header(Path()), findings=found, not_checked=silent)
+        return CheckFile(**dataset.header(Path()), **vars(check_dataset(dataset)))
 
     @property
     def recordings(self) -> Iterable[Recording]:
@@ -154,7 +152,7 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
         for folder in cast("list[Path]", by_file.get(kind.FILE, []))
     )
     named = (
-        _dataset_of(stage, folder / stage.FILE)
+        stage.dataset.found(folder / stage.FILE) if isinstance(stage, OfDataset) else folder
         for stage, folder in given
         if not isinstance(stage, ClosingFile)
     )
@@ -164,15 +162,7 @@ def read_inputs(folders: Sequence[Location], *, several: bool = False) -> Inputs
     dataset = read_dataset(folder).under(**_conditions(given))
     for stage, path in given:
         if isinstance(stage, OfDataset):
-            then, now = stage.dataset.hashes, dataset.hashes()
-            for file in sorted(now.keys() | then.keys()):
-                if now.get(file, "").lower() != then.get(file, "").lower():
-                    raise InputError(
-                        f"{file} of {dataset.folder} has changed since this stage read it",
-                        where=path / stage.FILE,
-                        expected=f"SHA-256 {then[file]}" if file in then else "no such file",
-                        remedy="run the stage again, or give the dataset that it has read",
-                    )
+            stage.dataset.check(dataset, path / stage.FILE)
         elif isinstance(stage, TrackingFile) and dataset.folder.resolve() != path.resolve():
             raise InputError(
                 f"its runs are not in the dataset {dataset.folder}",
@@ -234,20 +224,6 @@ def _by_file(folders: Sequence[Location], *, several: bool) -> dict[str, list[Lo
                 )
             before.append(folder)
     return found
-
-
-def _dataset_of(stage: StageFile, path: Path) -> Location:
-    if not isinstance(stage, OfDataset):
-        return path.parent
-    folder = recorded_location(path.parent, stage.dataset.folder)
-    if not (folder / MANIFEST_FILE).is_file():
-        raise InputError(
-            f"the dataset {stage.dataset.name} is no longer at {folder}",
-            where=path,
-            expected=f"a folder with {MANIFEST_FILE}",
-            remedy="give the dataset's folder to `tsas report` too",
-        )
-    return folder
 
 
 def _conditions(given: Sequence[tuple[StageFile, Path]]) -> dict[str, float]:

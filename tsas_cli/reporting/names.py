@@ -1,7 +1,6 @@
 """How the page names effects, signals, channels and phases, the same in every plot."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -23,25 +22,14 @@ _SIGNALS = {  # in words, and the unit
 }
 
 
-@dataclass(frozen=True)
-class Phase:
-    """One phase: its key in the files, its name on the page, its number beside the curve."""
-
-    key: str
-    label: str
-    number: str
-    colour: str
-
-
-PHASES = (
-    Phase("contraction", "contraction", "1", "contraction"),
-    Phase("dead_band_down", "dead band down", "2", "dead-band-down"),
-    Phase("loosening", "loosening", "3", "loosening"),
-    Phase("dead_band_up", "dead band up", "4", "dead-band-up"),
-    Phase("rest", "rest", "", "rest"),
-    Phase("unknown", "unknown", "", "unknown"),
-)
-BY_KEY = {phase.key: phase for phase in PHASES}
+PHASES = {  # by their keys in the files, the numbers beside the curve
+    "contraction": "1",
+    "dead_band_down": "2",
+    "loosening": "3",
+    "dead_band_up": "4",
+    "rest": "",
+    "unknown": "",
+}
 
 
 def title_of(name: str) -> str:
@@ -100,7 +88,12 @@ def _meaning(name: str) -> tuple[str, str]:
 
 def label_of(key: str) -> str:
     """Return the phase's name on the page; a key that is not known is its own name."""
-    return BY_KEY[key].label if key in BY_KEY else key
+    return key.replace("_", " ") if key in PHASES else key
+
+
+def role_of_phase(key: str) -> str:
+    """Return the role of a phase's colour."""
+    return key.replace("_", "-")
 
 
 def phase_of_samples(time_s: Floats, segments: Iterable[PhaseSegment]) -> npt.NDArray[np.object_]:
@@ -109,5 +102,5 @@ def phase_of_samples(time_s: Floats, segments: Iterable[PhaseSegment]) -> npt.ND
     for segment in segments:
         first = np.searchsorted(time_s, segment.start_s, side="left")
         after = np.searchsorted(time_s, segment.end_s, side="right")
-        keys[first:after] = segment.phase if segment.phase in BY_KEY else "unknown"
+        keys[first:after] = segment.phase if segment.phase in PHASES else "unknown"
     return keys

@@ -18,7 +18,14 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table, table_by_column, table_of
 from tsas_cli.reporting.drawing import kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import PHASES, Phase, at_axis, in_words, phase_of_samples
+from tsas_cli.reporting.names import (
+    PHASES,
+    at_axis,
+    in_words,
+    label_of,
+    phase_of_samples,
+    role_of_phase,
+)
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 from tsas_cli.support.arrays import Floats, Mask
 
@@ -123,8 +130,8 @@ def _pictures(
         if x is None or y is None or not np.isfinite(x + y).any():
             continue
         whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
-        shown = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
-        each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in shown)
+        shown = [key for key in PHASES if PHASES[key] and np.isfinite(y[phase == key]).any()]
+        each = "; ".join(f"{label_of(key)} {spanned(y[phase == key])}" for key in shown)
         yield picture(
             partial(_draw_loop, x=x, y=y, phase=phase, column=column, points=points),
             key=f"loop-{number}-{column}",
@@ -138,34 +145,34 @@ def _draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, column: str, p
     axes = figure.add_subplot()
     y = np.where(np.isfinite(x), y, np.nan)
     kept = kept_samples(x, y, points=points)
-    for one in PHASES:
-        inside = phase == one.key
+    for key, number in PHASES.items():
+        inside, colour = phase == key, STAND_IN[role_of_phase(key)]
         if inside.any():
             joined = inside[kept]
             joined[1:] |= joined[:-1].copy()  # up to the first sample of the next phase: no hole
-            style = {"color": STAND_IN[one.colour], "label": f"{one.number} {one.label}".strip()}
+            style = {"color": colour, "label": f"{number} {label_of(key)}".strip()}
             axes.plot(x[kept], np.where(joined, y[kept], np.nan), **style)
-            _number(axes, x, y, inside, one)
+            _number(axes, x, y, inside, number, colour)
     axes.set(xlabel=at_axis(_X), ylabel=at_axis(column))
     if (phase != "unknown").any():
         legend(figure)
 
 
-def _number(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:
+def _number(axes: Any, x: Floats, y: Floats, inside: Mask, number: str, colour: str) -> None:
     """Put the phase's number on its longest stretch, apart from that of the opposite phase."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
     first, after = max(edges.reshape(-1, 2), key=lambda stretch: stretch[1] - stretch[0])
     there = y[first:after]
-    if not one.number or not np.isfinite(there).any():
+    if not number or not np.isfinite(there).any():
         return
-    height = 0.6 if one.number in "12" else 0.4
+    height = 0.6 if number in "12" else 0.4
     level = height * np.nanmax(there) + (1 - height) * np.nanmin(there)
     at = first + int(np.nanargmin(np.abs(there - level)))
     axes.text(
         x[at],
         y[at],
-        one.number,
-        color=STAND_IN[one.colour],
+        number,
+        color=colour,
         ha="center",
         va="center",
         fontsize=8.5,
@@ -174,6 +181,6 @@ def _number(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:
         bbox={
             "boxstyle": "circle,pad=0.25",
             "facecolor": STAND_IN["paper"],
-            "edgecolor": STAND_IN[one.colour],
+            "edgecolor": colour,
         },
     )

@@ -90,10 +90,7 @@ def check(
     """
     data, folder = dataset_of(dataset, runs), path_of(out)
     with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
-        report = check_dataset(data, step)
-        record = CheckFile(
-            **data.header(folder), findings=report.findings, not_checked=report.not_checked
-        )
+        record = CheckFile(**data.header(folder), **vars(check_dataset(data, step)))
         if written is not None:
             record.write(written)
     return CheckResult(record.content(), folder, record)

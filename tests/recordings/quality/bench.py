@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.manifest import RigSheet, Run
-from tsas_cli.recordings.quality import RUN_CHECKS
+from tsas_cli.recordings.quality import RUN_CHECKS, look
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Recording
@@ -119,7 +119,6 @@ def remarks(measured: Mapping[str, Floats], **run: Any) -> list[tuple[str, Findi
     return [
         (check.code, remark)
         for check in RUN_CHECKS
-        if all(name in subject.channels for name in check.needs)
-        for remark in check.find(subject)
+        for remark in look(check, subject)
         if isinstance(remark, Finding)
     ]

@@ -50,7 +50,6 @@ def test_times_become_seconds_by_their_type_and_nulls_are_gaps(tmp_path, kind, u
 
 def test_dates_keep_their_zero_and_what_is_finer_than_a_microsecond(tmp_path, monkeypatch):
     monkeypatch.setattr(parquet, "BATCH_ROWS", 2)
-    monkeypatch.setattr("tsas_cli.recordings.readers.table.BATCH_ROWS", 2)
     start = 1_704_067_200 * 10**9
     times = pa.array([None, None, start, start + 100, start + 200, None], pa.timestamp("ns"))
     pq.write_table(pa.table({"t": times}), tmp_path / "a.parquet")

@@ -12,7 +12,7 @@ from tests.reporting import made_folders as by_hand
 from tests.reporting.stream.streams import make_diagnosed, stream
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.names import BY_KEY
+from tsas_cli.reporting.names import PHASES, role_of_phase
 from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.reporting.stream.stream import plain_text
 from tsas_cli.support.errors import InputError
@@ -104,7 +104,7 @@ def test_phases_begin_when_the_file_says_in_the_colours_of_the_report(made, foun
     assert shown[-1] == ends[-1]
     values, colours = (phase.static[f"StateConfiguration:{what}"] for what in ("values", "colors"))
     assert dict(zip(values, colours, strict=True)) == {
-        key: dark(one.colour) for key, one in BY_KEY.items()
+        key: dark(role_of_phase(key)) for key in PHASES
     }
 
 
@@ -113,7 +113,7 @@ def test_the_loops_stand_in_their_colours_and_the_points_run_along(made, found):
     x, measured = column(recorded, "x_in_mm"), column(recorded, "f_in_N")
     known = np.round(column(recorded, "time_s") * 1e9).astype(np.int64)
     loop = found["/run/a/f_in_N/loop/measured"].static
-    shades = {dark(one.colour) for one in BY_KEY.values() if one.number}
+    shades = {dark(role_of_phase(key)) for key, number in PHASES.items() if number}
     assert set(loop["LineStrips2D:colors"]) == shades
     strips = [np.array(strip) for strip in loop["LineStrips2D:strips"]]
     assert all((one[-1] == other[0]).all() for one, other in pairwise(strips))

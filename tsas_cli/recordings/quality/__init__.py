@@ -47,31 +47,35 @@ MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (
 RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(clock.time_order),
     QualityCheck(clock.time_batches),
-    QualityCheck(clock.time_jitter),
-    QualityCheck(clock.unsteady_sampling),
+    QualityCheck(clock.time_jitter, given=("increases", "unbatched")),
+    QualityCheck(clock.unsteady_sampling, given=("increases",)),
     QualityCheck(clock.gap),
-    QualityCheck(rows.lost_samples, needs=("x_in_mm",)),
+    QualityCheck(rows.lost_samples, needs=("x_in_mm",), given=("increases", "strokes")),
     QualityCheck(noise.outlier),
     QualityCheck(rows.jump),
     QualityCheck(noise.bursts),
-    QualityCheck(noise.hum),
+    QualityCheck(noise.hum, given=("increases",)),
     QualityCheck(rows.repeated_rows),
     QualityCheck(rows.repeated_buffer),
     QualityCheck(repeats.repeated_values),
     QualityCheck(repeats.slow_channel),
-    QualityCheck(noise.filtered),
-    QualityCheck(extremes.ac_coupled, needs=("x_in_mm",)),
+    QualityCheck(noise.filtered, given=("increases", "strokes")),
+    QualityCheck(extremes.ac_coupled, needs=("x_in_mm",), given=("strokes",)),
     QualityCheck(extremes.clipped),
     QualityCheck(extremes.stuck),
     QualityCheck(extremes.quantised, of_long="decimated"),
     QualityCheck(motion.sign, needs=("x_in_mm",), of_long="strokes"),
     QualityCheck(motion.negative_tension, of_long="strokes"),
     QualityCheck(motion.exchanged, needs=("x_in_mm", "f_in_N", "f_out_N"), of_long="strokes"),
-    QualityCheck(motion.interference, needs=("x_in_mm",)),
+    QualityCheck(
+        motion.interference, needs=("x_in_mm",), given=("on_spring", "increases", "unbatched")
+    ),
     QualityCheck(pairs.unit, of_long="strokes"),
-    QualityCheck(pairs.delay, needs=("x_out_mm", "f_out_N")),
+    QualityCheck(pairs.delay, needs=("x_out_mm", "f_out_N"), given=("on_spring", "increases")),
     QualityCheck(motion.few_reversals, needs=("x_in_mm",), of_long="decimated"),
-    QualityCheck(motion.no_steady_motion, needs=("x_in_mm",), of_long="strokes"),
+    QualityCheck(
+        motion.no_steady_motion, needs=("x_in_mm",), given=("strokes",), of_long="strokes"
+    ),
 )
 DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (QualityCheck(of_dataset.copies),)
 CHECKS: tuple[QualityCheck[Any], ...] = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
@@ -158,16 +162,25 @@ def _weighed(results: Results, runs: int) -> Results:
     ]
 
 
+GIVEN = {  # properties of `RunSignals`, and what is said where they do not hold
+    "on_spring": "the load is no spring",
+    "increases": "time does not increase",
+    "unbatched": "rows come in batches",
+    "strokes": "the drive does not move visibly",
+}
 _NUMBER = r"-?\d[\d.,e+-]*( \w+)?"
 OVERLAP = 16  # consecutive stretches share one in so many of their rows
 
 
 def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
-    """Return the results of a check on a trial; a missing column is a reason not to apply."""
-    missing = [name for name in check.needs if name not in trial.channels]
-    if missing:
-        return [NotChecked(f"{' and '.join(missing)} not recorded")]
+    """Return the results of a check on a trial, or the reason why it does not apply."""
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
+        missing = [name for name in check.needs if name not in trial.channels]
+        if missing:
+            return [NotChecked(f"{' and '.join(missing)} not recorded")]
+        for name in check.given:
+            if not getattr(trial, name):
+                return [NotChecked(GIVEN[name])]
         return list(check.find(trial))
 
 

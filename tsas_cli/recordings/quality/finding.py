@@ -49,6 +49,7 @@ class QualityCheck(Generic[Subject]):
 
     find: Callable[[Subject], Findings]
     needs: tuple[str, ...] = ()  # columns without which it does not apply
+    given: tuple[str, ...] = ()  # what else has to hold of the run, by the names in `GIVEN`
     of_long: Literal["stretches", "decimated", "strokes"] = "stretches"
 
     @property

@@ -137,6 +137,11 @@ class RunSignals:
         moving = {name: v for name, v in self.mechanical.items() if self.moves(name)}
         return batches_of(self.time_s, moving)
 
+    @property
+    def unbatched(self) -> bool:
+        """Whether the rows come one by one."""
+        return self.batches is None
+
     def visible(self, name: str) -> float:
         """Return the smallest change of a channel that neither noise nor quantisation explains."""
         return 6.0 * self.sizes[name].noise + 2.0 * self.sizes[name].step

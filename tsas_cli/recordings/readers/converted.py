@@ -15,11 +15,10 @@ from tempfile import mkdtemp
 from typing import IO, Any
 
 from tsas_cli.recordings import readers
-from tsas_cli.recordings.guards import Expanded, damaged
+from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import state_of
-from tsas_cli.support.limits import out_of_memory
 
 _OPEN: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
 PACKED = (*_OPEN, ".zip")
@@ -60,6 +59,8 @@ def _root() -> Path:
 
 
 _PART = 1 << 20  # bytes at a time
+_DAMAGED = (OSError, EOFError, ValueError, RuntimeError, zipfile.BadZipFile, lzma.LZMAError,
+            zlib.error)  # fmt: skip
 
 
 def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
@@ -69,7 +70,7 @@ def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
     recording can hold.
     """
     packing = path.suffix.lower()
-    try:
+    with foreign(path, f"a {packing} file", _DAMAGED):
         if packing == ".zip":
             with zipfile.ZipFile(path) as archive:
                 name = _member(archive, path)
@@ -77,13 +78,6 @@ def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
                     return _written(stream, folder, name, path)
         with _OPEN[packing](path, "rb") as stream:
             return _written(stream, folder, path.stem, path)
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except (OSError, EOFError, ValueError, RuntimeError, NotImplementedError, zipfile.BadZipFile,
-            lzma.LZMAError, zlib.error) as error:  # fmt: skip
-        if isinstance(error, OSError) and error.errno is not None:  # not of the content
-            raise
-        raise damaged(path, f"a {packing} file", error) from error
 
 
 def _member(archive: zipfile.ZipFile, path: Path) -> str:

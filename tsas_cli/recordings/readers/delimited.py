@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import csv
 
-from tsas_cli.recordings.parquet_files import floats_from
+from tsas_cli.recordings.parquet_files import floats_from, in_batches
 from tsas_cli.recordings.readers.layout import (
     DoubtfulMarkError,
     Layout,
@@ -24,7 +24,6 @@ from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
     ReadOptions,
-    in_batches,
     not_a_number,
     resolve,
 )
@@ -61,7 +60,7 @@ def batches(
         return ColumnTable(values, units, layout.header, first, frozenset(seconds))
 
     try:
-        for table in in_batches(_fast(path, options, layout, at)):
+        for table in in_batches(_fast(path, options, layout, at), BATCH_ROWS):
             found = {source: table.column(str(i)) for source, i in at.items()}
             columns = {s: c if s in seconds else floats_from(c) for s, c in found.items()}
             yield part(columns, table.num_rows)

@@ -5,7 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading, unit_of
+from tsas_cli.recordings.parquet_files import (
+    check_size,
+    in_batches,
+    open_parquet,
+    reading,
+    unit_of,
+)
 from tsas_cli.recordings.readers.feather import to_numpy
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
@@ -13,7 +19,6 @@ from tsas_cli.recordings.readers.table import (
     ColumnTable,
     ReadOptions,
     floats,
-    in_batches,
     resolve,
 )
 from tsas_cli.recordings.readers.timebase import Seconds
@@ -37,7 +42,7 @@ def batches(path: Path, _: ReadOptions, wanted: Sequence[ColumnSource]) -> Itera
         order = {s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()}
         seconds = {source: Seconds() for source in fields}
         first = 1
-        for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
+        for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names), BATCH_ROWS):
             values = {
                 source: to_numpy(
                     table.column(table.schema.get_all_field_indices(field.name)[order[source]])

@@ -1,6 +1,6 @@
 """What every reader takes and returns: options, a table, its columns by their source in a map."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
@@ -9,7 +9,6 @@ from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
 from pydantic import Field
 
 from tsas_cli.support import limits
@@ -80,21 +79,6 @@ def whole(parts: Iterable[ColumnTable]) -> ColumnTable:
         return first
     columns = {s: np.concatenate([t.columns[s] for t in tables]) for s in first.columns}
     return replace(first, columns=columns)
-
-
-def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
-    """Yield tables of `BATCH_ROWS` rows from batches of any size; the last one may be shorter."""
-    waiting: list[pa.RecordBatch] = []
-    count = 0
-    for batch in batches:
-        waiting.append(batch)
-        count += batch.num_rows
-        while count >= BATCH_ROWS:
-            table = pa.Table.from_batches(waiting)
-            yield table.slice(0, BATCH_ROWS)
-            waiting, count = table.slice(BATCH_ROWS).to_batches(), count - BATCH_ROWS
-    if count:
-        yield pa.Table.from_batches(waiting)
 
 
 def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> Floats:

@@ -19,7 +19,14 @@ from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import dark, role_of_controller
 from tsas_cli.reporting.drawing import kept_samples
-from tsas_cli.reporting.names import BY_KEY, PHASES, at_axis, in_words, phase_of_samples
+from tsas_cli.reporting.names import (
+    PHASES,
+    at_axis,
+    in_words,
+    label_of,
+    phase_of_samples,
+    role_of_phase,
+)
 from tsas_cli.reporting.numbers import as_printed
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, path_of
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, X_IN, Channel, SeenRun
@@ -101,7 +108,7 @@ class LoopPlane:
         if key == MEASURED:
             phases = phase_of_samples(self.run.time_s[self.kept], self.run.segments)
         found = list(_strips(places, phases))
-        shades = [dark(BY_KEY[p].colour) if p in BY_KEY else colour for p, _ in found]
+        shades = [dark(role_of_phase(p)) if p in PHASES else colour for p, _ in found]
         strips = [strip for _, strip in found]
         look = rr.LineStrips2D(strips, colors=shades, radii=-2.0 / order, draw_order=order)
         self.recorder.static((*self.entity, key), look)
@@ -219,15 +226,15 @@ def record_phases(recorder: Recorder, run: SeenRun) -> None:
     if not run.segments:
         return
     look = rr.StateConfiguration(
-        values=[phase.key for phase in PHASES],
-        labels=[phase.label for phase in PHASES],
-        colors=[dark(phase.colour) for phase in PHASES],
+        values=list(PHASES),
+        labels=[label_of(phase) for phase in PHASES],
+        colors=[dark(role_of_phase(phase)) for phase in PHASES],
     )
     starts: list[float] = []
     keys: list[str] = []
     for segment, after in zip(run.segments, (*run.segments[1:], None), strict=True):
         starts.append(segment.start_s)
-        keys.append(segment.phase if segment.phase in BY_KEY else "unknown")
+        keys.append(segment.phase if segment.phase in PHASES else "unknown")
         if after is None or after.start_s > segment.end_s:  # a stretch in none has no name
             starts.append(segment.end_s)
             keys.append("")
