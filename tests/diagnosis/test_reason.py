@@ -104,6 +104,14 @@ def test_a_stand_in_is_said_with_what_it_fails_to_prove():
     assert said in beside
 
 
+def test_what_several_stand_ins_fail_to_prove_is_said_once():
+    left_over = "is in a model that leaves 15 % of what could be explained"
+    failing = [cause(PLAY, failed=(left_over,)), cause(MASS, failed=(left_over,))]
+    said = reason_of("stand_in", [], failing, START, left(16.0, "time_s"))
+    assert f"and {TITLE[MASS]} take 50 and 50 % off it, but are not proven: each {left_over}" in said
+    assert said.count("not proven") == 1
+
+
 def test_a_law_that_differs_is_said_of_its_effect():
     causes = [cause(MASS, law="over the speed: mass_kg 1 (low) and 2 (high) kg")]
     said = reason_of("partly", causes, [], START, left(2.0, "time_s"))
