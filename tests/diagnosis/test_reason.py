@@ -45,7 +45,7 @@ def test_what_no_effect_explains_is_said_with_what_it_depends_on():
     assert reason_of("unexplained", [], [], START, after) == (
         "The RMS of the residual of f_in_N on held-out data is 0.400 N, and no catalogued effect "
         "explains it. "
-        "It depends on the time in the run, the displacement of the drive. "
+        "It depends on the time in the run and the displacement of the drive. "
         "At each reversal x_out_mm lags behind the model, or leads it."
     )
 

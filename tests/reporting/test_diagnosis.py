@@ -126,13 +126,33 @@ def test_without_a_name_there_is_no_after(sections, verdict):
     assert "Residual on held-out data" in headings(text, 3)
 
 
-def test_what_is_not_explained_says_on_what_it_depends(sections):
+def test_where_no_less_is_attainable_that_is_said_once(of):
+    reached = {"rmse_before": 1.0, "rmse_after": 0.1, "noise_floor": 0.11, "attainable": 0.1}
+    text = of("named", channels={name: reached for name in ("f_in_N", "f_out_N")})
+    assert words(text).count("attainable") == 1
+    assert "no more is attainable" in words(text)
+    assert not any("attainable" in label for label in labels(text))
+
+
+def test_a_long_verdict_is_a_paragraph_and_a_list(of):
+    text = of("unexplained", reason="First of 1.5 N. Second. Third of f_in_N. Fourth.")
+    assert "<p>First of 1.5 N. Second.</p>" in text
+    assert re.findall("<li>([TF][^<]*)</li>", text)[:2] == ["Third of f_in_N.", "Fourth."]
+
+
+def test_what_a_stand_in_fails_to_prove_is_said_once(of):
+    failed = ["may be zero", "is not constant"]
+    parameters = {"play_mm": {"value": 0.2, "unit": "mm"}}
+    stand_in = {"effect": "backlash", "parameters": parameters, "failed": failed}
+    text = of("partly", reason="It is not proven: it may be zero.", stand_ins=[stand_in])
+    assert words(text).count("may be zero") == 1
+    assert "It is not constant." in words(text)
+
+
+def test_what_is_left_is_said_with_its_size(sections):
     text = words(sections["unexplained"])
-    assert "no effect of the catalogue accounts for" in text
-    assert "depends on time_s (f_in_N swings at 3.1 Hz) and speed of the drive." in text
     assert "remaining residual is 38.4; 1" in text
     assert "after what is named" not in text
-    assert "no effect of the catalogue" not in words(sections["named"])
     assert "could be explained, 12 % is left after what is named" in words(sections["named"])
 
 

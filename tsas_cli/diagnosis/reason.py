@@ -96,7 +96,7 @@ def reason_of(
 def _dependence(after: Remainder) -> list[str]:
     out = []
     if after.depends_on:
-        out.append(f"It depends on {', '.join(signal_in_words(s) for s in after.depends_on)}.")
+        out.append(f"It depends on {listed([signal_in_words(s) for s in after.depends_on])}.")
     if after.late:
         one = len(after.late) == 1
         verbs = ("lags", "leads") if one else ("lag", "lead")

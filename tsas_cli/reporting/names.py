@@ -15,7 +15,7 @@ from tsas_cli.support.arrays import Floats
 EFFECT = {effect.name: effect for effect in EFFECTS}
 _SIGNALS = {  # in words, and the unit
     "speed_mm_per_s": ("speed of the drive", "mm/s"),
-    "travel_since_reversal_mm": ("travel of the drive since it turned", "mm"),
+    "travel_since_reversal_mm": ("travel since the last reversal", "mm"),
     "time_s": ("time in the run", "s"),
     "direction": ("direction of the drive", ""),
     "phase": ("phase of the cycle", ""),
