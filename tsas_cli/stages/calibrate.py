@@ -23,13 +23,14 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records import calibration as records
-from tsas_cli.records.base import ParameterValue, number_text, parameters_of
+from tsas_cli.records.base import ParameterValue, number_text, parameters_of, span_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.check import accepted_errors, unrecorded
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
+FEW = 5  # runs whose own parameters are printed
 DYNAMICS: tuple[Literal["slip", "lugre"], ...] = ("slip", "lugre")
 
 
@@ -59,15 +60,27 @@ class CalibrationResult(Result):
         ]
         header = ("run", "phase", "measured [95 %]", "theory", "distributed model")
         yield "stiffness km [N/mm] by linear fit", header, slopes
-        transfer = [(p.run or "", p.name, p.text(), p.unit) for p in self.record.transfer]
+        every = ", ".join(self.record.channels)
+        transfer = [
+            ("all" if p.run == every else p.run or "", p.name, p.text(), p.unit)
+            for p in self.record.transfer
+        ]
         if transfer:
             about = "tension passed on in full slip, f_in = ratio f_out + intercept"
             yield about, ("runs", "name", "value [95 %]", "unit"), transfer
-        parameters = [(p.name, p.run or "all", p.text(), p.unit) for p in self.record.parameters]
+        of_runs: dict[str, list[float | None]] = {}
+        for p in self.record.parameters:
+            of_runs.setdefault(p.name, []).append(p.value)
+        parameters = dict.fromkeys(  # of many runs one row: the file holds each
+            (p.name, p.run or "all", p.text(), p.unit)
+            if len(of := of_runs[p.name]) <= FEW
+            else (p.name, f"{len(of)} runs", span_text(of), p.unit)
+            for p in self.record.parameters
+        )
         yield (
             self.titled("parameters", records.MODEL_FILE),
             ("name", "run", "value [95 %]", "unit"),
-            parameters,
+            [*parameters],
         )
         errors = [
             (run, name, number_text(c.rmse, ".4g"), number_text(c.noise, ".2g"))
