@@ -297,7 +297,9 @@ def test_where_much_is_left_no_effect_is_proven(first, last, reducible, structur
     after = Remainder(last, {"x_out_mm": structure}, (), reducible=reducible)
     cause = FoundCause("position_sensor_gain", (), (), 50.0, (40.0, 60.0))
     failed = p._beside_what_is_left(cause, start, after).failed
-    assert failed == (("is in a model that leaves 10 % of what could be explained",) if refused else ())
+    assert failed == (
+        ("is in a model that leaves 10 % of what could be explained",) if refused else ()
+    )
 
 
 @pytest.mark.parametrize(("values", "within"), [((0.09, 0.11), True), ((0.09, 0.13), False)])

@@ -108,7 +108,9 @@ def test_what_several_stand_ins_fail_to_prove_is_said_once():
     left_over = "is in a model that leaves 15 % of what could be explained"
     failing = [cause(PLAY, failed=(left_over,)), cause(MASS, failed=(left_over,))]
     said = reason_of("stand_in", [], failing, START, left(16.0, "time_s"))
-    assert f"and {TITLE[MASS]} take 50 and 50 % off it, but are not proven: each {left_over}" in said
+    assert (
+        f"and {TITLE[MASS]} take 50 and 50 % off it, but are not proven: each {left_over}" in said
+    )
     assert said.count("not proven") == 1
 
 

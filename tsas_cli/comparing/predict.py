@@ -164,7 +164,7 @@ def models_of(it: Predicted, out: Path | None) -> tuple[PredictingModel, ...]:
 
 
 def tables(record: PredictionFile, title: str = "predictions") -> list[Table]:
-    """Return what is printed: the models, the errors under their title, and ranges that are left."""
+    """Return what is printed: the models, the errors, and the ranges that runs leave."""
     models = []
     for one in record.models:
         known = one.recordings

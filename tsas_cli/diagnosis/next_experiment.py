@@ -43,9 +43,9 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     if unsure is not None and result.judged is not None and result.final is not None:
         among = [unsure.effect, *unsure.rivals]
         run = propose(result.judged.bench, result.final, among, step)
-        first, *others = [BY_NAME[name].title.lower() for name in among]
+        this, *others = [BY_NAME[name].title.lower() for name in among]
         how = BY_NAME[unsure.effect].experiment if run is None else f"Record {run.sentence}."
-        return f"To distinguish {first} from {listed(others, ' or ')}: {how[0].lower()}{how[1:]}"
+        return f"To distinguish {this} from {listed(others, ' or ')}: {how[0].lower()}{how[1:]}"
     if result.unexplained:
         signals = () if result.remainder is None else result.remainder.depends_on
         return next((OF_REMAINDER[s] for s in signals if s in OF_REMAINDER), REPEAT)

@@ -28,6 +28,7 @@ from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.wording import listed
 
 FEW = 3  # runs that a sentence names
 MOST_ROUNDS = 4
@@ -112,18 +113,18 @@ def solve_fit(problem: FitProblem) -> FittedModel:
 
 
 def misfit(fit: FittedModel) -> list[str]:
-    """Return a sentence for each channel whose residual exceeds its known uncertainty."""
+    """Return a sentence on the channels whose residual exceeds its known uncertainty, if any."""
     worst: dict[str, float] = {}
     for run, rig in zip(fit.errors, fit.rigs, strict=True):
         for name, errors in run.errors(rig).items():
             worst[name] = max(worst.get(name, 0.0), float(np.mean(errors**2)))
-    return [
-        f"{name}: reduced chi-square up to {found:.3g} (1 at the noise level): the nominal model "
-        "is wrong somewhere, and its estimates are those of the nearest nominal model, not of the "
-        "rig."
-        for name, found in worst.items()
-        if found > WRONG_RATIO**2
-    ]
+    wrong = [f"{x:.3g} for {name}" for name, x in worst.items() if x > WRONG_RATIO**2]
+    said = (
+        f"The reduced chi-square is up to {listed(wrong)} (1 at the noise level): the nominal "
+        "model is wrong somewhere, and its estimates are those of the nearest nominal model, not "
+        "of the rig."
+    )
+    return [said] if wrong else []
 
 
 def residuals_with(fit: FittedModel, changes: Mapping[str, float]) -> Floats:
@@ -243,7 +244,8 @@ def fixed_sentences(problem: FitProblem, confounded: Mapping[int, list[int]]) ->
         reasons.setdefault((unknown.name, together), []).append(problem.owner(unknown) or "")
     return [
         f"{name} is not identifiable{together} from these recordings"
-        f"{_where(owners, len(problem.runs))}; it is fixed at {_fixed_value(problem.fixed, name, owners[0])}."
+        f"{_where(owners, len(problem.runs))}; "
+        f"it is fixed at {_fixed_value(problem.fixed, name, owners[0])}."
         for (name, together), owners in reasons.items()
     ]
 
@@ -252,7 +254,8 @@ def _where(owners: Sequence[str], runs: int) -> str:
     """Return which of the runs something is said of, nothing where it is all of them."""
     if not any(owners) or len(owners) == runs:
         return ""
-    return f" ({len(owners)} of {runs} runs)" if len(owners) > FEW else f" (runs {', '.join(owners)})"
+    few = len(owners) <= FEW
+    return f" (runs {', '.join(owners)})" if few else f" ({len(owners)} of {runs} runs)"
 
 
 def doubts_of(estimates: Sequence[Estimate], result: Fitted) -> list[str]:

@@ -109,19 +109,17 @@ class HeldOut(Record):
 
 def errors_table(channels: Mapping[str, HeldOut]) -> Table:
     """Return the errors on held-out data; attainable where it is less than what is reached."""
-    less = any(c.less_attainable for c in channels.values())
-    rows = [
-        (
-            name,
-            *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor)),
-            *([number_text(c.attainable) if c.less_attainable else ""] if less else []),
-            c.unit,
-        )
-        for name, c in channels.items()
-    ]
-    title = "error on held-out data" + ("" if less else "; no model of these signals reaches less")
-    header = ("channel", "before", "after", "noise", *(["attainable"] if less else []), "unit")
-    return title, header, rows
+    header = ["channel", "before", "after", "noise floor", "unit", "attainable"]
+    rows = []
+    for name, c in channels.items():
+        sizes = map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor))
+        least = number_text(c.attainable) if c.less_attainable else ""
+        rows.append([name, *sizes, c.unit, least])
+    title = "error on held-out data"
+    if any(row[-1] for row in rows):
+        return title, header, rows
+    no_less = f"{title}; no model of these signals reaches less"
+    return no_less, header[:-1], [row[:-1] for row in rows]
 
 
 class SlowNoise(Record):

@@ -64,8 +64,8 @@ def heading_of(cause: NamedCause) -> str:
     if not cause.rivals:
         return title
     if len(cause.rivals) == 1:
-        return f"{title}, or {within(title_of(cause.rivals[0]))}"
-    return f"{title}, or one of {len(cause.rivals)} others"
+        return f"{title} (or {within(title_of(cause.rivals[0]))})"
+    return f"{title} (or one of {len(cause.rivals)} others)"
 
 
 def sentence_of(name: str) -> str:

@@ -60,9 +60,8 @@ class CalibrationResult(Result):
         ]
         header = ("run", "phase", "measured [95 %]", "theory", "distributed model")
         yield "stiffness km [N/mm] by linear fit", header, slopes
-        every = ", ".join(self.record.channels)
         transfer = [
-            ("all" if p.run == every else p.run or "", p.name, p.text(), p.unit)
+            (_few(p.run or "", len(self.record.channels)), p.name, p.text(), p.unit)
             for p in self.record.transfer
         ]
         if transfer:
@@ -92,6 +91,14 @@ class CalibrationResult(Result):
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
         return notes([*self.record.accepted(), *self.record.cannot_tell])
+
+
+def _few(runs: str, of: int) -> str:
+    """Return a list of runs for a table: the first one of many, and whether they are all."""
+    first, *others = runs.split(", ")
+    if len(others) + 1 == of > 1:
+        return "all"
+    return f"{first} and {len(others)} more" if len(others) > 1 else runs
 
 
 def calibrate(

@@ -21,7 +21,7 @@ _ATTAINABLE = (
     "a dash where that is no less."
 )
 _NO_LESS = "A flexible regression on the recorded signals leaves no less: no more is attainable."
-_LEAD = 2  # sentences of a verdict that stand as a paragraph; more of them are a list
+_LEAD = 2  # sentences of a verdict above its list; one more is a paragraph with them
 _TRIED = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals
 _HYPOTHESES = (
@@ -39,7 +39,8 @@ def section(inputs: Inputs) -> Section:
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
     said = re.split(r"(?<=\.) (?=[A-Z])", diagnosis.reason)
-    lead = " ".join(said[:_LEAD])
+    above = _LEAD if len(said) > _LEAD + 1 else len(said)
+    lead = " ".join(said[:above])
     evidence = (
         gains_part(diagnosis, inputs.held_out),
         maps.part(diagnosis),
@@ -50,7 +51,7 @@ def section(inputs: Inputs) -> Section:
         "diagnosis",
         _TITLE,
         (f"Undecided: {lead}" if diagnosis.verdict == "undecided" else lead,),
-        points=tuple(said[_LEAD:]),
+        points=tuple(said[above:]),
         parts=(
             *causes.parts(diagnosis.named, inputs),
             *causes.law_parts(diagnosis, inputs),
