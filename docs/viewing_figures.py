@@ -37,7 +37,7 @@ def main() -> None:
         right.plot(travel[k], f_in[every[k]], "o", color=shade)
     left.set(xlabel="place along the sheath [mm], drive to load", ylabel="tension [N]")
     left.legend(frameon=False, fontsize="small")
-    right.set(xlabel="travel of the drive since it turned [mm]", ylabel="tension at the drive [N]")
+    right.set(xlabel="travel since the last reversal [mm]", ylabel="tension at the drive [N]")
     figure.savefig(Path(__file__).parent / "dead-band.svg", metadata={"Date": None})
 
 

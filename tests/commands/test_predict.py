@@ -29,7 +29,7 @@ def test_the_tables_say_how_far_and_whether_inside(run):
     (f_in,) = (line for line in lines if line[:3] == ["slow", "f_in_N", "A"])
     assert f_in[4] == "N"
     assert float(f_in[6]) < 1.5
-    assert ["slow", "A,", "B", "inside"] in lines
+    assert "Every run lies in the model's range (A and B)." in out
     assert "- Each run's own preload and zeros are fitted to it, and nothing else." in out
 
 

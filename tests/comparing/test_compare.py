@@ -147,7 +147,7 @@ def test_maps_share_their_bins_and_show_where_the_error_is(on_second):
     assert set(a) == set(b) == set(CHANNELS)
     pulling = {one.label: one.mean for one in a["f_in_N"]["direction"]}
     assert pulling["pulling"] > 5.0  # more friction than A knows
-    assert pulling["letting go"] < -5.0
+    assert pulling["releasing"] < -5.0
     assert all(abs(one.mean) < 1.0 for one in b["f_in_N"]["speed_mm_per_s"])
     edges = [[(one.low, one.high) for one in side["f_in_N"]["time_s"]] for side in (a, b)]
     assert edges[0] == edges[1]

@@ -105,7 +105,7 @@ def test_a_recording_that_the_fit_has_seen_is_no_prediction_under_any_name(root,
         ("s", "A"): True, ("s", "B"): False, ("fast", "A"): True, ("fast", "B"): False,
     }  # fmt: skip
     assert list(result.record.findings[:2]) == [
-        "Seen by the fit of A, and no prediction: s and fast.",
+        "A is fitted to s and fast, which is no prediction.",
         "No run is new to every model.",
     ]
     assert [r.verdict for r in result.record.ranges if r.model == "A"] == ["inside"] * 2

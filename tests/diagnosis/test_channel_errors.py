@@ -54,6 +54,11 @@ def test_attainable_is_no_less_than_the_noise():
     assert one.attainable == one.noise_floor == pytest.approx(0.1)
 
 
+def test_attainable_is_no_more_than_what_is_reached():
+    """The noise level is an estimate: a residual may be below it."""
+    assert found(1.0, 0.09, 0.0, 0.0).attainable == pytest.approx(0.09)
+
+
 def test_a_wrong_model_has_the_same_floor_as_a_right_one():
     assert found(1.0, 0.9, 0.0, 0.0).noise_floor == found(1.0, 0.1, 0.0, 0.0).noise_floor
 

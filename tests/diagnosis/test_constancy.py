@@ -55,7 +55,7 @@ def test_one_value_for_pulls_and_another_for_releases():
     found = worst(np.where(pulls, 1.4, 1.0))
     assert (found.parameter, found.by) == (NAME, "direction")
     values = dict(found.values)
-    unit = values["letting go"]
+    unit = values["releasing"]
     assert values["pulling"] / unit == pytest.approx(1.4, abs=0.02)
 
 

@@ -1,5 +1,10 @@
 """What to measure next, by what a diagnosis found."""
 
+from types import SimpleNamespace
+
+import pytest
+
+from tests.diagnosis.sizes import CANDIDATES
 from tsas_cli.diagnosis import next_experiment as n
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.proof import FoundCause
@@ -14,8 +19,9 @@ def cause(effect, rivals=(), gain=50.0):
     return FoundCause(effect, rivals, (), gain, (gain - 1.0, gain + 1.0))
 
 
-def diagnosis(verdict, *causes):
-    return Diagnosis(verdict, "", Model(()), Model(()), causes, {}, Remainder(1.0, {}, ()))
+def diagnosis(verdict, *causes, depends_on=(), **more):
+    left = Remainder(1.0, {}, depends_on)
+    return Diagnosis(verdict, "", Model(()), Model(()), causes, remainder=left, **more)
 
 
 EXPERIMENT = {e.name: e.experiment for e in EFFECTS}
@@ -26,5 +32,32 @@ def test_the_next_experiment_follows_from_the_verdict():
     assert n.next_experiment(undecided).startswith("Record longer runs, at least three")
     told = diagnosis("named", cause(PLAY, gain=20.0), cause(MASS, gain=30.0))
     assert n.next_experiment(told) == EXPERIMENT[MASS]  # what gains most
-    assert n.next_experiment(diagnosis("unexplained")).startswith("Repeat one run")
+    assert n.next_experiment(diagnosis("unexplained")) == n.REPEAT
     assert n.next_experiment(diagnosis("sufficient")).startswith("No effect is missing")
+
+
+@pytest.mark.parametrize("verdict", ["partly", "unexplained"])
+def test_what_is_left_asks_for_the_run_that_shows_the_signal_it_depends_on(verdict):
+    causes = [cause(MASS)] if verdict == "partly" else []
+    left = diagnosis(verdict, *causes, depends_on=("time_s", "speed_mm_per_s", "x_in_mm"))
+    assert n.next_experiment(left).startswith("Repeat one run at half the speed")
+    assert n.next_experiment(diagnosis(verdict, *causes, depends_on=("time_s",))) == n.REPEAT
+
+
+@pytest.mark.parametrize("run", [None, CANDIDATES[1]])
+def test_rivals_are_named_with_the_experiment_that_distinguishes_them(monkeypatch, run):
+    asked = []
+    monkeypatch.setattr(n, "propose", lambda bench, final, among, step: asked.append(among) or run)
+    judged = SimpleNamespace(bench=None)
+    rivals = cause(PLAY, ("presliding", "drive_friction"))
+    result = diagnosis("ambiguous", cause(MASS), rivals, judged=judged, final=object())
+    said = n.next_experiment(result)
+    assert asked == [[PLAY, "presliding", "drive_friction"]]
+    start = (
+        "To distinguish backlash of the drive from elastic travel before sliding or friction at "
+        "the drive: "
+    )
+    assert said.startswith(start)
+    rest = EXPERIMENT[PLAY] if run is None else f"Record {run.sentence}."
+    assert said.removeprefix(start)[1:] == rest[1:]
+    assert said[len(start)].islower()

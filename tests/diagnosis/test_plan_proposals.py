@@ -6,20 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from tests.counted import Counted
-from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, cause, seen
+from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, PLAY, cause, seen
 from tsas_cli.diagnosis import plan as p
 from tsas_cli.diagnosis.plan import propose
 from tsas_cli.effects import EFFECTS
-
-
-def test_what_is_better_is_said_with_its_unit():
-    assert better(PLAY, 0.512, 0.0449).sentence == (
-        "backlash.play_mm is named from 0.045 mm on, instead of 0.51"
-    )
-    assert better(PLAY, math.inf, 0.2).sentence.endswith("from 0.2 mm on, not without it")
-    ratio = better("sheath_compression", 0.3, 0.2)
-    assert ratio.cause.parameter.unit == "1"
-    assert "is named from 0.2 on, instead" in ratio.sentence
 
 
 @pytest.mark.parametrize("blocks", [1, 6])
@@ -124,7 +114,7 @@ def proposed(monkeypatch, runs, *effects, values=None):
     return propose(None, trial, effects, asked.steps), asked
 
 
-def test_the_run_that_tells_most_is_said(monkeypatch):
+def test_the_run_that_distinguishes_best_is_proposed(monkeypatch):
     hidden = [
         seen(PLAY, 0.1, load_inertia=0.2),
         seen(MASS, 0.5, backlash=0.5),
@@ -133,26 +123,22 @@ def test_the_run_that_tells_most_is_said(monkeypatch):
     runs = Further({None: [seen(PLAY, 1.0), seen(MASS, 1.0)], 1: less, 3: hidden, 5: less})
     values = {f"{PLAY}.play_mm": 0.1, "presliding.length_mm": 0.2}
     said, asked = proposed(monkeypatch, runs, PLAY, MASS, values=values)
-    first, second = better(PLAY, 1.0, 0.2), better(MASS, 1.0, 0.5)
-    assert said == (
-        f"Record {CANDIDATES[3].sentence}. With it {first.sentence}; {second.sentence}."
-    )
+    assert said is CANDIDATES[3]
     assert asked.free == {"presliding.length_mm": 0.2}
     assert asked.steps.total == asked.steps.done == 4
     assert runs.asked == [(k, [PLAY, MASS], [PLAY, MASS]) for k in (None, 1, 3, 5)]
 
 
-def test_what_it_still_does_not_tell_is_said_too(monkeypatch):
+def test_a_run_that_distinguishes_some_alone_is_none(monkeypatch):
     alike = [seen(MASS, 0.1, free_tendon=2.0), seen(LENGTH, 0.1, load_inertia=2.0)]
-    runs = Further({None: [seen(PLAY, 1.0), *alike], 3: [seen(PLAY, 0.1), *alike]})
-    said, _ = proposed(monkeypatch, runs, PLAY, MASS, LENGTH)
-    assert said.endswith(f" It does not distinguish {LENGTH} from {MASS}.")
+    apart = [seen(MASS, 0.1), seen(LENGTH, 0.1)]
+    sizes = {None: [seen(PLAY, 1.0), *alike], 3: [seen(PLAY, 0.1), *alike]}
+    assert proposed(monkeypatch, Further(sizes), PLAY, MASS, LENGTH)[0] is None
+    sizes[4] = [seen(PLAY, 0.7), *apart]
+    assert proposed(monkeypatch, Further(sizes), PLAY, MASS, LENGTH)[0] is CANDIDATES[4]
 
 
 @pytest.mark.parametrize("after", [1.0, 0.9])
-def test_where_no_run_helps_that_is_said(monkeypatch, after):
-    """A fall by a tenth is none worth saying."""
+def test_a_run_that_helps_by_a_tenth_is_none(monkeypatch, after):
     runs = Further({None: [seen(PLAY, 1.0)], 3: [seen(PLAY, after)]})
-    said, _ = proposed(monkeypatch, runs, PLAY, MASS)
-    titles = f"{OF[PLAY].title.lower()} and {OF[MASS].title.lower()}"
-    assert said == f"No further run within the range of these distinguishes {titles}."
+    assert proposed(monkeypatch, runs, PLAY, MASS)[0] is None

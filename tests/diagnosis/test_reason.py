@@ -45,7 +45,7 @@ def test_what_no_effect_explains_is_said_with_what_it_depends_on():
     assert reason_of("unexplained", [], [], START, after) == (
         "The RMS of the residual of f_in_N on held-out data is 0.400 N, and no catalogued effect "
         "explains it. "
-        "It depends on the time in the run, the displacement of the drive. "
+        "It depends on the time in the run and the displacement of the drive. "
         "At each reversal x_out_mm lags behind the model, or leads it."
     )
 
@@ -102,6 +102,16 @@ def test_a_stand_in_is_said_with_what_it_fails_to_prove():
     beside = reason_of("partly", [cause(MASS)], [stand_in], START, left(2.0))
     assert beside.startswith(f"The nominal model lacks: {TITLE[MASS]}.")
     assert said in beside
+
+
+def test_what_several_stand_ins_fail_to_prove_is_said_once():
+    left_over = "is in a model that leaves 15 % of what could be explained"
+    failing = [cause(PLAY, failed=(left_over,)), cause(MASS, failed=(left_over,))]
+    said = reason_of("stand_in", [], failing, START, left(16.0, "time_s"))
+    assert (
+        f"and {TITLE[MASS]} take 50 and 50 % off it, but are not proven: each {left_over}" in said
+    )
+    assert said.count("not proven") == 1
 
 
 def test_a_law_that_differs_is_said_of_its_effect():

@@ -220,7 +220,7 @@ def test_a_map_holds_measured_less_simulated_over_each_signal():
     assert sum(b.samples for b in forces) == 3
     (out,) = found["x_out_mm"]["run"]
     assert (out.label, out.mean, out.low) == ("second", -8.0, 1.0)
-    assert [b.label for b in found["x_out_mm"][DIRECTION]] == ["letting go"]
+    assert [b.label for b in found["x_out_mm"][DIRECTION]] == ["releasing"]
 
 
 def test_samples_before_the_first_and_after_the_last_reversal():

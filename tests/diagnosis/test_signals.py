@@ -70,7 +70,7 @@ def test_labels_are_bins_of_their_own():
     direction = np.array([1.0, -1.0, -1.0, 1.0, 1.0])
     error = np.array([1.0, 2.0, 4.0, 5.0, 9.0])
     down, up = binned(direction, error, edges_of(direction, DIRECTION), DIRECTION)
-    assert (down.label, down.mean, down.samples) == ("letting go", 3.0, 2)
+    assert (down.label, down.mean, down.samples) == ("releasing", 3.0, 2)
     assert (up.label, up.mean, up.samples) == ("pulling", 5.0, 3)
     number = np.array([1.0, 1.0, 0.0, 1.0, 0.0])
     first, second = binned(number, error, edges_of(number, "run"), "run", ["a", "b"])

@@ -105,7 +105,7 @@ def test_a_drive_as_tables():
     assert parameters[1][1] == "42.284"
     assert list(runs) == [("a", "0.1234", "0.5", "0.012")]
     assert causes == [("backlash", "play_mm", "0.5 [0.3, 0.7]", "mm", "40.0", "channel_delay")]
-    assert error == [("x_in_mm", "0.4", "0.2", "0.1", "0.15", "mm")]
+    assert error == [["x_in_mm", "0.4", "0.2", "0.1", "mm", "0.15"]]
     less = {"kinematics": Kinematics(fitted_lead_rpm_s_per_mm=40.0), "diagnosis": verdict("named")}
     fewer = [rows for *_, rows in tables(drive.model_copy(update=less), "title")]
     assert [len(rows) for rows in fewer] == [3, 1, 1, 1]

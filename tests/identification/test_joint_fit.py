@@ -83,11 +83,10 @@ def test_a_channel_is_missed_by_its_worst_run():
     one = run_with({"f_in_N": np.full(4, 1.3), "f_out_N": np.array([5.0, -5.0])})
     two = run_with(None, {"f_in_N": np.full(4, 1.0), "f_out_N": np.array([1.0, 1.0])})
     (said,) = j.misfit(fit_of(problem_of(), errors=(one, two)))
-    assert said.startswith("f_out_N: reduced chi-square up to 25 (1 at the noise level):")
+    assert said.startswith("The reduced chi-square is up to 25 for f_out_N (1 at the noise level):")
     two = run_with(None, {"f_in_N": np.array([0.0, 1.31 * math.sqrt(2.0)])})
-    first, second = j.misfit(fit_of(problem_of(), errors=(one, two)))
-    assert first.startswith("f_in_N: reduced chi-square up to 1.72 (1")
-    assert second.startswith("f_out_N")
+    (said,) = j.misfit(fit_of(problem_of(), errors=(one, two)))
+    assert "up to 1.72 for f_in_N and 25 for f_out_N (1" in said
 
 
 def test_a_rig_takes_its_own_values_and_the_shared_ones():
@@ -133,9 +132,7 @@ def test_a_zero_that_runs_to_its_bound_is_fixed_and_the_rest_fitted_again(monkey
     assert fit.model.value(FRICTION) == pytest.approx(0.3, abs=0.05)
     assert fit.values[1] == 0.0
     (note,) = fit.not_identifiable
-    assert (
-        note == f"{ZERO} is not identifiable from these recordings (runs a); it is fixed at 0 mm."
-    )
+    assert note == f"{ZERO} is not identifiable from these recordings; it is fixed at 0 mm."
 
 
 def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
@@ -165,6 +162,11 @@ def test_what_ended_where_it_does_nothing_is_no_bound():
     assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
 
 
+def test_what_is_said_of_many_runs_is_said_once():
+    (said,) = doubts(*(estimate(ZERO, run, at_bound=True) for run in "abcd"))
+    assert said.startswith("x_in_zero_mm of 4 runs converged to its plausible bound, 1.5: ")
+
+
 def test_what_has_no_error_or_no_end_is_said():
     (said,) = doubts(estimate(stderr=None))
     assert said.startswith("friction_coefficient is not identifiable at the minimum")
@@ -181,7 +183,7 @@ def test_what_is_fixed_is_said_once_for_each_reason():
     assert j.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
         (
             "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
-            "from these recordings (runs a, b); it is fixed at 0.25 mm."
+            "from these recordings; it is fixed at 0.25 mm."
         ),
         "friction_coefficient is not identifiable from these recordings; it is fixed at 0.1.",
         "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",

@@ -393,7 +393,7 @@ def test_what_the_fit_leaves_open_is_fixed_with_a_sentence():
     said = " ".join(result.cannot_tell)
     for name in ("x_in_zero_mm", "x_out_zero_mm"):
         assert name not in fitted(result)
-        assert f"{name} is not identifiable from these recordings (runs a); it is fixed" in said
+        assert f"{name} is not identifiable from these recordings; it is fixed" in said
 
 
 def test_where_a_fit_ends_with_every_parameter_at_a_bound_the_model_is_called_wrong():

@@ -1,9 +1,7 @@
 import re
 from html import unescape
 
-import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.reporting.conftest import no_curves
@@ -14,7 +12,6 @@ from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.diagnosis.maps import Panel, draw_residual_map
 from tsas_cli.reporting.diagnosis.section import draw_gains
-from tsas_cli.reporting.diagnosis.similarity import draw_similarity
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.page import page
@@ -100,7 +97,7 @@ def test_an_equation_of_several_lines_stands_on_several(named):
 
 def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
     text = sections["ambiguous"]
-    assert headings(text, 3)[0] == "Tendon outside the sheath, or compliance of the drive"
+    assert headings(text, 3)[0] == "Tendon outside the sheath (or compliance of the drive)"
     sentence = next(e.sentence for e in EFFECTS if e.name == "drive_compliance")
     rival = "indistinguishable from compliance of the drive (drive_compliance)."
     assert f"In these recordings it is {rival} {sentence}" in words(text)
@@ -126,13 +123,33 @@ def test_without_a_name_there_is_no_after(sections, verdict):
     assert "Residual on held-out data" in headings(text, 3)
 
 
-def test_what_is_not_explained_says_on_what_it_depends(sections):
+def test_where_no_less_is_attainable_that_is_said_once(of):
+    reached = {"rmse_before": 1.0, "rmse_after": 0.1, "noise_floor": 0.11, "attainable": 0.1}
+    text = of("named", channels=dict.fromkeys(("f_in_N", "f_out_N"), reached))
+    assert words(text).count("attainable") == 1
+    assert "no more is attainable" in words(text)
+    assert not any("attainable" in label for label in labels(text))
+
+
+def test_a_long_verdict_is_a_paragraph_and_a_list(of):
+    text = of("unexplained", reason="First of 1.5 N. Second. Third of f_in_N. Fourth.")
+    assert "<p>First of 1.5 N. Second.</p>" in text
+    assert re.findall("<li>([TF][^<]*)</li>", text)[:2] == ["Third of f_in_N.", "Fourth."]
+
+
+def test_what_a_stand_in_fails_to_prove_is_said_once(of):
+    failed = ["may be zero", "is not constant"]
+    parameters = {"play_mm": {"value": 0.2, "unit": "mm"}}
+    stand_in = {"effect": "backlash", "parameters": parameters, "failed": failed}
+    text = of("partly", reason="It is not proven: it may be zero.", stand_ins=[stand_in])
+    assert words(text).count("may be zero") == 1
+    assert "It is not constant." in words(text)
+
+
+def test_what_is_left_is_said_with_its_size(sections):
     text = words(sections["unexplained"])
-    assert "no effect of the catalogue accounts for" in text
-    assert "depends on time_s (f_in_N swings at 3.1 Hz) and speed of the drive." in text
     assert "remaining residual is 38.4; 1" in text
     assert "after what is named" not in text
-    assert "no effect of the catalogue" not in words(sections["named"])
     assert "could be explained, 12 % is left after what is named" in words(sections["named"])
 
 
@@ -201,9 +218,10 @@ def test_where_screening_left_nothing_the_page_says_so(of):
 
 def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
     text = words(sections["named"])
-    group = "drive_compliance, free_tendon and sheath_compression are hard to tell apart here "
-    assert f"{group}(similarity at least 0.97)." in text
-    assert "direction_dependent_friction and force_sensor_gain are hard to tell" in text
+    group = "drive_compliance, free_tendon and sheath_compression (similarity at least 0.97)"
+    assert group in text
+    assert "direction_dependent_friction and force_sensor_gain (sim" in text
+    assert text.count("indistinguishable here") == 1
     assert "backlash and" not in text
     assert "These inputs hardly show load_inertia at" in text
 
@@ -263,18 +281,6 @@ def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
     assert list(drawn["nominal model"].get_ydata()) == [1.0, 3.0]
     assert list(drawn["extended model"].get_ydata()) == [-1.0, -3.0]
     assert drawn["extended model"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)
-
-
-def test_the_square_of_two_effects_is_as_large_as_their_similarity():
-    similarity = np.array([[1.0, 0.97, 0.1], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]]).T
-    figure = Figure()
-    draw_similarity(figure, ["a", "b", "c"], similarity, alike=0.95)
-    alike, muted = figure.axes[0].patches
-    assert to_hex(alike.get_facecolor()) == STAND_IN["alike"]
-    for patch, place, side in ((alike, (0, 1), 0.97), (muted, (1, 2), 0.5)):
-        corners = patch.get_path().get_extents()
-        assert ((corners.x0 + corners.x1) / 2, (corners.y0 + corners.y1) / 2) == place
-        assert corners.width == pytest.approx(0.94 * side)
 
 
 def test_a_loss_is_no_reduction(of):

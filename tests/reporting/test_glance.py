@@ -67,7 +67,7 @@ def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
 def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
     assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")
-    assert it.verdict == "Tendon outside the sheath, or compliance of the drive"
+    assert it.verdict == "Tendon outside the sheath (or compliance of the drive)"
 
 
 @pytest.mark.parametrize(

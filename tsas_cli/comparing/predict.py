@@ -163,7 +163,7 @@ def models_of(it: Predicted, out: Path | None) -> tuple[PredictingModel, ...]:
 
 
 def tables(record: PredictionFile, title: str = "predictions") -> list[Table]:
-    """Return what is printed: the models, the errors under their title, and the ranges."""
+    """Return what is printed: the models, the errors, and the ranges that runs leave."""
     models = []
     for one in record.models:
         known = one.recordings
@@ -180,20 +180,21 @@ def tables(record: PredictionFile, title: str = "predictions") -> list[Table]:
             number_text(row.normalised_residual),
             number_text(row.ratio),
             number_text(row.repeatability, ".2g") or "unknown",
-            {True: "seen by the fit", False: "", None: "unknown"}[row.seen],
+            {True: "yes", False: "", None: "unknown"}[row.seen],
         )
         for row in record.channels
     ]
     alike: dict[tuple[str, str, str], list[str]] = {}  # the models of which the same is to be said
-    for row in record.ranges:
+    for row in (row for row in record.ranges if row.verdict != "inside"):
         what = "; ".join(one.text() for one in row.outside)
         alike.setdefault((row.run, row.verdict, what), []).append(row.model)
     ranges = [(run, ", ".join(of), verdict, what) for (run, verdict, what), of in alike.items()]
-    header = ("run", "channel", "model", "RMSE", "unit", "% of range", "RMSE / noise", "RMSE / A")
+    header = ("run", "channel", "model", "RMSE", "unit", "% of range", "normalised residual")
+    ranges_header = ("run", "model", "range", "by")
     return [
         ("models", ("model", "kind", "path", "fitted to", "dynamics"), models),
-        (title, (*header, "repeatability", "seen"), errors),
-        ("ranges that the models were fitted to", ("run", "model", "range", "by"), ranges),
+        (title, (*header, "RMSE / A", "repeatability", "in the fit"), errors),
+        *([("ranges that the models were fitted to", ranges_header, ranges)] if ranges else []),
     ]
 
 
@@ -208,7 +209,8 @@ def findings(it: Predicted) -> Iterator[str]:
             yield _best(channel, rows)
     for known, who in _by_models(it, lambda n: listed([r for r in runs if (r, n) in seen])):
         if known:
-            yield f"Seen by the fit of {who}, and no prediction: {known}."
+            who += " is" if who in it.models else " are"
+            yield f"{who} fitted to {known}, which is no prediction."
     if not new:
         yield "No run is new to every model."
     yield from _outside(it)

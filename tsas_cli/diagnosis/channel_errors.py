@@ -12,7 +12,10 @@ REVERSALS = 0.4  # error of the position of a reversal, in standard deviations o
 
 @dataclass(frozen=True)
 class HeldOutErrors:
-    """Residual RMS of one channel on held-out data, its noise level and the attainable RMS."""
+    """Residual RMS of one channel on held-out data, its noise level and the attainable RMS.
+
+    The attainable one is at least the white noise, and no larger than what is reached.
+    """
 
     rmse_before: float
     rmse_after: float
@@ -40,7 +43,8 @@ def channel_errors(
             rms * math.sqrt(1.0 - rest.shares[name])
             for rms, rest in ((before[name], start), (after[name], remaining))
         ]
-        out[name] = HeldOutErrors(before[name], after[name], floor, max(min(attainable), noise))
+        least = min(max(min(attainable), noise), after[name])
+        out[name] = HeldOutErrors(before[name], after[name], floor, least)
     return out
 
 

@@ -29,7 +29,7 @@ from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_GAIN = 0.03  # least reduction of the squares by values of their own; right names reach 0.01
 THIRDS = ("low", "middle", "high")
-DIRECTIONS = ("letting go", "pulling")
+DIRECTIONS = ("releasing", "pulling")
 
 
 @dataclass(frozen=True)

@@ -225,7 +225,11 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         reason += f" {fault.sentence}."
     channels = by_causes
     if law is not None:
-        channels = channel_errors(bench, errors[0], law.after.rmse, start, after)
+        reached = law.after.rmse
+        channels = {
+            name: replace(c, rmse_after=reached[name], attainable=min(c.attainable, reached[name]))
+            for name, c in by_causes.items()
+        }
     return Diagnosis(
         verdict,
         reason,

@@ -2,13 +2,29 @@
 
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
-from tsas_cli.effects import EFFECTS
+from tsas_cli.diagnosis.proof import BY_NAME
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.support.wording import listed
+
+# By the signal that a remaining residual depends on most: the recording that says most of it.
+OF_REMAINDER = {
+    "f_in_N": "Repeat one run at another preload: what depends on the tension moves along the "
+    "stroke with it.",
+    "x_in_mm": "Repeat one run with the stroke moved along by a quarter: what belongs to a place "
+    "moves against the stroke.",
+    "speed_mm_per_s": "Repeat one run at half the speed: what depends on the speed changes, what "
+    "depends on the place does not.",
+    "travel_since_reversal_mm": "Record nested strokes, each shorter than the last: the tension "
+    "over the travel since the reversal must be the same curve in all.",
+}
+REPEAT = (
+    "Repeat one run without any change: a residual that recurs is systematic, one that does not "
+    "is random."
+)
 
 
 def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     """Return the instruction for the next experiment."""
-    experiments = {effect.name: effect.experiment for effect in EFFECTS}
     if result.verdict == "undecided" and result.fault is not None:
         if result.fault.run is None:
             return "Correct the recordings, or remove what disturbs them and record again."
@@ -23,17 +39,17 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
             "Record longer runs, at least three: in each the drive has to travel through several "
             "whole strokes, with f_in_N and one of f_out_N and x_out_mm."
         )
-    unsure = [cause for cause in result.causes if cause.rivals]
-    if unsure and result.judged is not None and result.final is not None:
-        among = [unsure[0].effect, *unsure[0].rivals]
-        further = propose(result.judged.bench, result.final, among, step)
-        return f"{further} {experiments[unsure[0].effect]}"
+    unsure = next((cause for cause in result.causes if cause.rivals), None)
+    if unsure is not None and result.judged is not None and result.final is not None:
+        among = [unsure.effect, *unsure.rivals]
+        run = propose(result.judged.bench, result.final, among, step)
+        this, *others = [BY_NAME[name].title.lower() for name in among]
+        how = BY_NAME[unsure.effect].experiment if run is None else f"Record {run.sentence}."
+        return f"To distinguish {this} from {listed(others, ' or ')}: {how[0].lower()}{how[1:]}"
+    if result.unexplained:
+        signals = () if result.remainder is None else result.remainder.depends_on
+        return next((OF_REMAINDER[s] for s in signals if s in OF_REMAINDER), REPEAT)
     if result.causes:
         first = max(result.causes, key=lambda cause: cause.gain_percent)
-        return experiments[first.effect]
-    if result.unexplained:
-        return (
-            "Repeat one run without any change: a residual that recurs is systematic, one that "
-            "does not is random; then vary speed, load and bend one at a time."
-        )
+        return BY_NAME[first.effect].experiment
     return "No effect is missing here; runs at other loads, speeds and bends would test more."

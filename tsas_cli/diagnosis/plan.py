@@ -42,14 +42,6 @@ class Better:
     before: float
     after: float
 
-    @property
-    def sentence(self) -> str:
-        """The improvement in a sentence."""
-        unit = "" if self.cause.parameter.unit == "1" else f" {self.cause.parameter.unit}"
-        named_before = math.isfinite(self.before)
-        instead = f"instead of {self.before:.2g}" if named_before else "not without it"
-        return f"{self.cause.name} is named from {self.after:.2g}{unit} on, {instead}"
-
 
 @dataclass(frozen=True)
 class FurtherRun:
@@ -63,10 +55,6 @@ class FurtherRun:
     score: float
     better: tuple[Better, ...]
     groups: tuple[tuple[str, str], ...]
-
-    def best_of(self, count: int) -> str:
-        """Return the largest improvements in a sentence."""
-        return "; ".join(b.sentence for b in self.better[:count])
 
 
 @dataclass(frozen=True)
@@ -122,26 +110,20 @@ def plan_dataset(counted: DeduplicatedDataset, step: Steps = NO_PROGRESS) -> Exp
 
 def propose(
     bench: Bench, trial: HypothesisFit, effects: Sequence[str], step: Steps = NO_PROGRESS
-) -> str:
-    """Return as a sentence the further run that distinguishes effects best.
+) -> CandidateRun | None:
+    """Return the further run that distinguishes several effects best, None where none does.
 
-    Other effects of the trial stay free. `effects` are those to distinguish: a single one from all
-    others; none means all.
+    Other effects of the trial stay free.
     """
     step.doing("looks for the next experiment")
     step.ahead(1)
-    chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
-    rivals = chosen if len(chosen) > 1 else EFFECTS
+    rivals = [e for e in EFFECTS if e.name in effects]
     free = {name: v for name, v in trial.values().items() if name.split(".")[0] not in effects}
     runs = joined_to_recorded(bench, free)
     step()
     step.ahead(len(runs.added))
-    found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, step)
-    if not found or not found[0].better:
-        titles = " and ".join(e.title.lower() for e in chosen)
-        return f"No further run within the range of these distinguishes {titles}."
-    remaining = "".join(f" It does not distinguish {a} from {b}." for a, b in found[0].groups)
-    return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}.{remaining}"
+    found = _proposals(runs, runs.part().seen(rivals, rivals), rivals, step)
+    return next((p.candidate for p in found if p.better and not p.groups), None)
 
 
 def _plan(runs: FurtherRuns, step: Steps) -> ExperimentPlan:

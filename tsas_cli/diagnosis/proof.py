@@ -22,6 +22,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.records.base import TWO_SIDED, number_text
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.wording import listed
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
 MOST_APART = 2.0  # factor between its sizes in the parts of a split; of right names at most 1.8
@@ -191,7 +192,7 @@ def split_in_words(split: Split) -> str:
         parts = tuple(end(parts, key=lambda pair: pair[1]) for end in (min, max))
     shown = [{f"{value:.{n}g}" for _, value in parts} for n in range(3, 7)]
     digits = 3 + next((k for k, texts in enumerate(shown) if len(texts) == len(parts)), 3)
-    values = " and ".join(f"{value:.{digits}g} ({part})" for part, value in parts)
+    values = listed([f"{value:.{digits}g} ({part})" for part, value in parts])
     unit = _unit(QUANTITIES[split.parameter].unit)
     over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
     return f"{over}: {split.parameter.partition('.')[2]} {values} {unit}".rstrip()

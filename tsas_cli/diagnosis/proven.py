@@ -186,7 +186,7 @@ def _beside_what_is_left(cause: FoundCause, start: Remainder, after: Remainder) 
     left = share_left(start, after)
     if after.complete or left <= MOST_LEFT:
         return cause
-    said = f"leaves {100.0 * left:.0f} % of what could be explained"
+    said = f"is in a model that leaves {100.0 * left:.0f} % of what could be explained"
     return replace(cause, failed=(*cause.failed, said))
 
 

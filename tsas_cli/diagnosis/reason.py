@@ -68,9 +68,12 @@ def reason_of(
             f"The RMS of the residual of {name} on held-out data is {_digits(most.rmse_before, 3)} "
             f"{BY_COLUMN[name].unit}, and no catalogued effect explains it."
         )
-    for cause in stand_ins:
-        gain = f"{_title(cause.effect)} takes {cause.gain_percent:.0f} % off it"
-        sentences.append(f"{gain}, but is not proven: it {cause.failed[0]}.")
+    for failed in dict.fromkeys(cause.failed[0] for cause in stand_ins):
+        alike = [cause for cause in stand_ins if cause.failed[0] == failed]
+        names = listed([_title(cause.effect) for cause in alike])
+        gains = listed([f"{cause.gain_percent:.0f}" for cause in alike])
+        take, are, each = ("take", "are", "each") if alike[1:] else ("takes", "is", "it")
+        sentences.append(f"{names} {take} {gains} % off it, but {are} not proven: {each} {failed}.")
     if not after.complete:
         if causes:
             sentences.append("No catalogued effect explains the remaining residual.")
@@ -93,7 +96,7 @@ def reason_of(
 def _dependence(after: Remainder) -> list[str]:
     out = []
     if after.depends_on:
-        out.append(f"It depends on {', '.join(signal_in_words(s) for s in after.depends_on)}.")
+        out.append(f"It depends on {listed([signal_in_words(s) for s in after.depends_on])}.")
     if after.late:
         one = len(after.late) == 1
         verbs = ("lags", "leads") if one else ("lag", "lead")

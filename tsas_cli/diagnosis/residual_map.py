@@ -56,7 +56,7 @@ def binned(
     its samples; `ids` are of the runs, where the signal is the run's number.
     """
     if name in LABELS:
-        labels = ids if name == RUN else ["letting go", "pulling"]
+        labels = ids if name == RUN else ["releasing", "pulling"]
         parts = [(labels[int(v if name == RUN else v > 0.0)], signal == v) for v in edges]
     else:
         number = np.clip(np.searchsorted(edges, signal, side="right") - 1, 0, edges.size - 2)

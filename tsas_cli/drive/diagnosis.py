@@ -64,7 +64,7 @@ def diagnose_drive(
     share = max(left - 1.0 - EXCESS_OF_COMPLETE_MODEL, 0.0) / (start - 1.0) if start > 1.0 else 0.0
     depends, could = _left(search, explained)
     before, after = (_rmse(search, terms) for terms in (nominal, explained))
-    floor = min(_noise(search), after)
+    floor = min(_noise(search), after)  # so that what is attainable is no more than what is reached
     attainable = max(floor, after * math.sqrt(1.0 - could))
     gained, low, high = _gain_percent(search, nominal, explained)
     verdict = _verdict(search, causes, left, share)

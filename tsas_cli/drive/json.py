@@ -15,6 +15,7 @@ from tsas_cli.drive.sentences import name_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records import drive as records
 from tsas_cli.records.base import number_text
+from tsas_cli.records.diagnosis import errors_table
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.result import Table
 from tsas_cli.support.arrays import Complex, Floats
@@ -185,13 +186,4 @@ def tables(drive: DriveFile, title: str) -> Iterator[Table]:
             ("effect", "parameter", "value [95 %]", "unit", "reduction [%]", "rivals"),
             named,
         )
-    errors = [
-        (
-            name,
-            *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)),
-            c.unit,
-        )
-        for name, c in drive.diagnosis.channels.items()
-    ]
-    columns = ("channel", "before", "after", "noise", "attainable", "unit")
-    yield "error on held-out data", columns, errors
+    yield errors_table(drive.diagnosis.channels)

@@ -41,6 +41,6 @@ FREE_TENDON = Effect(
         Parameter("proximal_length_mm", "mm", neutral=0.0, start=50.0, lower=0.0, upper=5000.0),
         Parameter("distal_length_mm", "mm", neutral=0.0, start=50.0, lower=0.0, upper=5000.0),
     ),
-    experiment="The same motion with two sheath lengths and the same bend: the modulus scales "
-    "with the length, a free length does not.",
+    experiment="Clamp the tendon where it leaves the drive, then where it enters the sheath, and "
+    "pull: x_in over f_in differs by the compliance of the proximal length.",
 )

@@ -6,7 +6,7 @@ parameters are identifiable; the others are fixed. The residuals and their weigh
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,7 +28,9 @@ from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.wording import listed
 
+FEW = 3  # runs that a sentence names
 MOST_ROUNDS = 4
 WRONG_RATIO = 1.3  # normalised residual beyond which the model is wrong
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, with initial weights, and of later ones
@@ -111,18 +113,18 @@ def solve_fit(problem: FitProblem) -> FittedModel:
 
 
 def misfit(fit: FittedModel) -> list[str]:
-    """Return a sentence for each channel whose residual exceeds its known uncertainty."""
+    """Return a sentence on the channels whose residual exceeds its known uncertainty, if any."""
     worst: dict[str, float] = {}
     for run, rig in zip(fit.errors, fit.rigs, strict=True):
         for name, errors in run.errors(rig).items():
             worst[name] = max(worst.get(name, 0.0), float(np.mean(errors**2)))
-    return [
-        f"{name}: reduced chi-square up to {found:.3g} (1 at the noise level): the nominal model "
-        "is wrong somewhere, and its estimates are those of the nearest nominal model, not of the "
-        "rig."
-        for name, found in worst.items()
-        if found > WRONG_RATIO**2
-    ]
+    wrong = [f"{x:.3g} for {name}" for name, x in worst.items() if x > WRONG_RATIO**2]
+    said = (
+        f"The reduced chi-square is up to {listed(wrong)} (1 at the noise level): the nominal "
+        "model is wrong somewhere, and its estimates are those of the nearest nominal model, not "
+        "of the rig."
+    )
+    return [said] if wrong else []
 
 
 def residuals_with(fit: FittedModel, changes: Mapping[str, float]) -> Floats:
@@ -242,30 +244,38 @@ def fixed_sentences(problem: FitProblem, confounded: Mapping[int, list[int]]) ->
         reasons.setdefault((unknown.name, together), []).append(problem.owner(unknown) or "")
     return [
         f"{name} is not identifiable{together} from these recordings"
-        f"{' (runs ' + ', '.join(owners) + ')' if any(owners) else ''}; "
+        f"{_where(owners, len(problem.runs))}; "
         f"it is fixed at {_fixed_value(problem.fixed, name, owners[0])}."
         for (name, together), owners in reasons.items()
     ]
 
 
+def _where(owners: Sequence[str], runs: int) -> str:
+    """Return which of the runs something is said of, nothing where it is all of them."""
+    if not any(owners) or len(owners) == runs:
+        return ""
+    few = len(owners) <= FEW
+    return f" (runs {', '.join(owners)})" if few else f" ({len(owners)} of {runs} runs)"
+
+
 def doubts_of(estimates: Sequence[Estimate], result: Fitted) -> list[str]:
     """Return a sentence for each reason why estimates are unreliable."""
-    names = {e: f"{e.name} of run {e.run}" if e.run else e.name for e in estimates}
     neutral = [e for e in estimates if e.at_bound and e.interval_low == QUANTITIES[e.name].default]
+    bound = [e for e in estimates if e.at_bound and e not in neutral]
+    wide = [e for e in estimates if e.stderr is None or _is_whole_range(e)]
     notes = [
-        f"{names[e]} converged to zero: values up to {e.interval_high:.2g} {e.unit} are not "
-        "excluded."
-        for e in neutral
+        f"{name} converged to zero: values up to {max(e.interval_high or 0.0 for e in of):.2g} "
+        f"{of[0].unit} are not excluded."
+        for name, of in _named(neutral)
     ]
     notes += [
-        f"{names[e]} converged to its plausible bound, {e.value:.5g}: the estimate is unreliable."
-        for e in estimates
-        if e.at_bound and e not in neutral
+        f"{name} converged to its plausible bound, "
+        f"{' or '.join(dict.fromkeys(f'{e.value:.5g}' for e in of))}: the estimate is unreliable."
+        for name, of in _named(bound)
     ]
     notes += [
-        f"{names[e]} is not identifiable at the minimum: its interval is the plausible range."
-        for e in estimates
-        if e.stderr is None or _is_whole_range(e)
+        f"{name} is not identifiable at the minimum: its interval is the plausible range."
+        for name, _ in _named(wide)
     ]
     if not result.converged:
         notes.append(
@@ -273,6 +283,18 @@ def doubts_of(estimates: Sequence[Estimate], result: Fitted) -> list[str]:
             "unreliable."
         )
     return notes
+
+
+def _named(estimates: Sequence[Estimate]) -> Iterator[tuple[str, list[Estimate]]]:
+    """Yield estimates with their name and run; together where a parameter has many runs."""
+    of_names: dict[str, list[Estimate]] = {}
+    for e in estimates:
+        of_names.setdefault(e.name, []).append(e)
+    for name, of in of_names.items():
+        if len(of) > FEW:
+            yield f"{name} of {len(of)} runs", of
+        else:
+            yield from ((f"{name} of run {e.run}" if e.run else name, [e]) for e in of)
 
 
 def _is_whole_range(estimate: Estimate) -> bool:

@@ -1,5 +1,6 @@
 """What `diagnosis.json` holds (docs/formats.md)."""
 
+from collections.abc import Mapping
 from typing import ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -16,6 +17,7 @@ from tsas_cli.records.base import (
     Value,
     number_text,
 )
+from tsas_cli.records.result import Table
 
 EXTENDED_MODEL, NOMINAL_MODEL = "model-extended.toml", "model-nominal.toml"
 STAND_IN_MODEL = "model-stand-in.toml"
@@ -95,6 +97,29 @@ class HeldOut(Record):
     rmse_after: NotNegative = None
     noise_floor: NotNegative = None
     attainable: NotNegative = None
+
+    @property
+    def less_attainable(self) -> bool:
+        """Whether another model could reach less, to three digits; older files may say more."""
+        least, reached = self.attainable, self.rmse_after
+        if least is None or reached is None:
+            return False
+        return least < reached and number_text(least) != number_text(reached)
+
+
+def errors_table(channels: Mapping[str, HeldOut]) -> Table:
+    """Return the errors on held-out data; attainable where it is less than what is reached."""
+    header = ["channel", "before", "after", "noise floor", "unit", "attainable"]
+    rows = []
+    for name, c in channels.items():
+        sizes = map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor))
+        least = number_text(c.attainable) if c.less_attainable else ""
+        rows.append([name, *sizes, c.unit, least])
+    title = "error on held-out data"
+    if any(row[-1] for row in rows):
+        return title, header, rows
+    no_less = f"{title}; no model of these signals reaches less"
+    return no_less, header[:-1], [row[:-1] for row in rows]
 
 
 class SlowNoise(Record):

@@ -14,7 +14,7 @@ from tsas_cli.support.arrays import Floats
 EFFECT = {effect.name: effect for effect in EFFECTS}
 _SIGNALS = {  # in words, and the unit
     "speed_mm_per_s": ("speed of the drive", "mm/s"),
-    "travel_since_reversal_mm": ("travel of the drive since it turned", "mm"),
+    "travel_since_reversal_mm": ("travel since the last reversal", "mm"),
     "time_s": ("time in the run", "s"),
     "direction": ("direction of the drive", ""),
     "phase": ("phase of the cycle", ""),
@@ -52,8 +52,8 @@ def heading_of(cause: NamedCause) -> str:
     if not cause.rivals:
         return title
     if len(cause.rivals) == 1:
-        return f"{title}, or {within(title_of(cause.rivals[0]))}"
-    return f"{title}, or one of {len(cause.rivals)} others"
+        return f"{title} (or {within(title_of(cause.rivals[0]))})"
+    return f"{title} (or one of {len(cause.rivals)} others)"
 
 
 def sentence_of(name: str) -> str:

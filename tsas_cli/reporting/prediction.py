@@ -19,7 +19,6 @@ from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.simulation import X_IN, Simulated, channels_of, draw_comparison
 
-_WORDS = {"RMSE / noise": "normalised residual"}
 _MOST_RUNS = 10
 _POINTS = 30_000  # of all curves
 _SHOWN = ("f_in_N", "f_out_N")
@@ -51,8 +50,7 @@ def section(inputs: Inputs) -> Section | None:
         (" ".join(prediction.notes[:1]),),
         points=(*prediction.findings, *prediction.notes[1:]),
         tables=tuple(
-            table_of(caption, [_WORDS.get(name, name) for name in header], rows)
-            for caption, header, rows in tables(prediction)
+            table_of(caption, header, rows) for caption, header, rows in tables(prediction)
         ),
         groups=groups,
         closing=(f"{left} more runs are in the table.",) if left > 0 else (),

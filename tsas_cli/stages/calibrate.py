@@ -23,13 +23,14 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records import calibration as records
-from tsas_cli.records.base import ParameterValue, number_text, parameters_of
+from tsas_cli.records.base import ParameterValue, number_text, parameters_of, span_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.check import accepted_errors, unrecorded
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
+FEW = 5  # runs whose own parameters are printed
 DYNAMICS: tuple[Literal["slip", "lugre"], ...] = ("slip", "lugre")
 
 
@@ -59,15 +60,26 @@ class CalibrationResult(Result):
         ]
         header = ("run", "phase", "measured [95 %]", "theory", "distributed model")
         yield "stiffness km [N/mm] by linear fit", header, slopes
-        transfer = [(p.run or "", p.name, p.text(), p.unit) for p in self.record.transfer]
+        transfer = [
+            (_few(p.run or "", len(self.record.channels)), p.name, p.text(), p.unit)
+            for p in self.record.transfer
+        ]
         if transfer:
             about = "tension passed on in full slip, f_in = ratio f_out + intercept"
             yield about, ("runs", "name", "value [95 %]", "unit"), transfer
-        parameters = [(p.name, p.run or "all", p.text(), p.unit) for p in self.record.parameters]
+        of_runs: dict[str, list[float | None]] = {}
+        for p in self.record.parameters:
+            of_runs.setdefault(p.name, []).append(p.value)
+        parameters = dict.fromkeys(  # of many runs one row: the file holds each
+            (p.name, p.run or "all", p.text(), p.unit)
+            if len(of := of_runs[p.name]) <= FEW
+            else (p.name, f"{len(of)} runs", span_text(of), p.unit)
+            for p in self.record.parameters
+        )
         yield (
             self.titled("parameters", records.MODEL_FILE),
             ("name", "run", "value [95 %]", "unit"),
-            parameters,
+            [*parameters],
         )
         errors = [
             (run, name, number_text(c.rmse, ".4g"), number_text(c.noise, ".2g"))
@@ -79,6 +91,14 @@ class CalibrationResult(Result):
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
         return notes([*self.record.accepted(), *self.record.cannot_tell])
+
+
+def _few(runs: str, of: int) -> str:
+    """Return a list of runs for a table: the first one of many, and whether they are all."""
+    first, *others = runs.split(", ")
+    if len(others) + 1 == of > 1:
+        return "all"
+    return f"{first} and {len(others)} more" if len(others) > 1 else runs
 
 
 def calibrate(

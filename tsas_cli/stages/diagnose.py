@@ -95,29 +95,20 @@ class DiagnosisResult(Result):
 
     def tables(self) -> Iterator[Table]:
         """Yield what is named or not proven, the errors before and after, and the ranking."""
-        columns = ("effect", "parameter", "value [95 %]", "unit")
-        for heading, last, causes in (
-            (self.titled("causes", records.EXTENDED_MODEL), "rivals", self.record.named),
-            ("what gains and is not proven", "why", self.record.stand_ins),
+        columns = ("effect", "parameter", "value [95 %]", "unit", "rivals")
+        for heading, causes in (
+            (self.titled("causes", records.EXTENDED_MODEL), self.record.named),
+            ("gains, but is not proven", self.record.stand_ins),
         ):
             rows = [
-                (c.effect, name, v.text(), v.unit, "; ".join(c.failed) or ", ".join(c.rivals))
+                (c.effect, name, v.text(), v.unit, ", ".join(c.rivals))
                 for c in causes
                 for name, v in c.parameters.items()
             ]
             if causes:
-                yield heading, (*columns, last), rows
-        errors = [
-            (
-                name,
-                *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)),
-                c.unit,
-            )
-            for name, c in self.record.channels.items()
-        ]
-        header = ("channel", "before", "after", "noise", "attainable", "unit")
-        if errors:
-            yield "error on held-out data", header, errors
+                yield heading, columns, rows
+        if self.record.channels:
+            yield records.errors_table(self.record.channels)
         ranking = [
             (
                 " + ".join(row.effects),

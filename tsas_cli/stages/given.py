@@ -15,6 +15,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
 from tsas_cli.support.errors import LONGEST_WORD, InputError, nearest
 
+FEW_WORDS = 6  # that an error lists, whatever is near
 NAME_BYTES, PATH_BYTES = 255, 4095  # of Linux; macOS allows less
 Named = str | Path
 Thing = TypeVar("Thing")
@@ -64,8 +65,12 @@ def one_of(words: Sequence[Word], given: str, name: str) -> Word:
     for word in words:
         if isinstance(given, str) and word == given:  # an array is equal one by one
             return word
+    remedy = nearest(given, words)
+    few = len(words) <= FEW_WORDS
     raise InputError(
-        f"{name} is {given!r}", expected=" or ".join(words), remedy=nearest(given, words)
+        f"{name} is {given!r}",
+        expected=" or ".join(words) if few else "",
+        remedy="" if few and remedy.startswith("known") else remedy,
     )
 
 

@@ -9,15 +9,21 @@ import sys
 import pytest
 
 from tests.outputs import refused
-from tests.processes import alive, family
+from tests.processes import SOON_S, alive, family
 from tsas_cli.reporting.viewer import child
-from tsas_cli.reporting.viewer.child import LOOPBACK, free_ports, viewer_child
+from tsas_cli.reporting.viewer.child import DRAWS, LOOPBACK, free_ports, viewer_child
+from tsas_cli.support.errors import InputError
 
 SERVE = f"""#!{sys.executable}
 import signal, socket, subprocess, sys, time
 if sys.argv[2] == "stubborn":
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
 server = socket.create_server(("{LOOPBACK}", int(sys.argv[1])))
+if sys.argv[2] in ("opens", "cannot"):
+    time.sleep(0.5)
+    print("Error: no screen" if sys.argv[2] == "cannot" else "wgpu adapter backend: Gl", flush=True)
+    time.sleep(0.3)
+    sys.exit(sys.argv[2] == "cannot")
 server.accept() if sys.argv[2] == "closed" else time.sleep(60)
 """
 FAIL = f"""#!{sys.executable}
@@ -66,6 +72,14 @@ def test_a_wait_can_be_short(viewer):
     with viewer() as running:
         running.wait(0.1)
         assert family(running.process.pid)
+
+
+def test_a_window_is_open_when_the_viewer_draws_and_not_before(viewer):
+    with viewer("opens") as running:
+        running.wait(SOON_S, DRAWS)
+        assert running.process.poll() is None
+    with pytest.raises(InputError, match="no screen"), viewer("cannot") as running:
+        running.wait(SOON_S, DRAWS)
 
 
 def test_it_is_gone_after_an_error_too(viewer):

@@ -116,7 +116,8 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
         shown = ", ".join(c.shown for c in candidates)
         question = f"which column is this, if any: {shown}?"
         if len(candidates) == 1:
-            question = f"is {shown} this? If it is at the load, rename the table."
+            at_load = name.replace("_in_", "_out_")
+            question = f"is {shown} at the drive? If at the load, name this table columns.{at_load}"
         found[name] = _open(name, (ends.reason, *_orders(candidates, ends)), question, candidates)
     return found
 

@@ -22,12 +22,12 @@ from tsas_cli.support.wording import listed
 Numbers = tuple[float, ...]
 
 
-def parts(causes: Iterable[NamedCause], inputs: Inputs) -> Iterator[Section]:
-    """Yield one part for each named cause or stand-in."""
+def parts(causes: Iterable[NamedCause], inputs: Inputs, said: str = "") -> Iterator[Section]:
+    """Yield one part for each named cause or stand-in, without failures that are `said` above."""
     for cause in causes:
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
         equation = cause.equation or law
-        failed = [f"It {failure}." for failure in cause.failed]
+        failed = [f"It {failure}." for failure in cause.failed if failure not in said]
         differs = f"Its law differs from this {cause.law_differs}." if cause.law_differs else ""
         rivals = (
             "In these recordings it is indistinguishable from "
@@ -70,7 +70,7 @@ def _gain(cause: NamedCause) -> Iterator[str]:
 def law_parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
     """Yield a part for each law, and its parameters, folded."""
     for law in diagnosis.laws:
-        rivals = f" As good are: {listed(law.rivals)}." if law.rivals else ""
+        rivals = f" Just as well do: {listed(law.rivals)}." if law.rivals else ""
         yield Section(
             anchor("diagnosis", law.law),
             law.title,

@@ -1,5 +1,6 @@
 """What the diagnosis says: the verdict, its causes, the evidence, and what to measure next."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -13,12 +14,14 @@ from tsas_cli.reporting.drawing import legend, picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import in_words
 from tsas_cli.reporting.numbers import ABSENT, fixed, over, plain
-from tsas_cli.support.wording import listed
 
-_BOUNDS = (
-    "Normalised: over the noise level, which is then 1. Attainable is what a flexible regression "
-    "on the recorded signals leaves, whatever the cause."
+_NORMALISED = "Normalised: over the noise level, which is then 1. "
+_ATTAINABLE = (
+    "Attainable is what a flexible regression on the recorded signals leaves, whatever the cause; "
+    "a dash where that is no less."
 )
+_NO_LESS = "A flexible regression on the recorded signals leaves no less: no more is attainable."
+_LEAD = 2  # sentences of a verdict above its list; one more is a paragraph with them
 _TRIED = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals
 _HYPOTHESES = (
@@ -35,7 +38,9 @@ def section(inputs: Inputs) -> Section:
     diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
-    reason = diagnosis.reason
+    said = re.split(r"(?<=\.) (?=[A-Z])", diagnosis.reason)
+    above = _LEAD if len(said) > _LEAD + 1 else len(said)
+    lead = " ".join(said[:above])
     evidence = (
         gains_part(diagnosis, inputs.held_out),
         maps.part(diagnosis),
@@ -45,11 +50,12 @@ def section(inputs: Inputs) -> Section:
     return Section(
         "diagnosis",
         _TITLE,
-        (f"Undecided: {reason}" if diagnosis.verdict == "undecided" else reason,),
+        (f"Undecided: {lead}" if diagnosis.verdict == "undecided" else lead,),
+        points=tuple(said[above:]),
         parts=(
             *causes.parts(diagnosis.named, inputs),
             *causes.law_parts(diagnosis, inputs),
-            *causes.parts(diagnosis.stand_ins, inputs),
+            *causes.parts(diagnosis.stand_ins, inputs, said=diagnosis.reason),
             *closing(diagnosis),
             *(replace(part, folded=True) for part in evidence if part is not None),
         ),
@@ -57,17 +63,13 @@ def section(inputs: Inputs) -> Section:
 
 
 def closing(diagnosis: DiagnosisFile) -> Iterator[Section]:
-    """Yield the parts that close the diagnosis; what is left stands first where it is unknown."""
-    left = Section("diagnosis-remainder", "What is left", tuple(_left(diagnosis)))
-    unknown = diagnosis.remainder.unexplained
-    if unknown:
-        yield left
+    """Yield the parts that close the diagnosis."""
     if diagnosis.next_experiment:
         yield Section("diagnosis-next", "Next experiment", (diagnosis.next_experiment,))
     if diagnosis.cannot_tell:
         yield Section("diagnosis-unknown", "Cannot tell", points=diagnosis.cannot_tell)
-    if left.intro and not unknown:
-        yield replace(left, folded=True)
+    if left := tuple(_left(diagnosis)):
+        yield Section("diagnosis-remainder", "What is left", left, folded=True)
 
 
 def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
@@ -80,12 +82,7 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
     if diagnosis.named and left.share_percent is not None:
         share = fixed(left.share_percent, 0)
         yield f"Of what could be explained, {share} % is left after what is named."
-    if left.unexplained:
-        yield "There is structure in it that no effect of the catalogue accounts for."
     yield from (noise.text(name) for name, noise in left.slow_noise.items())
-    if left.depends_on:
-        signals = listed([in_words(name) for name in left.depends_on])
-        yield f"What is left depends on {signals}."
 
 
 def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
@@ -131,10 +128,12 @@ def gains_part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Sec
     if not channels:
         return None
     named, how = diagnosis.extended, diagnosis.evidence.sentence
+    less = any(c.less_attainable for c in channels.values())
     alt = "; ".join(
         f"{in_words(name)}: nominal model {plain(c.rmse_before, 3)}"
         + (f", extended model {plain(c.rmse_after, 3)}" if named else "")
-        + f", attainable {plain(c.attainable, 3)}, noise level {plain(c.noise_floor, 3)} {c.unit}"
+        + (f", attainable {plain(c.attainable, 3)}" if c.less_attainable else "")
+        + f", noise level {plain(c.noise_floor, 3)} {c.unit}"
         for name, c in channels.items()
     )
     shown = picture(
@@ -144,10 +143,11 @@ def gains_part(diagnosis: DiagnosisFile, channels: Mapping[str, HeldOut]) -> Sec
         caption="RMS of the residual on held-out data, by channel.",
         height_in=0.6 + 0.75 * len(channels),
     )
+    bounds = _NORMALISED + (_ATTAINABLE if less else _NO_LESS)
     return Section(
         "diagnosis-gains",
         "Residual on held-out data",
-        tuple(filter(None, (how[:1].upper() + how[1:], _BOUNDS))),
+        tuple(filter(None, (how[:1].upper() + how[1:], bounds))),
         tables=(gains_table(channels, named=named),),
         pictures=(shown,),
     )
@@ -160,7 +160,7 @@ def gains_table(channels: Mapping[str, HeldOut], *, named: bool) -> Table:
             "channel": name,
             "nominal model": plain(c.rmse_before, 3),
             "extended model": plain(c.rmse_after, 3) if named else ABSENT,
-            "attainable": plain(c.attainable, 3),
+            "attainable": plain(c.attainable, 3) if c.less_attainable else ABSENT,
             "noise level": plain(c.noise_floor, 3),
             "unit": c.unit,
             "nominal, normalised": over(c.rmse_before, c.noise_floor),
@@ -182,7 +182,8 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
         if named:
             _bar(axes, channel.rmse_after, at=-0.2, role="after", label="extended model")
         _mark(axes, channel.noise_floor, linestyle="-", label="noise level")
-        _mark(axes, channel.attainable, linestyle=(0, (2, 1.5)), label="attainable")
+        if channel.less_attainable:
+            _mark(axes, channel.attainable, linestyle=(0, (2, 1.5)), label="attainable")
         axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
         axes.set_ylabel(
             f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"

@@ -26,6 +26,8 @@ LAST = 65535
 START_S = 30.0  # a program of 300 MB, read from a slow disk
 END_S = 3.0
 LOOK_S = 0.05
+MOST_LOGGED = 1 << 20  # bytes that are searched
+DRAWS = b"wgpu adapter"  # in the log of a viewer whose window is open
 NAMES = {"darwin": "Rerun.app/Contents/MacOS/Rerun"}
 # Linux ends a child whose parent dies, where the child asks for it before it becomes the viewer.
 ASK = (
@@ -42,13 +44,16 @@ class Child:
     process: subprocess.Popen[bytes]
     log: IO[bytes]
 
-    def wait(self, at_most_s: float = math.inf) -> None:
-        """Return when the viewer has been closed, or after some seconds.
+    def wait(self, at_most_s: float = math.inf, logged: bytes = b"") -> None:
+        """Return when the viewer has been closed, has logged this, or after some seconds.
 
         InputError: it has failed.
         """
         until = time.monotonic() + at_most_s
         while self.process.poll() is None and time.monotonic() < until:
+            # Not by seek: the viewer writes where this file stands.
+            if logged and logged in os.pread(self.log.fileno(), MOST_LOGGED, 0):
+                break
             time.sleep(LOOK_S)  # short: not every system lets a signal interrupt a long wait
         self.refuse_failure()
 
@@ -95,14 +100,14 @@ def viewer_child(arguments: Sequence[str], *, port: int) -> Iterator[Child]:
     call = [str(program()), *arguments]
     if sys.platform == "linux":
         call = [sys.executable, "-I", "-S", "-c", ASK, *call]
-    quiet = {"RUST_LOG": "warn", "NO_COLOR": "1"}
+    quiet = {"RUST_LOG": "warn,re_renderer=info", "NO_COLOR": "1"}  # with DRAWS
     with tempfile.TemporaryFile() as log:
         process = subprocess.Popen(  # noqa: S603 # the program of a package of ours
             call,
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
-            env=quiet | os.environ,
+            env=os.environ | quiet,
             start_new_session=True,  # Ctrl-C in the terminal comes here, and we end the viewer
         )
         child = Child(process, log)

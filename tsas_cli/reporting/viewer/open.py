@@ -16,7 +16,7 @@ from pathlib import Path
 from threading import Thread
 from urllib.parse import urlencode
 
-from tsas_cli.reporting.viewer.child import LOOPBACK, Child, free_ports, viewer_child
+from tsas_cli.reporting.viewer.child import DRAWS, LOOPBACK, Child, free_ports, viewer_child
 
 PAGE_STREAM = "/stream.rrd"
 KEPT = ("Content-Type", "Content-Length", "rerun-final-length")  # what the page reads of headers
@@ -28,7 +28,7 @@ POLICY = (
 AT_ONCE = 1 << 20  # bytes
 BIND = ("--bind", LOOPBACK)
 ALL_OF_IT = ("--server-memory-limit", "75%")  # beyond it the oldest data go without a word
-OPENS_S = 1.0  # after its port answers, a viewer without screen or graphics has failed by then
+OPENS_S = 10.0  # after its port answers, a window is taken to be open, whatever the log says
 SCREENS = ("WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY")  # where Linux says that it has one
 NOTE = (
     "the viewer is Rerun's; its window sends Rerun usage statistics, never data, until you run "
@@ -85,7 +85,7 @@ def _window(file: Path | None, port: int | None) -> Iterator[Viewer]:
     shown = ALL_OF_IT if file is None else (str(file.absolute()),)
     call = [*BIND, *NO_WELCOME, "--port", str(own), *shown]
     with viewer_child(call, port=own) as child:
-        child.wait(OPENS_S)
+        child.wait(OPENS_S, DRAWS)
         yield Viewer(child, proxy=_proxy(own))
 
 
