@@ -67,7 +67,7 @@ def losses_of(course: Floats, i: int) -> Losses:
 def with_friction(losses: Losses, factor: float) -> Losses:
     """Return the losses with the friction coefficient times a factor."""
     pulled, released = losses.pulled * factor, losses.released * factor
-    return Losses(pulled, released, losses.viscous_N, losses.preload_N)
+    return Losses(pulled, released, losses.drag_N, losses.preload_N)
 
 
 @kernel
