@@ -34,7 +34,7 @@ def test_it_begins_at_rest_in_balance():
     a = GROUP_A.friction_coefficient * GROUP_A.total_bend_rad
     EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
     for drive_mm, way in ((6.0, 1.0), (-4.0, -1.0)):
-        motor, table, chain = plant_at_rest(drive_mm, GROUP_A, DRIVE, 200)
+        motor, table, chain, _ = plant_at_rest(drive_mm, GROUP_A, DRIVE, 200)
         ratio, mean = math.exp(-way * a), (1.0 - math.exp(-way * a)) / (way * a)
         per_N = ratio / 1.579 + mean * L / EA
         expected = (drive_mm + 25.0 / 1.579 + 25.0 * L / EA) / per_N
@@ -46,7 +46,7 @@ def test_it_begins_at_rest_in_balance():
 
 
 def test_at_zero_nothing_is_wound_up():
-    motor, table, _ = plant_at_rest(0.0, GROUP_A, DRIVE, 20)
+    motor, table, *_ = plant_at_rest(0.0, GROUP_A, DRIVE, 20)
     assert (motor.mm, table.f_in) == (0.0, 25.0)
 
 

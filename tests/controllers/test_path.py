@@ -115,9 +115,9 @@ ALONG = {
     "position-dependent friction": {"position_dependent_friction.slope_per_mm": 0.04},
     "law of the sheath": {
         "tendon_law.travel_mm": 4.0,
-        "tendon_law.start_1": 0.3,
+        "tendon_law.start_1": 1.0,
         "tendon_law.high_mm": 25.0,
-        "tendon_law.curve_4": 0.3,
+        "tendon_law.curve_4": 1.0,
         "tendon_law.fast_mm_per_s": 30.0,
         "tendon_law.speed_3": -0.2,
     },

@@ -36,7 +36,7 @@ def test_a_feedforward_that_knows_the_law_removes_what_it_does_to_the_force(laws
 
     ideal = error(plant.rig, plant)
     nominal, extended = error(plant.rig, real), error(real.rig, real)
-    assert nominal > 4.0 * ideal
+    assert nominal > 3.0 * ideal
     assert extended - ideal < 0.12 * (nominal - ideal)
 
 

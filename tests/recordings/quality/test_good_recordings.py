@@ -50,6 +50,17 @@ def test_nothing_is_reported_in_twenty_repeats_of_one_experiment():
         assert complaints(columns(dataclasses.replace(bench, seed=seed))) == []
 
 
+def test_a_run_that_ends_just_after_a_reversal_has_no_wrong_sign():
+    """Friction has f_in fall below its first value, while x_in is still far above its own."""
+    whole = columns(Bench(rate_Hz=64.0))
+    rows = (whole["time_s"] > 0.9) & (whole["time_s"] < 2.35)
+    measured = {name: values[rows] for name, values in whole.items()}
+    assert measured["f_in_N"][-1] < measured["f_in_N"][0] - 10.0
+    assert measured["x_in_mm"][-1] > measured["x_in_mm"][0] + 5.0
+    assert "sign" not in complaints(measured)
+    assert "sign" in complaints(measured | {"f_in_N": -measured["f_in_N"]})
+
+
 def test_a_band_brake_whose_tight_side_changes_with_the_direction_is_no_exchange():
     measured = columns(Bench(load="force"))
     forward = np.gradient(np.convolve(measured["x_in_mm"], np.ones(9) / 9, mode="same")) > 0

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -189,7 +189,11 @@ class RunSignals:
 
     @cached_property
     def strokes(self) -> tuple[Stroke, ...]:
-        """The strokes of `x_in_mm` that are longer than a fifth of its span; none at rest."""
+        """The strokes of `x_in_mm` that are longer than a fifth of its span; none at rest.
+
+        A smaller motion before the first or after the last reversal is not part of a stroke: the
+        friction of the tendon changes over it as over a whole one.
+        """
         x = self.channels.get("x_in_mm")
         if x is None or not self.moves("x_in_mm"):
             return ()
@@ -197,10 +201,19 @@ class RunSignals:
         threshold = max(_STROKE * self.sizes["x_in_mm"].span, self.visible("x_in_mm"))
         reversals = valid[turning_points(x[valid], threshold)]
         return tuple(
-            Stroke(int(a), int(b), int(np.sign(x[b] - x[a])))
+            self._between_extremes(Stroke(int(a), int(b), int(np.sign(x[b] - x[a]))))
             for a, b in pairwise(reversals)
             if abs(x[b] - x[a]) > threshold
         )
+
+    def _between_extremes(self, stroke: Stroke) -> Stroke:
+        """Return a stroke from its lowest to its highest place, where its ends are visibly off."""
+        along = stroke.direction * self.channels["x_in_mm"][stroke.rows]
+        visible = self.visible("x_in_mm")
+        first, last = int(np.nanargmin(along)), int(np.nanargmax(along))
+        start = stroke.start + first if along[0] - along[first] > visible else stroke.start
+        stop = stroke.start + last if along[last] - along[-1] > visible else stroke.stop
+        return replace(stroke, start=start, stop=stop)
 
     @cached_property
     def stroke_s(self) -> float:
