@@ -48,7 +48,7 @@ def test_what_is_left_asks_for_the_run_that_shows_the_signal_it_depends_on(verdi
 def test_rivals_are_named_with_the_experiment_that_distinguishes_them(monkeypatch, run):
     asked = []
     monkeypatch.setattr(n, "propose", lambda bench, final, among, step: asked.append(among) or run)
-    judged = SimpleNamespace(bench=None)
+    judged = SimpleNamespace(bench=SimpleNamespace(channels=("f_in_N", "x_out_mm")))
     rivals = cause(PLAY, ("presliding", "drive_friction"))
     result = diagnosis("ambiguous", cause(MASS), rivals, judged=judged, final=object())
     said = n.next_experiment(result)
@@ -61,3 +61,12 @@ def test_rivals_are_named_with_the_experiment_that_distinguishes_them(monkeypatc
     rest = EXPERIMENT[PLAY] if run is None else f"Record {run.sentence}."
     assert said.removeprefix(start)[1:] == rest[1:]
     assert said[len(start)].islower()
+
+
+def test_where_one_channel_alone_is_compared_the_others_are_asked_for():
+    run = SimpleNamespace(measured={"f_in_N": None}, conditioned={"x_in_mm": None})
+    bench = SimpleNamespace(channels=("f_in_N",), closed=(SimpleNamespace(run=run),))
+    rivals = cause("position_dependent_friction", ("load_dependent_friction",))
+    judged = SimpleNamespace(bench=bench)
+    said = n.next_experiment(diagnosis("ambiguous", rivals, judged=judged, final=object()))
+    assert said.endswith(": record the same motion with f_out_N and x_out_mm too.")

@@ -1,10 +1,16 @@
 """The next experiment, for a stronger verdict."""
 
+from collections.abc import Sequence
+
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
 from tsas_cli.diagnosis.proof import BY_NAME
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.support.wording import listed
+
+RESPONSES = ("f_in_N", "f_out_N", "x_out_mm")
 
 # By the signal that a remaining residual depends on most: the recording that says most of it.
 OF_REMAINDER = {
@@ -42,9 +48,8 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     unsure = next((cause for cause in result.causes if cause.rivals), None)
     if unsure is not None and result.judged is not None and result.final is not None:
         among = [unsure.effect, *unsure.rivals]
-        run = propose(result.judged.bench, result.final, among, step)
         this, *others = [BY_NAME[name].title.lower() for name in among]
-        how = BY_NAME[unsure.effect].experiment if run is None else f"Record {run.sentence}."
+        how = _experiment(result.judged.bench, result.final, among, step)
         return f"To distinguish {this} from {listed(others, ' or ')}: {how[0].lower()}{how[1:]}"
     if result.unexplained:
         signals = () if result.remainder is None else result.remainder.depends_on
@@ -53,3 +58,16 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
         first = max(result.causes, key=lambda cause: cause.gain_percent)
         return BY_NAME[first.effect].experiment
     return "No effect is missing here; runs at other loads, speeds and bends would test more."
+
+
+def _experiment(
+    bench: Bench, final: HypothesisFit, among: Sequence[str], step: Steps = NO_PROGRESS
+) -> str:
+    """Return what tells effects apart: further channels where one alone is compared, or a run."""
+    if len(bench.channels) == 1:
+        recorded = bench.closed[0].run
+        known = (*recorded.measured, *recorded.conditioned)
+        missing = [name for name in RESPONSES if name not in known]
+        return f"Record the same motion with {listed(missing)} too."
+    run = propose(bench, final, among, step)
+    return BY_NAME[among[0]].experiment if run is None else f"Record {run.sentence}."
