@@ -11,7 +11,8 @@ from tsas_cli.diagnosis.faults import shapes
 from tsas_cli.diagnosis.faults.beside import Candidate, beside
 from tsas_cli.diagnosis.faults.candidates import candidates
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
-from tsas_cli.diagnosis.faults.words import record_of
+from tsas_cli.diagnosis.faults.words import differing, record_of
+from tsas_cli.diagnosis.tolerances import frictions_of
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
@@ -263,6 +264,18 @@ def test_a_friction_of_a_runs_own_is_beyond_three_deviations(friction, found):
         assert (best.code, best.channels, best.alone) == ("run-friction", (), True)
         assert best.amount == pytest.approx(friction if best.run else -friction, rel=0.02)
     assert s.fault_of_recording(search, ("run-friction",)) is None
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [(0.2, "by -10 % (run a) to +10 % (run b),"), (-0.2, "by -10 % (run b) to +10 % (run a),")],
+)
+def test_frictions_that_differ_by_more_than_scatter_are_said(more, said):
+    trial = trial_of(NOISE - more * JACOBIAN[:, 0] * RUN)
+    frictions = frictions_of(trial, TOLERATED, RUN)
+    assert frictions == pytest.approx([-0.5 * more, 0.5 * more], rel=0.02)
+    assert said in differing(frictions, ["a", "b"]).sentence
+    assert differing(0.55 * frictions, ["a", "b"]) is None
 
 
 def judged(monkeypatch, found, *, squares=200.0):

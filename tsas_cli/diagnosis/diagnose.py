@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
-from tsas_cli.diagnosis.faults.words import reason_of_fault, record_of, wandering
+from tsas_cli.diagnosis.faults.words import differing, reason_of_fault, record_of, wandering
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.intervals import estimates_with_tolerances
@@ -17,7 +17,7 @@ from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.diagnosis.rivals import find_effects
 from tsas_cli.diagnosis.search import Search, tried
-from tsas_cli.diagnosis.tolerances import tolerances
+from tsas_cli.diagnosis.tolerances import frictions_of, tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
 from tsas_cli.identification.extension import Bench, bench_of
@@ -220,6 +220,10 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
     by_causes = channel_errors(bench, *errors, start, after)
     fault = wandering(after) if verdict == "unexplained" else None
+    if verdict == "sufficient":
+        frictions = frictions_of(final, tolerances(bench, final), folds.run)
+        fault = differing(frictions, [errors.run.run.id for errors in bench.closed])
+        verdict = verdict if fault is None else "unexplained"
     reason = reason_of(verdict, causes, stand_ins, by_causes, after, law)
     if fault is not None:
         reason += f" {fault.sentence}."

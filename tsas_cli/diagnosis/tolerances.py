@@ -134,6 +134,16 @@ def _explained_by(
     return columns, np.asarray(amounts)
 
 
+def frictions_of(trial: HypothesisFit, tolerated: Floats, run: Indices) -> Floats:
+    """Return by which share the friction of each run exceeds the mean, beside tolerances, (runs,).
+
+    Empty where no friction is fitted, or one run alone is.
+    """
+    columns, amounts = _explained_by(trial, tolerated, run)
+    frictions = -SCATTER * amounts[: columns.shape[1] - tolerated.shape[1]]
+    return frictions - frictions.mean() if frictions.size else frictions
+
+
 def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduction: float) -> bool:
     """Return whether most of what an effect changes is what plausible tolerances change too.
 

@@ -3,10 +3,15 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np
+
 from tsas_cli.diagnosis.faults.beside import Candidate
+from tsas_cli.diagnosis.faults.candidates import MOST_SCATTER
+from tsas_cli.diagnosis.friction_scatter import SCATTER
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.diagnosis import RecordingFault
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import listed
 
 REMEDY = "Correct it{} and diagnose again"
@@ -49,6 +54,22 @@ def wandering(left: Remainder) -> RecordingFault | None:
         "follows no signal of the motion, as of an amplifier or a mounting that drifts"
     )
     return RecordingFault(code="wanders", column=name, sentence=sentence)
+
+
+def differing(frictions: Floats, runs: Sequence[str]) -> RecordingFault | None:
+    """Return that the frictions of the runs, shares over their mean, differ by more than scatter.
+
+    Of many runs the extremes are said.
+    """
+    if not frictions.size or np.abs(frictions).max() <= MOST_SCATTER * SCATTER:
+        return None
+    order = np.argsort(frictions)
+    said = [f"{100.0 * frictions[k]:+.0f} % (run {runs[k]})" for k in (order[0], order[-1])]
+    sentence = (
+        f"Friction differs from run to run by {' to '.join(said)}, as by humidity, lubrication "
+        "or wear, or where the stated bends are wrong"
+    )
+    return RecordingFault(code="run-frictions", sentence=sentence)
 
 
 def _sentence(c: Candidate, runs: Sequence[str]) -> str:
