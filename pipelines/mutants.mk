@@ -8,4 +8,4 @@ MUTANTS_SEED ?= 1
 
 .PHONY: mutants
 mutants: setup  ## judge the tests by mutants of the model, the fits and the diagnosis
-	@$(BIN)/python -m benchmarks.mutants --size $(MUTANTS) --seed $(MUTANTS_SEED)
+	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mutants --size $(MUTANTS) --seed $(MUTANTS_SEED)
