@@ -250,7 +250,7 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
     def judged(search, fits, found):
         causes = [cause for cause in (fails, holds) if cause.effect in search.named]
         after = SimpleNamespace(complete=complete)
-        return p.Proven(search, fits, tuple(causes), found, (), {}, after, after)
+        return p.Proven(search, fits, tuple(causes), found, (), {}, after, after, None)
 
     monkeypatch.setattr(p, "_judged", judged)
     monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)

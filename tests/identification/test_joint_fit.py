@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
+from tsas_cli.identification import fit_sentences as fs
 from tsas_cli.identification import joint_fit as j
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown
@@ -140,7 +141,7 @@ def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, hi
 
 
 def doubts(*estimates, **how):
-    return j.doubts_of(estimates, fitted([0.0], [1.0], **how))
+    return fs.doubts_of(estimates, fitted([0.0], [1.0], **how))
 
 
 def test_a_good_fit_leaves_no_doubt():
@@ -180,7 +181,7 @@ def test_what_has_no_error_or_no_end_is_said():
 def test_what_is_fixed_is_said_once_for_each_reason():
     unknowns = [unknown(FRICTION), unknown(ZERO, 0), unknown(ZERO, 1), unknown("preload_N", 1)]
     problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
-    assert j.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
+    assert fs.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
         (
             "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
             "from these recordings; it is fixed at 0.25 mm."

@@ -221,7 +221,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     by_causes = channel_errors(bench, *errors, start, after)
     fault = wandering(after) if verdict == "unexplained" else None
     if verdict == "sufficient":
-        frictions = frictions_of(final, tolerances(bench, final), folds.run)
+        frictions = frictions_of(final, proven.tolerated, folds.run)
         fault = differing(frictions, [errors.run.run.id for errors in bench.closed])
         verdict = verdict if fault is None else "unexplained"
     reason = reason_of(verdict, causes, stand_ins, by_causes, after, law)

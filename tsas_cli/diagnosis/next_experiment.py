@@ -7,10 +7,9 @@ from tsas_cli.diagnosis.plan import propose
 from tsas_cli.diagnosis.proof import BY_NAME
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.support.wording import listed
-
-RESPONSES = ("f_in_N", "f_out_N", "x_out_mm")
 
 # By the signal that a remaining residual depends on most: the recording that says most of it.
 OF_REMAINDER = {
@@ -60,14 +59,12 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     return "No effect is missing here; runs at other loads, speeds and bends would test more."
 
 
-def _experiment(
-    bench: Bench, final: HypothesisFit, among: Sequence[str], step: Steps = NO_PROGRESS
-) -> str:
+def _experiment(bench: Bench, final: HypothesisFit, among: Sequence[str], step: Steps) -> str:
     """Return what tells effects apart: further channels where one alone is compared, or a run."""
     if len(bench.channels) == 1:
         recorded = bench.closed[0].run
         known = (*recorded.measured, *recorded.conditioned)
-        missing = [name for name in RESPONSES if name not in known]
+        missing = [name for name in CHANNELS if name not in known]
         return f"Record the same motion with {listed(missing)} too."
     run = propose(bench, final, among, step)
     return BY_NAME[among[0]].experiment if run is None else f"Record {run.sentence}."

@@ -40,7 +40,8 @@ class Proven:
 
     `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
     `start` is what remains without them and `after` what remains with them; `with_stand_ins` are
-    the estimates with all effects that gain.
+    the estimates with all effects that gain. `tolerated` is what one standard deviation of each
+    tolerance changes in the fit of the causes, shape (n, m).
     """
 
     search: Hypotheses
@@ -51,6 +52,7 @@ class Proven:
     held_out: Mapping[frozenset[str], HeldOutFit]
     start: Remainder
     after: Remainder
+    tolerated: Floats
     with_stand_ins: tuple[Estimate, ...] = ()
 
 
@@ -107,7 +109,7 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
         start = remainder_of(bench, judged.trial(frozenset(), on_mesh=mesh), judged.folds)
     causes = tuple(_beside_what_is_left(cause, start, after) for cause in causes)
     estimates = tuple(found.estimates)
-    return Proven(search, judged, causes, stand_ins, estimates, held_out, start, after)
+    return Proven(search, judged, causes, stand_ins, estimates, held_out, start, after, tolerated)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from tsas_cli.diagnosis.faults.beside import Beside, Candidate, beside, one
 from tsas_cli.diagnosis.faults.hum import swings
@@ -53,7 +52,7 @@ def candidates(
         *(c for constant_s in CONSTANTS_S for c in of_amplifiers(reads, left, constant_s)),
         *_of_saturation(reads, left),
         *_of_manifest(bench, trial, left, run),
-        *_of_hum(reads, left),
+        *_of_hum(reads, left, run),
         *(c for late_s in LATE_S for c in _of_shifts(reads, left, run, late_s)),
     ]
     return sorted(found, key=lambda c: -c.reduction)
@@ -196,10 +195,11 @@ def _of_manifest(
         yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)
 
 
-def _of_hum(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
+def _of_hum(reads: Sequence[ReadRun], left: Beside, run: Indices) -> Iterator[Candidate]:
     """Yield a swing of a channel at one frequency in all runs."""
     for name, frequency, columns in swings(reads, _common(reads)):
-        basis = np.linalg.qr(left.project(block_diag(*columns)))[0]
+        of_runs = [_in_run(own, run == k) for k, own in enumerate(columns)]
+        basis = np.linalg.qr(left.project(np.hstack(of_runs)))[0]
         along = basis.T @ left.residual
         yield Candidate("hum", None, (name,), frequency, float(along @ along))
 

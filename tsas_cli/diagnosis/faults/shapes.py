@@ -67,7 +67,7 @@ class ReadRun:
             return since
         return since - self.changed(name, reading * (self.time_s >= last_s))
 
-    def late(self, name: str, late_s: float) -> Floats:
+    def late(self, name: str, late_s: float | Floats) -> Floats:
         """Return how much more a channel reads that comes late by that, shape (n,)."""
         values = self.values(name)
         return np.interp(self.time_s - late_s, self.time_s, values) - values
@@ -130,8 +130,7 @@ def shapes_of(read: ReadRun) -> RunShapes:
         pace[name] = read.changed(name, speed * time_s)
         if name in read.errors.samples:
             clocked[name] = {
-                rate: read.changed(name, np.interp((1.0 + rate) * time_s, time_s, values) - values)
-                for rate in RATES
+                rate: read.changed(name, read.late(name, -rate * time_s)) for rate in RATES
             }
     return RunShapes(time_s[read.starts], offset, gain, late, pace, clocked)
 

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.laws import FAST, HIGH, LOW, SLOW
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.stops import (
     ELEMENTS,
@@ -120,8 +121,10 @@ def drive_law_at(law: Floats, memory: Floats, x: float, speed: float, tension: f
     for k in range(GAPS):
         at = FIRST + 2 * ELEMENTS + k
         force += (law[at] + law[at + GAPS] * tension) * beyond_gap(memory[1 + ELEMENTS + k])
-    force *= 1.0 + speed_curve_at(speed, law[3], law[4], law[LAST + KNOTS], law[LAST + KNOTS + 1])
-    return force + curve_at(x, law[1], law[2], law[LAST : LAST + KNOTS])
+    force *= 1.0 + speed_curve_at(
+        speed, law[SLOW], law[FAST], law[LAST + KNOTS], law[LAST + KNOTS + 1]
+    )
+    return force + curve_at(x, law[LOW], law[HIGH], law[LAST : LAST + KNOTS])
 
 
 DRIVE_LAW = Effect(

@@ -18,11 +18,14 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.laws import FAST, HIGH, LOW, SLOW, TRAVEL
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.stops import RATIO, curve_at, speed_curve_at
 from tsas_cli.support.arrays import Floats
 
 STARTS = 4
+FIRST_START = 5  # of the fields in a row
+HEIGHTS = FIRST_START + STARTS  # of the curve, then those over speed
 
 
 class TendonLaw(NamedTuple):
@@ -65,10 +68,11 @@ def _factors(law: Floats, x: Floats, travel: Floats, speed: Floats) -> Floats:
 @kernel
 def tendon_law_at(law: Floats, x: float, travel: float, speed: float) -> float:
     """Return the factor at one moment [1]; `law` are the fields of `TendonLaw`, shape (15,)."""
-    factor = 1.0 + curve_at(x, law[1], law[2], (0.0, law[9], law[10], law[11], law[12]))
+    heights = (0.0, law[HEIGHTS], law[HEIGHTS + 1], law[HEIGHTS + 2], law[HEIGHTS + 3])
+    factor = 1.0 + curve_at(x, law[LOW], law[HIGH], heights)
     for k in range(STARTS):
-        factor += law[5 + k] * math.exp(-travel / (law[0] * RATIO**k))
-    factor += speed_curve_at(speed, law[3], law[4], law[13], law[14])
+        factor += law[FIRST_START + k] * math.exp(-travel / (law[TRAVEL] * RATIO**k))
+    factor += speed_curve_at(speed, law[SLOW], law[FAST], law[HEIGHTS + 4], law[HEIGHTS + 5])
     return max(factor, 0.0)
 
 

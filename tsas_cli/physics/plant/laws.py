@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tsas_cli.effects.laws import TRAVEL
 from tsas_cli.effects.laws.drive_law import drive_law_at, drive_law_widths
 from tsas_cli.effects.laws.tendon_law import STARTS, tendon_law_at
 from tsas_cli.numerics.compiled import kernel
@@ -76,7 +77,7 @@ def beside_drive(state: Floats, p: float, table: Turntable, h: float, laws: Plan
     state[SPEED] += -math.expm1(-h / SPEED_LAG_S) * (table.speed - state[SPEED])
     tension = table.f_in - state[AHEAD] - state[SLOPE] * p
     here = drive_law_at(laws.drive, memory, p, state[SPEED], tension)
-    rise = math.copysign(max(abs(table.speed * h), NEAREST * laws.drive[0]), table.speed)
+    rise = math.copysign(max(abs(table.speed * h), NEAREST * laws.drive[TRAVEL]), table.speed)
     ahead = memory.copy()
     move_elements(p + rise, laws.widths, ahead)
     there = drive_law_at(laws.drive, ahead, p + rise, state[SPEED], tension)
@@ -99,7 +100,7 @@ def friction_of_tendon(state: Floats, p: float, laws: PlantLaws) -> float:
 @kernel
 def resolved_mm(laws: PlantLaws) -> float:
     """Return by how much the tendon's end has to move back for a reversal [mm]."""
-    longest: float = laws.tendon[0]
+    longest: float = laws.tendon[TRAVEL]
     return RESOLVED * longest * RATIO ** (STARTS - 1)
 
 
