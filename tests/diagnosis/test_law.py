@@ -115,6 +115,21 @@ def test_a_cost_that_holds_the_law_back_is_lowered_while_held_out_runs_gain(tmp_
     assert lowered.bench.priors[name] == pytest.approx(held_back.bench.priors[name] * 0.3**2)
 
 
+@pytest.mark.parametrize(
+    ("effect", "beside"), [("force_sensor_tilt", ("force_sensor_tilt",)), ("load_damping", ())]
+)
+def test_a_law_acts_beside_what_is_not_proven_where_that_predicts_better(tmp_path, effect, beside):
+    """A cell tilts by 5 % over the stroke, which no law describes; no load is damped."""
+    sensors = Sensors(rate_Hz=50.0, f_out_tilt_per_mm=0.005)
+    sensors = replace(sensors, x_out_transducer=Transducer(play=PLAY_MM))
+    bench = bench_for(tmp_path / "dataset", sensors)
+    unproven = bench.fit([effect])
+    law = describe(bench, bench.fit(), bench_folds(bench), unproven=unproven)
+    assert law.beside == beside
+    assert "load_law" in law.names
+    assert law.after.rmse["x_out_mm"] < 1.3 * NOISE_MM
+
+
 def test_a_sound_rig_has_no_law(tmp_path):
     assert described(tmp_path / "dataset", Sensors(rate_Hz=50.0)) is None
 

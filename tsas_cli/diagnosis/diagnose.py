@@ -208,7 +208,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     complete = after.complete and not any(cause.law_differs for cause in causes)
     law = None
     if not after.complete:
-        law = describe(bench, final, predicted_folds(final, folds), step)
+        law = describe(bench, final, predicted_folds(final, folds), step, proven.whole)
     if law is not None:  # one number of one name: before the law is after the causes
         law = replace(law, before=proven.held_out[named])
     verdict = verdict_of(

@@ -49,7 +49,8 @@ class Law:
 
     `rivals` are other sets of as many laws that describe it as well. `before` and `after` are the
     errors on held-out data without the laws and with them, weighted alike; `bench` and `trial` are
-    the fit, `covariance` is that of its scaled values, shape (p, p).
+    the fit, `covariance` is that of its scaled values, shape (p, p). `beside` are effects that are
+    not proven and act too.
     """
 
     names: tuple[str, ...]
@@ -60,6 +61,7 @@ class Law:
     bench: Bench
     trial: HypothesisFit
     covariance: Floats
+    beside: tuple[str, ...] = ()
 
 
 class _Predicting(NamedTuple):
@@ -72,36 +74,84 @@ class _Predicting(NamedTuple):
     part: float
 
 
+class _Found(NamedTuple):
+    """The chosen laws with their bench, and the other sets that do as well."""
+
+    bench: Bench
+    best: _Predicting
+    rivals: tuple[str, ...]
+
+
 def describe(
     bench: Bench,
     trial: HypothesisFit,
     folds: Folds,
     step: Steps = NO_PROGRESS,
+    unproven: HypothesisFit | None = None,
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
+
+    `unproven` is the trial with further effects that gain and are not proven. Where they predict,
+    laws are sought beside these effects first.
+    """
+    ranges = ranges_of([run.run for run in bench.closed])
+    bench = in_channel_units(bench, trial, ranges)
+    starts = [_without_slopes(trial)]
+    if unproven is not None:
+        step.doing("fits the effects that are not proven")
+        starts = _better_first(bench, starts[0], _without_slopes(unproven), folds)
+    found = next(
+        filter(None, (_found(bench, start, folds, ranges, step) for start in starts)), None
+    )
+    if found is None:
+        return None
+    bench, best, rivals = found
+    solution = best.trial.solution
+    covariance, _ = jackknife(
+        solution.jacobian * ~solution.at_bound, solution.residual, folds.block
+    )
+    return Law(
+        best.names,
+        rivals,
+        tuple(_estimates(bench, best.trial, folds, ranges, best.names)),
+        best.before,
+        best.after,
+        bench,
+        best.trial,
+        covariance,
+        tuple(sorted({*best.trial.effects} - {*trial.effects, *best.names})),
+    )
+
+
+def _found(
+    bench: Bench,
+    start: HypothesisFit,
+    folds: Folds,
+    ranges: Mapping[str, Mapping[str, float]],
+    step: Steps,
+) -> _Found | None:
+    """Return the laws that predict beside the effects of a trial, or None.
 
     Laws are tried alone and together, since the nominal parameters trade with what a missing law
     leaves, until all channels are at the noise level. Of the sets that predict, the one that
     reduces the squares most; one of fewer laws if that does as well.
     """
-    ranges = ranges_of([run.run for run in bench.closed])
-    bench, start = in_channel_units(bench, trial, ranges), _without_slopes(trial)
     possible = {n for n in CHANGES if n in ranges and CHANGES[n] in bench.channels}
     sets = [names for names in SETS if possible.issuperset(names)]
     noise = {name: noise_floor(bench, name, 0.0) for name in bench.channels}
     step.ahead(len(sets))
-    scatter = scatter_is_no_effect(trial, folds.run)
+    scatter = scatter_is_no_effect(start, folds.run)
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
     found: list[_Predicting] = []
     for names in sets:
         step.doing(f"fits laws of unnamed origin: {' + '.join(names)}")
-        mesh = trial.on_mesh or bench.on_mesh(names)
+        mesh = start.on_mesh or bench.on_mesh(names)
         if mesh not in held_out:
-            without = bench.fit(sorted(trial.effects), near=start, on_mesh=mesh)
+            without = bench.fit(sorted(start.effects), near=start, on_mesh=mesh)
             held_out[mesh] = without, refitted(bench, without, folds, scatter=scatter)
         without, before = held_out[mesh]
         bench = replace(bench, priors=priors_of(bench, without, folds))
-        fitted = bench.fit([*sorted(trial.effects), *names], near=without, on_mesh=mesh)
+        fitted = bench.fit([*sorted(start.effects), *names], near=without, on_mesh=mesh)
         step()
         fewer = [f.trial.mean_square for f in found if len(f.names) < len(names)]
         enough = LEAST_TAKEN * _excess(noise, before)
@@ -120,23 +170,22 @@ def describe(
     most = max(f.part for f in found)
     as_good = [f for f in found if 1.0 - f.part <= (1.0 + AS_WELL) * (1.0 - most)]
     best = min(as_good, key=lambda f: (len(f.names), -f.part))
-    rivals = [f for f in as_good if len(f.names) == len(best.names) and f is not best]
+    rivals = ["+".join(f.names) for f in as_good if len(f.names) == len(best.names)]
+    rivals.remove("+".join(best.names))
     step.doing(f"fits {' + '.join(best.names)} with a lower cost of its parameters")
-    bench, best = _at_lower_cost(bench, best, folds, scatter=scatter)
-    solution = best.trial.solution
-    covariance, _ = jackknife(
-        solution.jacobian * ~solution.at_bound, solution.residual, folds.block
-    )
-    return Law(
-        best.names,
-        tuple("+".join(f.names) for f in rivals),
-        tuple(_estimates(bench, best.trial, folds, ranges, best.names)),
-        best.before,
-        best.after,
-        bench,
-        best.trial,
-        covariance,
-    )
+    return _Found(*_at_lower_cost(bench, best, folds, scatter=scatter), tuple(rivals))
+
+
+def _better_first(
+    bench: Bench, trial: HypothesisFit, unproven: HypothesisFit, folds: Folds
+) -> list[HypothesisFit]:
+    """Return a trial, after that with effects that are not proven where this predicts better."""
+    mesh = bench.on_mesh([*trial.effects, *unproven.effects])
+    scatter = scatter_is_no_effect(trial, folds.run)
+    fits = [bench.fit(sorted(t.effects), near=t, on_mesh=mesh) for t in (unproven, trial)]
+    after, before = (refitted(bench, fit, folds, scatter=scatter) for fit in fits)
+    better = gain(before.squares, after.squares).beyond(AS_WELL) and not _worse(before, after)
+    return fits if better else [trial]
 
 
 def _at_lower_cost(

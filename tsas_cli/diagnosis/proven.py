@@ -27,6 +27,7 @@ from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of, sha
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
 
@@ -54,6 +55,7 @@ class Proven:
     after: Remainder
     tolerated: Floats
     with_stand_ins: tuple[Estimate, ...] = ()
+    whole: HypothesisFit | None = None
 
 
 def proven_effects(search: Hypotheses, step: Steps) -> Proven:
@@ -65,10 +67,12 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """
     stand_ins: list[FoundCause] = []
     first: tuple[Estimate, ...] | None = None
+    whole: HypothesisFit | None = None
     while True:
         judged = reweighted_hypotheses(search, step) if search.named else search
         proven = _judged(search, judged, tuple(stand_ins))
         first = first or proven.estimates
+        whole = whole or judged.trial(judged.named)
         failing = [cause for cause in proven.causes if cause.failed]
         if not failing:
             if proven.after.complete:
@@ -78,7 +82,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
                     if cause.convincing and not may_be_zero(cause.effect, cause.parameters)
                 ]
                 proven = replace(proven, stand_ins=tuple(kept))
-            return replace(proven, with_stand_ins=first)
+            return replace(proven, with_stand_ins=first, whole=whole if stand_ins else None)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
         if not weakest.negligible:
             stand_ins.append(weakest)

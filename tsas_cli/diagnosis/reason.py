@@ -86,9 +86,10 @@ def reason_of(
             if now < law.before.rmse[name]
             and number_text(now) != number_text(law.before.rmse[name])
         ]
+        beside = f", beside {listed([_title(e) for e in law.beside])}," if law.beside else ""
         sentences.append(
-            "A law of unnamed origin describes it: with it the RMS on held-out data falls in "
-            f"{listed(falls)}."
+            f"A law of unnamed origin{beside} describes it: with it the RMS on held-out data falls "
+            f"in {listed(falls)}."
         )
     return " ".join(text[0].upper() + text[1:] for text in sentences)
 
