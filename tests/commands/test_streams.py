@@ -149,14 +149,14 @@ def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
 
 ENDED = """
 import signal, sys
-import tsas_cli.diagnosis.search as search
+from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.app import run
-fit = search.Search._fit
+fit = Fits.fit
 def stopped(self, *rest):
     fit(self, *rest)
     for _ in range({times}):
         signal.raise_signal(signal.SIGINT)
-search.Search._fit = stopped
+Fits.fit = stopped
 sys.argv = ["tsas", "diagnose", {dataset!r}, "--out", {out!r}]
 run()
 """

@@ -7,10 +7,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis import fits as fits_module
+from tsas_cli.diagnosis import rivals as rivals_module
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.rivals import exchanged, rivals_of
-from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
 
@@ -55,16 +57,16 @@ def evenly(trial, folds):
 
 def without_tolerances(monkeypatch):
     """Let rigs be without tolerances."""
-    monkeypatch.setattr(s, "tolerances", lambda bench, trial: None)
-    monkeypatch.setattr(s, "with_tolerances", lambda trial, tolerated: trial)
-    monkeypatch.setattr(s, "with_friction_of_runs", lambda trial, run: trial)
-    monkeypatch.setattr(s, "is_in_line", lambda trial, run, session_s: False)
+    monkeypatch.setattr(fits_module, "tolerances", lambda bench, trial: None)
+    monkeypatch.setattr(fits_module, "with_tolerances", lambda trial, tolerated: trial)
+    monkeypatch.setattr(fits_module, "with_friction_of_runs", lambda trial, run: trial)
+    monkeypatch.setattr(fits_module, "is_in_line", lambda trial, run, session_s: False)
 
 
-def search_over(bench, known):
+def fits_over(bench, known):
     folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS, run=None)
     effects = tuple(OF[name] for name in sorted(known))
-    return Search(bench, folds, effects=effects, tolerated={False: None, True: None})
+    return Fits(bench, folds, effects=effects, tolerated={False: None, True: None})
 
 
 def screened(name, part=0.5, signatures=None):
@@ -73,29 +75,30 @@ def screened(name, part=0.5, signatures=None):
 
 
 A, B, C, D, E = "backlash", "drive_friction", "free_tendon", "load_friction", "load_inertia"
+ALL_CONVINCE = [(name, Reduction(0.5, 4.0)) for name in (A, C, D)]
 CONVINCES, DOES_NOT = Reduction(0.5, 4.0), Reduction(0.5, 1.0)
 
 
 @pytest.fixture
 def made(monkeypatch):
     """A search over given mean squares; a trial's held-out squares are spread evenly."""
-    monkeypatch.setattr(s, "held_out_squares", evenly)
+    monkeypatch.setattr(fits_module, "held_out_squares", evenly)
     without_tolerances(monkeypatch)
-    return lambda mean_squares: search_over(Bench(mean_squares), (A, C, D))
+    return lambda mean_squares: fits_over(Bench(mean_squares), (A, C, D))
 
 
 @pytest.mark.parametrize(("left", "quiet"), [(1.149, True), (1.151, False)])
-def test_it_is_quiet_where_the_blur_of_a_right_model_begins(made, left, quiet):
-    search = made({names(A): left})
-    search.is_complete = lambda names: False
-    assert search.is_quiet(names(A)) == quiet
+def test_it_is_quiet_where_the_blur_of_a_right_model_begins(made, left, quiet, monkeypatch):
+    fits = made({names(A): left})
+    monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
+    assert s.is_quiet(fits, names(A)) == quiet
 
 
 @pytest.mark.parametrize(("left", "quiet"), [(2.9, True), (3.1, False)])
-def test_slow_noise_is_quiet_too_up_to_its_limit(made, left, quiet):
-    search = made({names(A): left})
-    search.is_complete = lambda names: True
-    assert search.is_quiet(names(A)) == quiet
+def test_slow_noise_is_quiet_too_up_to_its_limit(made, left, quiet, monkeypatch):
+    fits = made({names(A): left})
+    monkeypatch.setattr(s, "is_complete", lambda fits, names: True)
+    assert s.is_quiet(fits, names(A)) == quiet
 
 
 @pytest.mark.parametrize(
@@ -113,21 +116,21 @@ def test_slow_noise_is_quiet_too_up_to_its_limit(made, left, quiet):
     ],
 )
 def test_a_cause_matters_by_its_share(made, nothing, one, two, matters):
-    search = made({names(): nothing, names(A): one, names(A, C): two})
+    fits = made({names(): nothing, names(A): one, names(A, C): two})
     if two is None:
-        assert search.matters(names(), {A}) == matters
+        assert s.matters(fits, names(), {A}) == matters
     else:
-        assert search.matters(names(A), {C}) == matters
+        assert s.matters(fits, names(A), {C}) == matters
 
 
 def test_gains_are_those_of_the_squares(made):
-    search = made({names(): 4.0, names(A): 1.0})
-    found = search.gain(names(), names(A))
+    fits = made({names(): 4.0, names(A): 1.0})
+    found = fits.gain(names(), names(A))
     assert found.part == pytest.approx(0.75)
     assert found.test_statistic == pytest.approx(
         np.sqrt(1.5 * BLOCKS * (BLOCKS + 1) / (2 * BLOCKS + 1))
     )
-    assert search.gain(names(A), names()).part == pytest.approx(-3.0)
+    assert fits.gain(names(A), names()).part == pytest.approx(-3.0)
 
 
 @pytest.mark.parametrize(("in_line", "part"), [(False, 0.75), (True, 0.5)])
@@ -137,85 +140,87 @@ def test_gains_are_beside_the_friction_of_each_run_unless_it_changes_with_the_se
     """Own frictions leave half of what the effect leaves, and all that none leaves."""
     halved = {2.0: 1.0, 4.0: 4.0}
     monkeypatch.setattr(
-        s,
+        fits_module,
         "with_friction_of_runs",
         lambda trial, run: SimpleNamespace(mean_square=halved[trial.mean_square]),
     )
-    monkeypatch.setattr(s, "is_in_line", lambda trial, run, session_s: in_line)
-    search = made({names(): 4.0, names(A): 2.0})
-    assert search.gain(names(), names(A)).part == pytest.approx(part)
+    monkeypatch.setattr(fits_module, "is_in_line", lambda trial, run, session_s: in_line)
+    fits = made({names(): 4.0, names(A): 2.0})
+    assert fits.gain(names(), names(A)).part == pytest.approx(part)
 
 
-def seen(search, at, *parts, signatures=None):
-    search.screened[at] = [
+def seen(fits, at, *parts, signatures=None):
+    fits.screened[at] = [
         screened(name, part, None if signatures is None else signatures[name])
         for name, part in parts
     ]
 
 
 def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
-    search = made({names(): 4.0, names(A): 3.0, names(C): 2.0, names(D): 1.0})
-    seen(search, names(), (A, 0.5), (C, 0.11), (D, 0.09))  # a fifth of the best is 0.1
-    assert [name for name, _ in search.add(names())] == [C, A]
-    assert names(D) not in search.bench.fitted
+    fits = made({names(): 4.0, names(A): 3.0, names(C): 2.0, names(D): 1.0})
+    seen(fits, names(), (A, 0.5), (C, 0.11), (D, 0.09))  # a fifth of the best is 0.1
+    assert [name for name, _ in s.add(fits, names())] == [C, A]
+    assert names(D) not in fits.bench.fitted
 
 
 @pytest.mark.parametrize(("least", "found"), [(0.99, [C, A]), (1.01, [A])])
 def test_what_cannot_reduce_the_squares_enough_is_not_fitted(made, least, found):
     """Of 4.0, 0.4 of a reduction by one is a tenth."""
-    search = made({names(): 4.0, names(A): 3.0, names(C): 2.0})
-    seen(search, names(), (A, 0.4), (C, 0.1))
-    assert [name for name, _ in search.add(names(), least)] == found
+    fits = made({names(): 4.0, names(A): 3.0, names(C): 2.0})
+    seen(fits, names(), (A, 0.4), (C, 0.1))
+    assert [name for name, _ in s.add(fits, names(), least)] == found
 
 
 def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
     parameter = OF[C].parameters[0]
     start = {f"{C}.{parameter.name}": parameter.neutral + 1.0}
-    search = made({names(): 4.0, names(C): [9.0, 5.0, 3.0]})
-    search._fit(names(), names(C), start)
-    starts = [fit.start for fit in search.bench.fits if fit.fitted == names(C)]
+    fits = made({names(): 4.0, names(C): [9.0, 5.0, 3.0]})
+    fits.fit(names(), names(C), start)
+    starts = [fit.start for fit in fits.bench.fits if fit.fitted == names(C)]
     away = [next(iter(at.values())) - parameter.neutral for at in starts]
     assert away == pytest.approx([1.0, 0.2, 0.04])
-    assert search.trial(names(C)).mean_square == 3.0
+    assert fits.trial(names(C)).mean_square == 3.0
 
 
-def test_rivals_convince_too_and_are_not_surely_worse(made):
-    search = made({names(C): 1.001, names(D): 1.001, names(A): 1.0, names(): 4.0})
-    search.add = lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, DOES_NOT)]
-    assert rivals_of(search, names(A), A) == (C,)  # itself is none, and D convinces nobody
+def test_rivals_convince_too_and_are_not_surely_worse(made, monkeypatch):
+    fits = made({names(C): 1.001, names(D): 1.001, names(A): 1.0, names(): 4.0})
+    monkeypatch.setattr(
+        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, DOES_NOT)]
+    )
+    assert rivals_of(fits, names(A), A) == (C,)  # itself is none, and D convinces nobody
     worse = made({names(C): 1.02, names(A): 1.0, names(): 4.0})
     worse.add = lambda *_: [(C, CONVINCES)]
     assert rivals_of(worse, names(A), A) == ()
-    search.trial(names(C)).solution.converged = False
-    assert rivals_of(search, names(A), A) == ()
+    fits.trial(names(C)).solution.converged = False
+    assert rivals_of(fits, names(A), A) == ()
 
 
 @pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (C,))])
 def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
     """Of 4.0 the named one takes 3.0 away; 0.4 of that is 0.3 of the squares."""
-    search = made({names(): 4.0, names(A): 1.0, names(C): 1.0})
-    seen(search, names(), (A, 0.75), (C, part))
-    assert rivals_of(search, names(A), A) == rivals
+    fits = made({names(): 4.0, names(A): 1.0, names(C): 1.0})
+    seen(fits, names(), (A, 0.75), (C, part))
+    assert rivals_of(fits, names(A), A) == rivals
 
 
 @pytest.mark.parametrize(
     ("unsure", "of_forms", "rivals"),
     [(0.0, 0.0, ()), (0.025, 0.0, ()), (0.035, 0.0, (C,)), (0.0, 0.04, ()), (0.0, 0.06, (C,))],
 )
-def test_an_effect_that_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals):
+def test_what_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals, monkeypatch):
     """4 % more: beyond the one per cent that tells right models apart; it takes 5 % less away."""
-    search = made({names(): 9.0, names(A): 4.8, names(C): 5.0})
-    search.add = lambda before, least=0.0: [(C, CONVINCES)]
-    assert rivals_of(search, names(A), A, unsure, of_forms) == rivals
+    fits = made({names(): 9.0, names(A): 4.8, names(C): 5.0})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
+    assert rivals_of(fits, names(A), A, unsure, of_forms) == rivals
 
 
 def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
     """One after the other, in the order of their names."""
     squares = {names(A, C, D): 1.0, names(C, D): 1.01, names(D): 1.02, names(C): 2.0}
     squares |= {names(A, D): 1.5, names(A, C): 3.0, names(): 1.02}
-    assert made(squares)._without_redundant(names(A, C, D)) == names(D)
+    assert s._without_redundant(made(squares), names(A, C, D)) == names(D)
     needed = {k: (1.0 if k == names(A, C, D) else 9.0) for k in squares}
-    assert made(needed)._without_redundant(names(A, C, D)) == names(A, C, D)
+    assert s._without_redundant(made(needed), names(A, C, D)) == names(A, C, D)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -228,12 +233,12 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
         C: (common + 0.1 * apart)[:, None],
         D: other[:, None],
     }
-    search = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
-    search.trial(names()).solution.residual = sign * apart
-    seen(search, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
-    assert search._best_pair(names()) == names(A, C)
-    assert set(search.bench.fitted) == {names(), names(A, C)}
-    assert search._better(names()) == [names(A, C)]
+    fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
+    fits.trial(names()).solution.residual = sign * apart
+    seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
+    assert s._best_pair(fits, names()) == names(A, C)
+    assert set(fits.bench.fitted) == {names(), names(A, C)}
+    assert s._better(fits, names()) == [names(A, C)]
 
 
 @pytest.mark.parametrize("squares", [3.99, 3.5])
@@ -241,35 +246,39 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     rng = np.random.default_rng(3)
     common, apart = np.linalg.qr(rng.standard_normal((SIZE, 2)))[0].T
     signatures = {A: common[:, None], C: (common + 0.1 * apart)[:, None]}
-    search = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
-    search.trial(names()).solution.residual = apart
-    seen(search, names(), (A, 0.0), (C, 0.01), signatures=signatures)
-    assert search._best_pair(names()) is None
-    assert search._better(names()) == []
+    fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
+    fits.trial(names()).solution.residual = apart
+    seen(fits, names(), (A, 0.0), (C, 0.01), signatures=signatures)
+    assert s._best_pair(fits, names()) is None
+    assert s._better(fits, names()) == []
 
 
-def test_a_rival_that_is_better_beside_the_others_takes_the_place_of_a_named_effect(made):
+def test_a_rival_that_is_better_beside_the_others_takes_its_place(made, monkeypatch):
     """Found first, C is worse than D once A is there; alone, it is better."""
     alone = {names(): 9.0, names(A): 5.0, names(C): 3.0, names(D): 4.0}
-    search = made(alone | {names(A, C): 1.2, names(A, D): 1.0, names(C, D): 2.9})
-    search.add = lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
-    assert exchanged(search, names(A, C)) == names(A, D)
-    assert exchanged(search, names(A, D)) == names(A, D)
+    fits = made(alone | {names(A, C): 1.2, names(A, D): 1.0, names(C, D): 2.9})
+    monkeypatch.setattr(
+        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
+    )
+    assert exchanged(fits, names(A, C)) == names(A, D)
+    assert exchanged(fits, names(A, D)) == names(A, D)
 
 
-def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made):
+def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made, monkeypatch):
     """A size at its bound does not count, a shape does."""
-    search = made({names(): 9.0, names(A): 1.0, names(C): 1.0, names(D): 1.5})
-    search.add = lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
-    assert exchanged(search, names(A)) == names(A)
-    assert exchanged(search, names(C)) == names(C)
+    fits = made({names(): 9.0, names(A): 1.0, names(C): 1.0, names(D): 1.5})
+    monkeypatch.setattr(
+        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
+    )
+    assert exchanged(fits, names(A)) == names(A)
+    assert exchanged(fits, names(C)) == names(C)
     for name, at_bound in ((A, [False]), (C, [True, False])):
-        fit = search.trial(names(name))
+        fit = fits.trial(names(name))
         fit.unknowns = [SimpleNamespace(name=f"{name}.{p.name}") for p in OF[name].parameters]
         fit.solution.at_bound = at_bound
-    assert exchanged(search, names(C)) == names(C)
-    search.trial(names(C)).solution.at_bound = [False, False]
-    assert exchanged(search, names(C)) == names(A)
+    assert exchanged(fits, names(C)) == names(C)
+    fits.trial(names(C)).solution.at_bound = [False, False]
+    assert exchanged(fits, names(C)) == names(A)
 
 
 KNOWN = (A, B, C, D, E)
@@ -278,15 +287,15 @@ KNOWN = (A, B, C, D, E)
 @pytest.fixture
 def grown(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
-    monkeypatch.setattr(s, "held_out_squares", evenly)
+    monkeypatch.setattr(fits_module, "held_out_squares", evenly)
     without_tolerances(monkeypatch)
 
     def make(mean_squares, **of_bench):
         bench = Bench(defaultdict(lambda: 8.0, mean_squares), **of_bench)
-        search = search_over(bench, KNOWN)
+        fits = fits_over(bench, KNOWN)
         everything = [screened(name) for name in KNOWN]
-        search.screen = lambda at: [x for x in everything if x.effect.name not in at]
-        return search
+        fits.screen = lambda at: [x for x in everything if x.effect.name not in at]
+        return fits
 
     return make
 
@@ -294,8 +303,8 @@ def grown(monkeypatch):
 def test_one_after_the_other_is_added_while_it_convinces(grown):
     found = {names(): 64.0, names(A): 32.0, names(B): 63.0, names(C): 63.5}
     found |= {names(A, B): 12.0, names(A, C): 31.0, names(B, C): 40.0, names(A, B, C): 4.0}
-    search = grown(dict.fromkeys(every(), 70.0) | found)
-    assert search.run() == names(A, B, C)
+    fits = grown(dict.fromkeys(every(), 70.0) | found)
+    assert s.significant_effects(fits) == names(A, B, C)
 
 
 def every():
@@ -304,15 +313,15 @@ def every():
 
 def test_it_ends_where_it_is_quiet(grown):
     """With A the model is at the noise: that B would take away more is not asked for."""
-    search = grown({names(): 8.0, names(A): 1.1, names(A, B): 0.5})
-    assert search.run() == names(A)
-    assert names(A, B) not in search.bench.fitted
+    fits = grown({names(): 8.0, names(A): 1.1, names(A, B): 0.5})
+    assert s.significant_effects(fits) == names(A)
+    assert names(A, B) not in fits.bench.fitted
 
 
 def test_nothing_is_named_where_nothing_convinces(grown):
-    search = grown({names(): 4.0} | dict.fromkeys(every(), 3.95))
-    assert search.run() == names()
-    assert grown({names(): 1.0} | dict.fromkeys(every(), 0.99)).run() == names()
+    fits = grown({names(): 4.0} | dict.fromkeys(every(), 3.95))
+    assert s.significant_effects(fits) == names()
+    assert s.significant_effects(grown({names(): 1.0} | dict.fromkeys(every(), 0.99))) == names()
 
 
 def halving(most=5):
@@ -321,7 +330,7 @@ def halving(most=5):
 
 
 def test_no_more_than_four_are_named(grown):
-    assert len(grown(halving()).run()) == 4
+    assert len(s.significant_effects(grown(halving()))) == 4
 
 
 def test_where_simple_and_best_differ_both_ways_are_gone(grown):
@@ -330,26 +339,26 @@ def test_where_simple_and_best_differ_both_ways_are_gone(grown):
     low = {names(): 8.0, names(A): 4.02, names(C): 4.0}
     for end, chosen in ((1.0, names(A, B)), (0.9, names(C, D))):
         ends = {names(A, B): 1.0, names(C, D): end}
-        search = grown(dict.fromkeys(every(), 8.0) | low | ends)
-        assert search._better(names()) == [names(A), names(C)]
-        assert search.run() == chosen
+        fits = grown(dict.fromkeys(every(), 8.0) | low | ends)
+        assert s._better(fits, names()) == [names(A), names(C)]
+        assert s.significant_effects(fits) == chosen
 
 
 def test_a_mesh_is_used_for_both_where_one_needs_it(grown):
-    search = grown({names(): 4.0, names(A): 2.0}, mesh=(A,))
-    search.gain(names(), names(A))
-    assert [(fit.fitted, fit.on_mesh) for fit in search.bench.fits] == [
+    fits = grown({names(): 4.0, names(A): 2.0}, mesh=(A,))
+    fits.gain(names(), names(A))
+    assert [(fit.fitted, fit.on_mesh) for fit in fits.bench.fits] == [
         (names(), True),
         (names(A), True),
     ]
-    search.gain(names(), names(B))
-    assert search.bench.fits[-2].on_mesh is False
+    fits.gain(names(), names(B))
+    assert fits.bench.fits[-2].on_mesh is False
     # The fit on the mesh gives the other one its initial values.
-    assert search.bench.fits[-2].near is search.trials[names(), True]
-    assert search.held_out(names(), on_mesh=True) is search.squares[names(), True]
-    search.matters(names(), {A})
-    search.matters(names(B), {A})
-    assert all(fit.on_mesh for fit in search.bench.fits[4:])
+    assert fits.bench.fits[-2].near is fits.trials[names(), True]
+    assert fits.held_out(names(), on_mesh=True) is fits.squares[names(), True]
+    s.matters(fits, names(), {A})
+    s.matters(fits, names(B), {A})
+    assert all(fit.on_mesh for fit in fits.bench.fits[4:])
 
 
 def pairs(count):
@@ -359,15 +368,15 @@ def pairs(count):
 
 def paired(grown, squares, surplus, needed=None):
     """Let pairs of effects explain so much more together than alone."""
-    search = grown(dict.fromkeys(every(), 8.0) | {names(): 8.0} | squares)
+    fits = grown(dict.fromkeys(every(), 8.0) | {names(): 8.0} | squares)
     first, second, rest = pairs(3)
     # Two signatures that are nearly one: their difference alone is `second`.
     signatures = {A: first, B: first + 0.05 * second}
     residual = np.sqrt(surplus) * second + np.sqrt(1.0 - surplus) * rest
-    search.trial(names()).solution.residual = residual
+    fits.trial(names()).solution.residual = residual
     found = [screened(n, 0.0, at[:, None]) for n, at in signatures.items()]
-    search.screen = lambda at: found
-    return search
+    fits.screen = lambda at: found
+    return fits
 
 
 @pytest.mark.parametrize(
@@ -381,6 +390,6 @@ def paired(grown, squares, surplus, needed=None):
     ],
 )
 def test_a_pair_has_to_explain_more_than_both_alone(grown, nothing, surplus, looked):
-    search = paired(grown, {names(): nothing, names(A, B): 1.0}, surplus)
-    assert (search._best_pair(names()) == names(A, B)) == looked
-    assert (names(A, B) in search.bench.fitted) == looked
+    fits = paired(grown, {names(): nothing, names(A, B): 1.0}, surplus)
+    assert (s._best_pair(fits, names()) == names(A, B)) == looked
+    assert (names(A, B) in fits.bench.fitted) == looked

@@ -76,8 +76,9 @@ SMALL = (200, 20.0, (3.0, 1.0), NEAREST)
 WHOLE = (1500, 100.0, (3.0, 2.0, 1.0), (*NEAREST, "force_sensor_offset", "free_tendon"))
 SCRIPT = """
 import numpy as np
+from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.held_out import folds_of
-from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.search import significant_effects
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.extension import bench_of
@@ -111,9 +112,9 @@ parts = [segment(run) for run in runs]
 slopes = [slopes_of(run, p) for run, p in zip(runs, parts)]
 fit = solve_fit(base_fit(data_sheet(manifest), runs, parts, slopes))
 folds = folds_of([e.blocks(rig, 200) for e, rig in zip(fit.errors, fit.rigs)])
-search = Search(bench_of(fit), folds, effects=tuple(e for e in EFFECTS if e.name in AMONG))
-named = search.run()
-print(sorted(named), *search.trial(named).values().values())
+fits = Fits(bench_of(fit), folds, effects=tuple(e for e in EFFECTS if e.name in AMONG))
+named = significant_effects(fits)
+print(sorted(named), *fits.trial(named).values().values())
 """
 
 

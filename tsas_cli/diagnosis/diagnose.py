@@ -7,6 +7,7 @@ from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
 from tsas_cli.diagnosis.faults.words import differing, reason_of_fault, record_of, wandering
+from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.intervals import estimates_with_tolerances
@@ -16,7 +17,6 @@ from tsas_cli.diagnosis.proven import Proven, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.diagnosis.rivals import find_effects
-from tsas_cli.diagnosis.search import Search, tried
 from tsas_cli.diagnosis.tolerances import frictions_of, tolerances
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
@@ -121,19 +121,19 @@ def diagnose_runs(
         reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
     step = Endable(step)
-    search = Search(bench, folds, step)
+    fits = Fits(bench, folds, step)
     try:
-        fault = fault_of_recording(search, accepted)
-        if fault is not None and not any(effects_as_good(search, fault)):
+        fault = fault_of_recording(fits, accepted)
+        if fault is not None and not any(effects_as_good(fits, fault)):
             return _of_a_fault(fault, base)
-        found = _concluded(proven_effects(find_effects(search), step), base, step)
+        found = _concluded(proven_effects(find_effects(fits), step), base, step)
     except Ended:
-        return _ended(search, model, cannot_tell)
+        return _ended(fits, model, cannot_tell)
     if fault is not None and found.unexplained:
         by_fault = _of_a_fault(fault, base)
         named = frozenset(cause.effect for cause in found.causes)
         of_other_laws = all(cause.law_differs for cause in found.causes)
-        if named and of_other_laws and not leaves_noise(search, named, fault):
+        if named and of_other_laws and not leaves_noise(fits, named, fault):
             return by_fault
         if not found.causes:
             found = replace(found, fault=by_fault.fault, reason=f"{found.reason} {by_fault.reason}")
@@ -153,13 +153,13 @@ def _of_a_fault(fault: FoundFault, base: FittedModel) -> Diagnosis:
     )
 
 
-def _ended(search: Search, model: Model, cannot_tell: tuple[str, ...]) -> Diagnosis:
+def _ended(fits: Fits, model: Model, cannot_tell: tuple[str, ...]) -> Diagnosis:
     """Return what is known where a person has ended the search."""
-    found = tried(search)
+    found = fits.so_far()
     fitted = {names for names, _ in found.trials} - {frozenset()}
     reason = f"the search was ended after {count_of(len(fitted), 'fit')}"
-    if search.leads:
-        reason += f"; {' + '.join(sorted(search.leads))} leads, and nothing is tested"
+    if fits.leads:
+        reason += f"; {' + '.join(sorted(fits.leads))} leads, and nothing is tested"
     return Diagnosis("undecided", f"{reason}.", model, model, search=found, cannot_tell=cannot_tell)
 
 

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
+from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Names
-from tsas_cli.diagnosis.search import MOST_EFFECTS, Search
+from tsas_cli.diagnosis.search import MOST_EFFECTS, add
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.fit import UNDETERMINED
@@ -39,55 +40,55 @@ def bic(dataset: Path, out: Path) -> None:
 
     Rivals of an effect are those with nearly the same BIC in its place.
     """
-    search = search_of(dataset)
+    fits = fits_of(dataset)
     named, rivals = NOTHING, {}
     while len(named) < MOST_EFFECTS:
         falls = {}
-        for effect, _ in search.add(named):
-            before, after = _both(search, named, named | {effect})
+        for effect, _ in add(fits, named):
+            before, after = _both(fits, named, named | {effect})
             falls[effect] = information_criterion(before) - information_criterion(after)
         best = max(falls, key=falls.__getitem__, default=None)
         if best is None or falls[best] <= 0.0:
             break
         rivals[best] = [e for e in falls if e != best and falls[e] > falls[best] - CLOSE]
         named |= {best}
-    final = search.trial(named)
+    final = fits.trial(named)
     write_diagnosis(out, final, {e: [r for r in rivals[e] if r not in named] for e in rivals})
 
 
 def training(dataset: Path, out: Path) -> None:
     """Name the effect that takes most from the training error, where it takes enough."""
-    search = search_of(dataset)
-    drops = {e: _drop(*_both(search, NOTHING, frozenset({e}))) for e, _ in search.add(NOTHING)}
+    fits = fits_of(dataset)
+    drops = {e: _drop(*_both(fits, NOTHING, frozenset({e}))) for e, _ in add(fits, NOTHING)}
     best = max(drops, key=drops.__getitem__, default=None)
     if best is None or drops[best] <= DROP:
-        write_diagnosis(out, search.trial(NOTHING), {})
+        write_diagnosis(out, fits.trial(NOTHING), {})
     else:
-        write_diagnosis(out, search.trial(frozenset({best})), {best: []})
+        write_diagnosis(out, fits.trial(frozenset({best})), {best: []})
 
 
 def sparse(dataset: Path, out: Path) -> None:
     """Name the effect of the strongest term in a sparse regression, where its fit takes enough."""
-    search = search_of(dataset)
-    bench, nominal = search.bench, search.trial(NOTHING)
-    name = strongest_effect(bench, nominal, search.folds)
+    fits = fits_of(dataset)
+    bench, nominal = fits.bench, fits.trial(NOTHING)
+    name = strongest_effect(bench, nominal, fits.folds)
     if name is None:
         write_diagnosis(out, nominal, {})
         return
-    nominal = search.trial(NOTHING, on_mesh=bench.on_mesh([name]))
+    nominal = fits.trial(NOTHING, on_mesh=bench.on_mesh([name]))
     effect = next(e for e in EFFECTS if e.name == name)
     initial = screen(bench, nominal, effect, projector(nominal)).initial
     fitted = bench.fit([name], initial, near=nominal)
     write_diagnosis(out, fitted, {name: []} if _drop(nominal, fitted) > DROP else {})
 
 
-def search_of(dataset: Path) -> Search:
+def fits_of(dataset: Path) -> Fits:
     """Return the fitted nominal model of a dataset, on which effects can be tried."""
     read = read_dataset(dataset)
     runs = [prepare(recording, read.manifest.session_start) for recording in read]
     base = nominal_fit(read.manifest, data_sheet(read.manifest), runs)
     bench = bench_of(solve_fit(base))
-    return Search(bench, bench_folds(bench))
+    return Fits(bench, bench_folds(bench))
 
 
 def information_criterion(trial: HypothesisFit) -> float:
@@ -96,10 +97,10 @@ def information_criterion(trial: HypothesisFit) -> float:
     return count * math.log(trial.mean_square) + len(trial.unknowns) * math.log(count)
 
 
-def _both(search: Search, before: Names, after: Names) -> tuple[HypothesisFit, HypothesisFit]:
+def _both(fits: Fits, before: Names, after: Names) -> tuple[HypothesisFit, HypothesisFit]:
     """Return the fits of two sets of effects, on the mesh that the second one needs."""
-    trial = search.trial(after)
-    return search.trial(before, on_mesh=trial.on_mesh), trial
+    trial = fits.trial(after)
+    return fits.trial(before, on_mesh=trial.on_mesh), trial
 
 
 def _drop(before: HypothesisFit, after: HypothesisFit) -> float:

@@ -20,7 +20,8 @@ from tsas_cli.diagnosis.faults.candidates import (
     of_frictions,
 )
 from tsas_cli.diagnosis.faults.shapes import WINDOWS, ReadRun, runs_at
-from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, Search
+from tsas_cli.diagnosis.fits import Fits
+from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_EXCESS = 0.05  # of the squares of the noise, that a fault is sought for
@@ -46,14 +47,14 @@ class FoundFault:
     rest: float
 
 
-def fault_of_recording(search: Search, accepted: Collection[str]) -> FoundFault | None:
+def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | None:
     """Return the fault that explains most of what the nominal model leaves, and faults as good.
 
     None is returned where the nominal model leaves little, or no fault explains most of it: a
     mechanism acts in every run. Faults of the codes that are `accepted` are not sought.
     """
-    bench, trial, run = search.bench, search.trial(frozenset()), search.folds.run
-    tolerated = search.tolerated[trial.on_mesh]
+    bench, trial, run = fits.bench, fits.trial(frozenset()), fits.folds.run
+    tolerated = fits.tolerated[trial.on_mesh]
     left = beside(trial, tolerated, run)
     choices: list[FoundFault] = []
     if left.squares > (1.0 + LEAST_EXCESS) * run.size:
