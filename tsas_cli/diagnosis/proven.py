@@ -41,8 +41,9 @@ class Proven:
 
     `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
     `start` is what remains without them and `after` what remains with them; `with_stand_ins` are
-    the estimates with all effects that gain. `tolerated` is what one standard deviation of each
-    tolerance changes in the fit of the causes, shape (n, m).
+    the estimates with all effects that gain, and `whole` is their fit, None where all are proven.
+    `tolerated` is what one standard deviation of each tolerance changes in the fit of the causes,
+    shape (n, m).
     """
 
     search: Hypotheses
