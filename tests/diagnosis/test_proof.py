@@ -261,6 +261,40 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
 
 
 @pytest.mark.parametrize(
+    ("proven", "named", "rivals"),
+    [
+        ({"load_ripple", "free_tendon"}, "load_ripple", ("free_tendon", "friction_drift")),
+        ({"free_tendon", "friction_drift"}, "free_tendon", ("load_ripple", "friction_drift")),
+        ({"friction_drift"}, None, ()),  # the third does not fit as well as the first two
+    ],
+)
+def test_an_effect_that_fails_gives_way_to_a_rival_that_is_proven(
+    monkeypatch, proven, named, rivals
+):
+    def judged(search, fits, found):
+        causes = [
+            FoundCause(
+                *(name, search.rivals[name], (), 9.0, (8.0, 10.0)),
+                failed=() if name in proven | {"preload_loss"} else ("fails",),
+            )
+            for name in search.rivals
+        ]
+        after = SimpleNamespace(complete=False)
+        return p.Proven(search, fits, tuple(causes), found, (), {}, after, after, None)
+
+    monkeypatch.setattr(p, "_judged", judged)
+    monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)
+    others = ("load_ripple", "free_tendon", "friction_drift")
+    search = Search(
+        frozenset(("backlash", "preload_loss")), {"backlash": others, "preload_loss": ()}
+    )
+    found = p.proven_effects(search, NO_PROGRESS)
+    of = {cause.effect: cause.rivals for cause in found.causes}
+    assert of == {"preload_loss": ()} | ({named: rivals} if named else {})
+    assert [cause.effect for cause in found.stand_ins] == ([] if named else ["backlash"])
+
+
+@pytest.mark.parametrize(
     ("first", "second", "law", "refused"),
     [
         ("load_spring_nonlinearity", "load_ripple", "over the tension", True),

@@ -208,7 +208,9 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     complete = after.complete and not any(cause.law_differs for cause in causes)
     law = None
     if not after.complete:
-        law = describe(bench, final, predicted_folds(final, folds), step, proven.whole)
+        whole = proven.whole if stand_ins else None
+        unproven = None if whole is None else whole.trial(whole.named)
+        law = describe(bench, final, predicted_folds(final, folds), step, unproven)
     if law is not None:  # one number of one name: before the law is after the causes
         law = replace(law, before=proven.held_out[named])
     verdict = verdict_of(

@@ -27,11 +27,11 @@ from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of, sha
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
 
 SEED = 1  # of the resampling of blocks
+MOST_RIVALS = 2  # of an effect that fails, which are tried in its place
 MOST_LEFT = 0.1  # of what could be explained, by all causes together
 
 
@@ -41,9 +41,8 @@ class Proven:
 
     `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
     `start` is what remains without them and `after` what remains with them; `with_stand_ins` are
-    the estimates with all effects that gain, and `whole` is their fit, None where all are proven.
-    `tolerated` is what one standard deviation of each tolerance changes in the fit of the causes,
-    shape (n, m).
+    the estimates with all effects that gain, and `whole` has their fit. `tolerated` is what one
+    standard deviation of each tolerance changes in the fit of the causes, shape (n, m).
     """
 
     search: Hypotheses
@@ -56,24 +55,22 @@ class Proven:
     after: Remainder
     tolerated: Floats
     with_stand_ins: tuple[Estimate, ...] = ()
-    whole: HypothesisFit | None = None
+    whole: Hypotheses | None = None
 
 
 def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
-    The one that fails and gains least is left out, and the others are fitted again, until none
-    fails. What is negligible is no stand-in; nor, where nothing is left without it, what may be
-    zero or gains too little.
+    The one that fails and gains least gives way to a rival that does not, or is left out, and the
+    others are fitted again, until none fails. What is negligible is no stand-in; nor, where nothing
+    is left without it, what may be zero or gains too little.
     """
     stand_ins: list[FoundCause] = []
-    first: tuple[Estimate, ...] | None = None
-    whole: HypothesisFit | None = None
+    first: Proven | None = None
     while True:
         judged = reweighted_hypotheses(search, step) if search.named else search
         proven = _judged(search, judged, tuple(stand_ins))
-        first = first or proven.estimates
-        whole = whole or judged.trial(judged.named)
+        first = first or proven
         failing = [cause for cause in proven.causes if cause.failed]
         if not failing:
             if proven.after.complete:
@@ -83,12 +80,29 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
                     if cause.convincing and not may_be_zero(cause.effect, cause.parameters)
                 ]
                 proven = replace(proven, stand_ins=tuple(kept))
-            return replace(proven, with_stand_ins=first, whole=whole if stand_ins else None)
+            return replace(proven, with_stand_ins=first.estimates, whole=first.judged)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
+        instead = _with_a_rival(search, weakest, tuple(stand_ins), step)
+        if instead is not None:
+            return replace(instead, with_stand_ins=first.estimates, whole=first.judged)
         if not weakest.negligible:
             stand_ins.append(weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
         search = replace(search, named=frozenset(rest), rivals=rest)
+
+
+def _with_a_rival(
+    search: Hypotheses, failing: FoundCause, stand_ins: tuple[FoundCause, ...], step: Steps
+) -> Proven | None:
+    """Return the effects with a rival in the place of one that fails, where all then are proven."""
+    for other in failing.rivals[:MOST_RIVALS]:
+        rivals = {name: r for name, r in search.rivals.items() if name != failing.effect}
+        rivals[other] = tuple(name for name in failing.rivals if name != other)
+        instead = replace(search, named=frozenset(rivals), rivals=rivals)
+        proven = _judged(instead, reweighted_hypotheses(instead, step), stand_ins)
+        if not any(cause.failed for cause in proven.causes):
+            return proven
+    return None
 
 
 def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause, ...]) -> Proven:

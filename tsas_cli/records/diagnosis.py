@@ -118,7 +118,7 @@ def errors_table(channels: Mapping[str, HeldOut]) -> Table:
     title = "error on held-out data"
     if any(row[-1] for row in rows):
         return title, header, rows
-    no_less = f"{title}; no model of these signals reaches less"
+    no_less = f"{title}; a regression on these signals reaches no less"
     return no_less, header[:-1], [row[:-1] for row in rows]
 
 
