@@ -124,6 +124,14 @@ def test_a_range_is_left_by_more_than_a_tenth_of_its_width_or_end():
     assert not_stated(FittedTo(ranges={"d_N": (0.0, 1.0), "a_N": (0.0, 1.0)}), fitted) == ["d_N"]
 
 
+def test_a_word_that_no_run_of_the_fit_had_leaves_it():
+    fitted = FittedTo(words={"tool": ("grasper", "hook")})
+    for words, left in ((("hook",), []), (("hook", "grasper"), []), (("hook", "knife"), ["tool"])):
+        here = FittedTo(words={"tool": words, "load": ("spring",)})
+        assert [one.quantity for one in departures(here, fitted)] == left
+        assert not_stated(here, fitted) == ["load"]
+
+
 def test_the_ranges_of_runs_go_from_the_lowest_to_the_highest():
     both = fitted_to(SHEET, [run(), run(bent(0.5), omega_rad_s=3.0)])
     assert both.ranges["total_bend_rad"] == pytest.approx((math.pi / 2.0, math.pi))
