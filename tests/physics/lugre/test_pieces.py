@@ -18,7 +18,7 @@ from tests.physics.references import (
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.course import DRIVE, LOAD
 from tsas_cli.physics.lugre import state as rows
-from tsas_cli.physics.lugre.balance import balance, set_limits
+from tsas_cli.physics.lugre.balance import balance, end_friction, set_limits
 from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, phase_of
 from tsas_cli.physics.lugre.ends import (
     F_IN,
@@ -288,3 +288,12 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
     assert 0.5 - 1e-9 < progress.reached_s < 0.5 + 1e-12
     assert progress.tries > progress.step_ends_s.size
     assert progress.step_ends_s[-1] == progress.reached_s
+
+
+def test_an_end_without_friction_has_none_and_bends_no_bristle():
+    law = cleared(GROUP_A)[1]
+    assert end_friction(0.3, 2.0, STEP, 0.0, law) == (0.0, 0.0, 0.0)
+    force, by_speed, deflection = end_friction(0.3, 2.0, STEP, 0.5, law)
+    ahead, behind = (end_friction(0.3, 2.0 + d, STEP, 0.5, law)[0] for d in (1e-5, -1e-5))
+    assert by_speed == pytest.approx((ahead - behind) / 2e-5, rel=1e-5)
+    assert (force > 0.0) == (deflection > 0.0)

@@ -299,3 +299,61 @@ def test_the_scatter_of_times_is_what_a_fast_motion_has_more_noise_by():
     calm = np.cumsum(0.01 * speed) + 0.1 * rng.standard_normal(40_000)
     assert clock._scatter_s(0.01 * np.arange(40_000), calm) is None
     assert clock._scatter_s(0.01 * np.arange(482), values[:482]) is None
+
+
+@pytest.mark.parametrize(
+    ("by", "other", "found"),
+    [(10.1, 3.1, [150]), (9.9, 3.1, []), (10.1, 2.9, [])],
+)
+def test_a_run_is_torn_where_the_drive_goes_ten_times_and_another_three_times_as_far(
+    by, other, found
+):
+    """As the least of the twenty largest steps, those of the tear among them."""
+    far = np.arange(N) > 150
+    even = 0.1 * np.arange(N)
+    columns = {"x_in_mm": even + (0.1 * by - 0.1) * far, "f_in_N": even + (0.1 * other - 0.1) * far}
+    made = trial({"time_s": 0.01 * np.arange(N), **columns})
+    made = replace(made, overall=dict.fromkeys(columns, FINE))
+    assert rows._torn(made, list(columns)) == found
+
+
+@pytest.mark.parametrize(
+    ("held", "per_row", "found"), [(4, 0.2, 0), (5, 0.2, 1), (5, 0.11, 0), (6, 0.11, 1)]
+)
+def test_five_rows_at_an_end_are_clipped_if_the_drive_moves_on_by_a_twentieth(held, per_row, found):
+    x = 5.0 + per_row * (np.abs(np.mod(np.arange(N), 80) - 40.0) - 20.0)
+    f_in = x.copy()
+    f_in[50 : 50 + held] = 20.0
+    told = of(
+        extremes.clipped, x_in_mm=x, f_in_N=f_in, sizes={"f_in_N": replace(FINE, highest=20.0)}
+    )
+    assert len(told) == found
+    if told:
+        assert f"highest value 20 for {0.01 * (held - 1):.3g} s in 1 plateau" in told[0].sentence
+
+
+@pytest.mark.parametrize("gain", [1.5, -0.5])
+def test_friction_beside_any_gain_is_told_and_a_negative_gain_is_none(gain):
+    f_out = 20.0 + X
+    made = trial({"time_s": 0.01 * np.arange(N), "x_in_mm": X, "f_out_N": f_out,
+                  "f_in_N": 40.0 + gain * f_out + 0.35 * WAY})  # fmt: skip
+    made = replace(made, overall=dict.fromkeys(("x_in_mm", "f_in_N", "f_out_N"), FINE))
+    up, down = (f_out[made.direction == way].mean() for way in (1.0, -1.0))
+    shift = gain * (up - down) if gain < 0.0 else 0.0  # what the directions differ by themselves
+    assert motion._excess_while_pulling(made) == pytest.approx(0.7 + shift, abs=1e-9)
+
+
+@pytest.mark.parametrize("delay_s", [-0.02, 0.0, 0.05])
+def test_a_delay_is_what_follows_the_speed_beside_a_bent_spring_and_friction(delay_s):
+    """y = 3 + 2 x + 0.1 x² + 0.4 sgn(v) − 2 τ v, x from the middle of what is moving."""
+    t = np.linspace(0.0, 6.0, 600)
+    x = 4.0 * np.sin(t) + 0.5 * np.sin(2.7 * t)
+    v = np.gradient(x, t)
+    x -= x[np.abs(v) > 0.3 * np.sqrt(np.mean(v**2))].mean()
+    y = 3.0 + 2.0 * x + 0.1 * x**2 + 0.4 * np.sign(v) - 2.0 * delay_s * v
+    assert pairs._remaining_delay(t, x, y) == pytest.approx(delay_s, abs=1e-9)
+    loud = np.random.default_rng(3).standard_normal(600) * np.std(y)
+    assert pairs._remaining_delay(t, x, y + 0.03 * loud) == pytest.approx(delay_s, abs=0.01)
+    assert np.isnan(pairs._remaining_delay(t, x, y + 0.06 * loud))
+    ramp = 2.0 * t  # its speed is the constant
+    assert np.isnan(pairs._remaining_delay(t, ramp, 3.0 * ramp))

@@ -213,7 +213,7 @@ def test_the_segment_of_a_value_is_found_in_its_bin(wide):
     upper = lower + wide + 0.01 * rng.random(501)
     bins = _Bins(lower, upper, 7 * np.arange(501))
     values = rng.uniform(lower.min(), upper.max(), (40, 5))
-    values[0] = lower[0], upper.max(), -3.1, 99.0, lower[0]
+    values[0], values[1], values[2] = lower[0], -3.1, 99.0
     found = {}
     for stretch, row, piece in bins.looked_up(values):
         for s, r, p in zip(stretch.tolist(), row.tolist(), piece.tolist(), strict=True):
@@ -224,6 +224,8 @@ def test_the_segment_of_a_value_is_found_in_its_bin(wide):
         assert set(covers.tolist()) <= set(segments)
         apart = np.maximum(lower[segments] - values[s, r], values[s, r] - upper[segments])
         assert apart.max() <= bins.width
+    assert found[0, 0] == [0]  # the lowest of all
+    assert not any((s, r) in found for s in (1, 2) for r in range(5))
     assert bins.width >= (upper.max() - lower.min()) / BINS
     assert np.bincount([s for s, _ in found], minlength=40).max() <= 2
 
