@@ -17,7 +17,6 @@ from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.effects import LAWS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.physics.rig import Rig
 from tsas_cli.records.base import TWO_SIDED
 
 F, X = "f_in_N", "x_out_mm"
@@ -176,57 +175,6 @@ def test_speeds_are_quantiles_of_the_motion_without_its_rests():
     assert (slow, fast) == pytest.approx((5.95, 95.05), abs=0.6)
     even = law_bench.speeds_of([run_of(t, 3.0 * t)])
     assert even == pytest.approx((3.0, 3.3))
-
-
-@dataclass(frozen=True)
-class Errors:
-    """A run whose errors are given."""
-
-    run: SimpleNamespace
-    given: Mapping[str, np.ndarray]
-    weights: Mapping[str, np.ndarray] = field(default_factory=dict)
-    turns: Mapping[str, object] = field(default_factory=dict)
-
-    @property
-    def samples(self):
-        return {name: np.arange(errors.size) for name, errors in self.given.items()}
-
-    def raw(self, rig):
-        return self.given
-
-
-@dataclass(frozen=True)
-class Rigs:
-    """A bench of two runs."""
-
-    rigs: tuple[Rig, ...]
-    closed: tuple[Errors, ...]
-    meshed: tuple[Errors, ...]
-
-    def rig(self, trial, k):
-        return self.rigs[k]
-
-    def errors_for(self, trial):
-        return self.closed
-
-
-def test_each_channel_counts_over_its_rms_in_all_runs():
-    """√((3·1 + 1·25)/4) = √7 N, and no sample is near a reversal."""
-    run = SimpleNamespace(time_s=np.zeros(9))
-    runs = (Errors(run, {F: np.ones(3), X: np.full(2, -0.5)}), Errors(run, {F: np.array([5.0])}))
-    ranges = {"drive_law": {"drive_law.travel_mm": 7.0}, "load_law": {"load_law.high_mm": 9.0}}
-    found = law_bench.in_channel_units(Rigs((GROUP_A,) * 2, runs, runs[::-1]), None, ranges)
-    for one in (*found.closed, *found.meshed):
-        assert one.weights[F] == pytest.approx(np.full(9, np.sqrt(7.0)))
-        for name, at in one.samples.items():
-            turns = one.turns[name]
-            np.testing.assert_array_equal(turns.shape, np.zeros(at.size))
-            assert (turns.starts.tolist(), turns.counts.tolist()) == ([0], [at.size])
-    assert found.closed[0].weights[X] == pytest.approx(np.full(9, 0.5))
-    for rig in found.rigs:
-        assert rig.effects.drive_law.travel_mm == 7.0
-        assert rig.effects.load_law.high_mm == 9.0
-    assert [len(one.given) for one in found.meshed] == [1, 2]
 
 
 NOTHING = {law.name: {p.name: p.neutral for p in law.parameters} for law in LAWS}

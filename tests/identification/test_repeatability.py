@@ -41,14 +41,6 @@ def test_noise_alone_is_the_repeatability_of_strokes_that_repeat():
     assert one == pytest.approx(NOISE_N, rel=0.1)  # and not the loop of 20 N
 
 
-def test_what_differs_from_stroke_to_stroke_is_in_it():
-    offsets = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0]
-    (one,) = found(run(offsets_N=offsets))
-    # Without the first stroke three pull, with 1, 0 and -1 N, and four release, with 0, 1, 0, -1 N.
-    variance = (2.0 + 2.0) / (2 + 3) + NOISE_N**2
-    assert one == pytest.approx(math.sqrt(variance), rel=0.05)
-
-
 def test_x_out_repeats_where_strokes_begin_and_end_a_little_apart():
     """By 0.1 mm, twenty times the noise of x_out."""
     one = run((10.0, 9.9, 10.0, 10.1) * 3)

@@ -108,21 +108,6 @@ def test_rows_are_missing_beyond_one_and_a_half_intervals_at_a_few_places(longes
 
 
 @pytest.mark.parametrize(
-    ("steps", "what"),
-    [
-        ([0.01, 0.0], "does not increase at 1 of"),
-        ([0.01, -0.01, -0.01], "does not increase at 2 of"),
-        ([0.01, 0.01], ""),
-    ],
-)
-def test_time_increases(steps, what):
-    time_s = np.concatenate(([5.0], 5.0 + np.cumsum(steps)))
-    told = [*clock.time_order(trial({"time_s": time_s}))]
-    assert [what in f.sentence for f in told] == [True] * bool(what)
-    assert [f.first_s for f in told] == pytest.approx([5.01] * bool(what))
-
-
-@pytest.mark.parametrize(
     ("step", "said"), [(0.0199, None), (0.0201, "note"), (0.199, "note"), (0.201, "warning")]
 )
 def test_steps_are_coarse_from_a_500th_of_the_span_on(step, said):
