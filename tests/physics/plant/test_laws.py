@@ -98,6 +98,9 @@ def test_a_share_is_of_the_tension_without_the_force_of_the_step_before(way):
     """Of 30 N less the line 2 N + 0.5 N/mm · 4 mm a tenth, once all elements have yielded."""
     laws = plant_laws(rig_with("drive_law", {"travel_mm": 0.01, "share_1": 0.1}))
     state = laws_at_rest(np.linspace(4.0 - way, 4.0, 11), 30.0, laws)
+    table = Turntable(4.0, 4.0, 0.0, 0.0, 30.0 + way * 3.0, 5.0 * way)
+    line = beside_drive(state.copy(), 4.0, table, 1e-3, laws)
+    assert line.ahead + 4.0 * line.slope == pytest.approx(way * 3.0)  # as at rest
     state[module.AHEAD], state[module.SLOPE] = 2.0, 0.5
     line = beside_drive(state, 4.0, Turntable(4.0, 4.0, 0.0, 0.0, 30.0, 5.0 * way), 1e-3, laws)
     assert line.ahead + 4.0 * line.slope == pytest.approx(way * 0.1 * (30.0 - 2.0 - 2.0))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import trial
-from tsas_cli.recordings.quality.checks import clock, extremes, motion, noise, pairs, rows
+from tsas_cli.recordings.quality.checks import clock, extremes, motion, noise, pairs, repeats, rows
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, Size
 
@@ -238,24 +238,27 @@ def test_ten_rows_may_repeat_beyond_three_times_their_chance(repeats, found):
 
 
 @pytest.mark.parametrize(
-    ("by", "other", "noise_mm", "found"),
+    ("by", "other", "noise_mm", "step_mm", "found"),
     [
-        (1.01, 1.0, 0.0, 1),
-        (0.99, 1.0, 0.0, 0),  # ten times what it changes by elsewhere
-        (1.01, 3.1, 0.0, 0),  # three times, of another channel
-        (1.01, 2.9, 0.0, 1),
-        (1.99, 1.0, 0.1, 0),
-        (2.01, 1.0, 0.1, 1),
+        (1.01, 1.0, 0.0, 0.0, 1),
+        (0.99, 1.0, 0.0, 0.0, 0),  # ten times what it changes by elsewhere
+        (1.01, 3.1, 0.0, 0.0, 0),  # three times, of another channel
+        (1.01, 2.9, 0.0, 0.0, 1),
+        (1.01, 0.0, 0.0, 0.0, 1),  # which rests all the time
+        (1.99, 1.0, 0.1, 0.0, 0),
+        (2.01, 1.0, 0.1, 0.0, 1),
+        (1.01, 1.0, 0.0, 0.34, 0),
+        (1.01, 1.0, 0.0, 0.33, 1),
     ],
 )
-def test_a_position_jumps_ten_times_as_far_as_elsewhere(by, other, noise_mm, found):
+def test_a_position_jumps_ten_times_as_far_as_elsewhere(by, other, noise_mm, step_mm, found):
     far = np.arange(N) >= 150
     even = 0.1 * np.arange(N)
     told = of(
         rows.jump,
-        sizes={"x_in_mm": replace(FINE, noise=noise_mm)},
+        sizes={"x_in_mm": replace(FINE, noise=noise_mm, step=step_mm)},
         x_in_mm=even + (by - 0.1) * far,
-        f_in_N=even + (0.1 * other - 0.1) * far,
+        f_in_N=(even + (0.1 * other - 0.1) * far) * (other > 0.0),
     )
     assert len(told) == found
     assert all(f.first_s == pytest.approx(1.5) and "row 150" in f.sentence for f in told)
@@ -342,3 +345,33 @@ def test_a_delay_is_what_follows_the_speed_beside_a_bent_spring_and_friction(del
     assert np.isnan(pairs._remaining_delay(t, x, y + 0.06 * loud))
     ramp = 2.0 * t  # its speed is the constant
     assert np.isnan(pairs._remaining_delay(t, ramp, 3.0 * ramp))
+
+
+@pytest.mark.parametrize(("zeros", "more"), [(370, False), (380, True)])
+@pytest.mark.parametrize("from_zero", [0.0, -900.0])
+def test_a_channel_repeats_where_it_does_so_more_often_than_it_changes_by_one_step(
+    zeros, more, from_zero
+):
+    """By a fifth, in both halves of its span; all other changes are to and fro, half each way."""
+    half = np.append(np.zeros(zeros), (-1.0) ** np.arange(4000 - zeros * 4))
+    steps = np.append(np.zeros(3 * zeros), half)
+    values = np.concatenate((np.cumsum(steps), 50.0 + np.cumsum(steps))) + from_zero
+    share = zeros / 1000.0
+    expected = (share, 0.5 * (1.0 - share)) if more else (0.0, 0.0)
+    assert repeats._beside_one_step(0.25 * values, 0.25) == pytest.approx(expected, abs=1e-3)
+    clipped = np.concatenate((np.cumsum(steps), 50.0 + 2.0 * np.arange(4000.0))) + from_zero
+    assert repeats._beside_one_step(clipped, 1.0) == (0.0, 0.0)
+    assert repeats._beside_one_step(values, 0.0) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "noise_N", "share"),
+    [(40, 0.9, 0.75), (40, 1.1, 0.0), (3, 0.9, 0.0), (27, 0.9, 0.75)],
+)
+def test_repeats_count_where_a_channel_changes_least(blocks, noise_N, share):
+    """In a seventh of the blocks of 32 rows, four at least; less twice the share by chance."""
+    calm = np.tile([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], 4)  # 24 of 31 changes are none
+    moving = np.arange(32.0)
+    values = np.concatenate([calm if k % 7 == 0 else moving + k for k in range(blocks)])
+    found = repeats._repeats_where_it_rests(values, noise_N, 0.01)
+    assert found == pytest.approx(24.0 / 31.0 - 0.02 if share else 0.0)

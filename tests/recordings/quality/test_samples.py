@@ -111,10 +111,10 @@ def test_bands_are_a_quarter_of_an_octave_or_two_frequencies_and_overlap_by_half
 
 
 # Up 10, back by a part, up again, down: a corner each second.
-def signals(back=1.9, noise=0.0, load="spring", **channels):
+def signals(back=1.9, noise=0.0, load="spring", zero=0.0, **channels):
     corners = np.array([0.0, 10.0, 10.0 - back, 10.0, 0.0, 10.0])
     t = np.arange(501) / 100.0
-    x = np.interp(t, np.arange(6.0), corners)
+    x = np.interp(t, np.arange(6.0), corners) + zero
     columns = {"time_s": t, "x_in_mm": x} | {n: of(x) for n, of in channels.items()}
     found = trial(columns, load=load)
     sizes = {n: replace(s, noise=noise, step=0.0) for n, s in found.sizes.items()}
@@ -125,7 +125,7 @@ def signals(back=1.9, noise=0.0, load="spring", **channels):
     ("back", "corners"), [(1.9, [0, 100, 400, 500]), (2.1, [*range(0, 501, 100)])]
 )
 def test_a_stroke_ends_where_the_drive_goes_back_by_a_fifth(back, corners):
-    found = signals(back)
+    found = signals(back, zero=-5.0)
     assert [(s.start, s.stop) for s in found.strokes] == list(pairwise(corners))
     assert [s.direction for s in found.strokes] == [1, -1, 1, -1, 1][-len(corners) + 1 :]
     assert found.strokes[-1].rows == slice(400, 501)
