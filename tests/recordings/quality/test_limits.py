@@ -286,7 +286,10 @@ def test_the_scatter_of_times_is_what_a_fast_motion_has_more_noise_by():
     assert found == pytest.approx(3e-3, rel=0.05)
     calm = np.cumsum(0.01 * speed) + 0.1 * rng.standard_normal(40_000)
     assert clock._scatter_s(0.01 * np.arange(40_000), calm) is None
-    assert clock._scatter_s(0.01 * np.arange(482), values[:482]) is None
+    short = np.where(np.arange(483) // 48 % 2, 100.0, 1.0)  # thirty blocks of 16 rows
+    moved = np.cumsum(0.01 * short) + (0.1 + 3e-3 * short) * rng.standard_normal(483)
+    assert clock._scatter_s(0.01 * np.arange(483), moved) == pytest.approx(4e-3, rel=0.3)
+    assert clock._scatter_s(0.01 * np.arange(482), moved[:482]) is None
 
 
 @pytest.mark.parametrize(
