@@ -214,4 +214,4 @@ def test_an_effect_is_in_units_of_the_way_from_nothing_to_its_start():
         for one in effect.parameters:
             size = QUANTITIES[f"{effect.name}.{one.name}"].size
             way = abs(one.start - one.neutral)
-            assert size == (way if way else abs(one.start) or 1.0), one.name
+            assert size == (way or abs(one.start) or 1.0), one.name

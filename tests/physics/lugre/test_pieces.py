@@ -134,7 +134,11 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
     tensions = np.array([21.0, 22.0, 21.5, 22.3])
     start = np.array([[0.7, 0.5, 0.3, 0.2, 0.1], [*tensions, 0.0]])
     step = Step(1e-13, Given(21.5, 0.0), NONE, NONE, 0.14, 0.06, 2.0)
+    moving = (rows.SPEED, rows.SPEED_HISTORY, rows.RATE, rows.TENSION_SLOPE)
+    for row in moving:
+        nodes(s, row)[:] = 9.0
     ends = rest_at(s, start, step, at(law, DRIVEN_BY_FORCE))
+    assert not any(nodes(s, row).any() for row in moving)
     assert (ends.drive.tension, ends.drive.x) == (21.0, 0.7)
     assert (ends.load.tension, ends.load.x) == (22.3, 0.1)
     left = np.array([0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)])
