@@ -378,3 +378,41 @@ def test_repeats_count_where_a_channel_changes_least(blocks, noise_N, share):
     values = np.concatenate([calm if k % 7 == 0 else moving + k for k in range(blocks)])
     found = repeats._repeats_where_it_rests(values, noise_N, 0.01)
     assert found == pytest.approx(24.0 / 31.0 - 0.02 if share else 0.0)
+
+
+@pytest.mark.parametrize(
+    ("times", "blocks", "found"), [(4.1, 2, 1), (3.9, 2, 0), (4.1, 1, 0), (4.1, 3, 1), (4.1, 4, 0)]
+)
+def test_noise_bursts_by_four_times_in_two_blocks_and_few_of_all(times, blocks, found):
+    """Of 24 blocks of 16 rows a seventh at most."""
+    size = np.ones(N)
+    size[160 : 160 + 16 * blocks + 3] = times
+    loud = (-1.0) ** np.arange(N) * size
+    told = of(noise.bursts, sizes={"f_in_N": replace(FINE, noise=1.0)}, f_in_N=loud)
+    assert len(told) == found
+    assert all(
+        "rises to 4.1 times its level in 1 burst, the first at 1.6 s" in f.sentence for f in told
+    )
+
+
+@pytest.mark.parametrize(("held", "found"), [(19, 0), (20, 1)])
+def test_a_noisy_channel_is_stuck_that_misses_twenty_updates(held, found):
+    f_in = 2.0 * X + 0.1 * WHITE
+    f_in[40 : 40 + held] = f_in[40]
+    told = of(
+        extremes.stuck,
+        sizes={"f_in_N": replace(FINE, highest=30.0, lowest=-9.0)},
+        x_in_mm=X,
+        f_in_N=f_in,
+    )
+    assert [f.column for f in told] == ["f_in_N"] * found
+    assert [f.first_s for f in told] == pytest.approx([0.4] * found)
+
+
+@pytest.mark.parametrize(("back", "found"), [(3.0, 1), (4.0, 0)])
+def test_a_sign_is_wrong_where_most_of_the_way_is_against_the_drive(back, found):
+    """Three strokes of 10 mm against it, one with it: (30 − 3.3)/(30 + 3.3) is 0.8."""
+    rate = np.where(np.arange(N) < 300, -1.0, 0.1 * back)
+    x_out = np.cumsum(rate * np.diff(X, prepend=X[0]))
+    told = of(motion.sign, x_in_mm=X, x_out_mm=x_out)
+    assert [f.column for f in told] == ["x_out_mm"] * found
