@@ -22,6 +22,7 @@ from tsas_cli.recordings.quality.samples import (
     span_of,
     step_of,
 )
+from tsas_cli.recordings.quality.trial import batches_of
 
 RNG = np.random.default_rng(8)
 WHITE = RNG.standard_normal(20_000)
@@ -256,3 +257,25 @@ def test_a_slope_is_that_of_a_scaled_copy_alone():
     found = signals(5.0, x_out_mm=lambda x: 4.0 - 0.3 * x, f_out_N=lambda x: (x - 5.0) ** 2)
     assert pairs._slope(found, "x_in_mm", "x_out_mm") == pytest.approx(0.3)
     assert pairs._slope(found, "x_in_mm", "f_out_N") is None
+
+
+@pytest.mark.parametrize(
+    ("batches", "ratio", "found"),
+    [(5, 9.0, True), (4, 9.0, False), (9, 2.6, True), (9, 2.4, False)],
+)
+def test_five_long_intervals_are_batches_if_the_motion_goes_on_evenly(batches, ratio, found):
+    """Of four rows each, 1 ms apart: the wrong times are those of the rows within a batch."""
+    interval = 1e-3 * np.append(np.tile([1.0, 1.0, 1.0, ratio], batches), [1.0, 1.0, 1.0])
+    time_s = np.append(0.0, np.cumsum(interval))
+    even = 2.0 * np.arange(time_s.size)
+    told = batches_of(time_s, {"x_in_mm": even})
+    assert (told is not None) == found
+    if told is not None:
+        assert (told.rows, told.within_s, told.between_s) == pytest.approx((4, 1e-3, ratio * 1e-3))
+        assert told.row_s == pytest.approx(1e-3 * (3.0 + ratio) / 4.0)
+        off = told.error_s[4:-4] - told.error_s[4:-4].mean()
+        assert np.ptp(off) == pytest.approx(3.0 * (told.row_s - told.within_s), rel=1e-6)
+    jumping = even + 9.0 * np.cumsum(np.append(0.0, interval > 2e-3))
+    assert batches_of(time_s, {"x_in_mm": jumping}) is None
+    assert batches_of(time_s, {}) is None
+    assert batches_of(time_s[::-1], {"x_in_mm": even}) is None

@@ -1,11 +1,13 @@
 """Which samples agree with a source, which stretch of them is evidence, and how it is said."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.pieces import Piece
 from tsas_cli.recordings.quality.copies.agreement import (
     Copy,
     RowSpan,
@@ -16,7 +18,12 @@ from tsas_cli.recordings.quality.copies.agreement import (
     joined,
     stretches,
 )
-from tsas_cli.recordings.quality.copies.fingerprint import Fineness, _crowd
+from tsas_cli.recordings.quality.copies.fingerprint import (
+    Fineness,
+    _crowd,
+    fingerprint,
+    side_by_side,
+)
 from tsas_cli.recordings.quality.copies.lookup import BINS, Lookup, _Bins
 
 T = np.arange(40.0)
@@ -237,3 +244,67 @@ def test_stretches_are_found_at_their_shift_alone(shift_s):
     assert [s.seconds for _, s in found] == pytest.approx([shift_s] * 2, abs=1e-6)
     assert not any(s.spline for _, s in found)
     assert list(lookup.shifts(t[rows], strange)) == []
+
+
+def piece(start=0, stop=2000, **changes):
+    """Return rows of a run at 100 Hz: a noisy channel, one with coarse steps, one at rest."""
+    rng = np.random.default_rng(9)
+    t = 5.0 + 0.01 * np.arange(2000)
+    columns = {"time_s": t, "x_in_mm": 4.0 * np.sin(t) - 20.0 + 0.1 * rng.standard_normal(2000)}
+    columns["f_in_N"] = 0.5 * np.round(2.0 * (30.0 + np.cos(t) + 0.12 * rng.standard_normal(2000)))
+    columns |= {"f_out_N": np.full(2000, 7.0)} | changes
+    return Piece(start, {name: values[start:stop] for name, values in columns.items()})
+
+
+@pytest.mark.parametrize("cuts", [(), (700,), (512, 1500)])
+def test_a_fingerprint_is_that_of_the_run_however_it_is_cut(cuts):
+    ends = [0, *cuts, 2000]
+    found = fingerprint(run("a"), [piece(a, b) for a, b in pairwise(ends)])
+    whole = piece().columns
+    assert (found.all.rows, found.all.begin_s, found.all.end_s) == (2000, 5.0, pytest.approx(24.99))
+    assert found.interval_s == pytest.approx(0.01)
+    assert (set(found.channels), set(found.dense)) == ({"x_in_mm", "f_in_N"},) * 2
+    assert found.increases
+    assert not found.interpolated
+    x, f = found.channels["x_in_mm"], found.channels["f_in_N"]
+    assert x.noise == pytest.approx(0.1, rel=0.1)
+    assert (x.largest, x.span) == (np.abs(whole["x_in_mm"]).max(), np.ptp(whole["x_in_mm"]))
+    assert (f.step, f.largest) == (pytest.approx(0.5), whole["f_in_N"].max())
+    assert (x.noisy, f.noisy, found.noisy) == (True, False, True)
+    assert found.stretches.shape == (3 * len(ends) - 3, 16, 2)
+    rows = np.rint((found.stretches_s - 5.0) / 0.01).astype(int)
+    first = found.dense.index("x_in_mm")
+    np.testing.assert_array_equal(found.stretches[:, :, first], whole["x_in_mm"][rows])
+    assert (rows[0, 0], rows[-1, -1]) == (0, 1999)
+
+
+def test_a_run_whose_time_stands_still_or_that_was_interpolated_is_known_as_such():
+    still = piece().columns["time_s"].copy()
+    still[900] = still[899]
+    assert not fingerprint(run("a"), [piece(time_s=still)]).increases
+    line = np.interp(np.arange(2000.0), np.arange(0, 2001, 10), WALK)
+    assert fingerprint(run("a"), [piece(x_in_mm=line)]).interpolated
+
+
+WALK = np.cumsum(np.random.default_rng(2).standard_normal(201))
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs"), [((), ()), ((700,), (300, 1100)), ((90, 1800), (1000,))]
+)
+def test_every_sample_meets_those_of_the_source_around_it(ours, theirs):
+    """Cut in any way; by 32 rows on either side, where there are so many."""
+    cut = [[piece(a, b) for a, b in pairwise([0, *cuts, 2000])] for cuts in (ours, theirs)]
+    met = list(side_by_side(iter(cut[0]), iter(cut[1]), ("f_in_N", "x_in_mm"), 0.5))
+    times = np.concatenate([now.time_s for _, now, _ in met])
+    np.testing.assert_allclose(times, piece().columns["time_s"] + 0.5)
+    values = np.concatenate([now.values for _, now, _ in met])
+    np.testing.assert_array_equal(values[:, 1], piece().columns["x_in_mm"])
+    assert [row for row, _, _ in met] == np.cumsum([0, *(n.time_s.size for _, n, _ in met)])[
+        :-1
+    ].tolist()
+    last = piece().columns["time_s"][-1]
+    for _, now, near in met:
+        begin, end = now.time_s[[0, -1]]
+        assert near.time_s[0] <= min(max(begin - 0.31, 5.0), last)
+        assert near.time_s[-1] >= min(end + 0.3, last) - 1e-9
