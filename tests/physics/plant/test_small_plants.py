@@ -82,17 +82,6 @@ def test_a_tendon_that_is_slack_at_times_does_what_the_slip_chain_does(values):
     assert not np.all(hangs)
 
 
-@pytest.mark.parametrize("name", ["play", "friction and spring"])
-def test_a_single_lump_that_hangs_for_a_while_does_what_a_single_node_does(name):
-    rig = with_values(STIFF._replace(preload_N=8.0), AT_DRIVE[name])
-    way = 4.0 * np.cos(2.0 * np.pi * np.arange(18) / 17.0) - 4.0
-    how = {"n": 1, "substeps": 8, "actuator": DAMPED}
-    lumped, _, unsettled = run(rig, way, STEP_S, lumped=True, **how)
-    assert unsettled <= 1
-    assert off(run(rig, way, STEP_S, lumped=False, **how)[0], lumped)[1] < 0.005
-    assert 4 < np.count_nonzero(lumped["f_out_N"] < 1e-9) < 9
-
-
 # The path is that of the tendon's end, and has no speed or place to the inverse: none is given.
 INVERTED = {"drive_compliance", *(e.name for e in EFFECTS if e.acts_on in ("tendon", "load"))}
 INVERTED -= {"stribeck_friction", "position_dependent_friction", "antagonist"}
