@@ -1,4 +1,4 @@
-"""Judge a sample of the mutants of physics/, identification/ and diagnosis/."""
+"""Judge a sample of the mutants of physics/, identification/, diagnosis/ and the quality checks."""
 
 import argparse
 import json

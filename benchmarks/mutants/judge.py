@@ -55,6 +55,9 @@ BENCHES = (
         limit_s=3,
         patience_s=8,
     ),
+    Bench(
+        ("recordings/quality",), ("tests/recordings/quality",), plain=False, limit_s=3, patience_s=8
+    ),
 )
 
 
@@ -120,7 +123,7 @@ class Workshop:
             return code
 
         code, output = self.child(bench, work, processor_s=3600)
-        (self.folder / f"look-{bench.packages[0]}.txt").write_text(output)
+        (self.folder / f"look-{Path(bench.packages[0]).name}.txt").write_text(output)
         if code and not bench.plain:  # one that needs compiled code judges no plain mutant
             raise SystemExit(f"the tests of {bench.packages[0]} do not pass:\n{output[-3000:]}")
 

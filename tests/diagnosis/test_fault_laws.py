@@ -10,8 +10,10 @@ from tsas_cli.diagnosis.faults import search as s
 from tsas_cli.diagnosis.faults import shapes
 from tsas_cli.diagnosis.faults.beside import Candidate, beside
 from tsas_cli.diagnosis.faults.candidates import candidates
+from tsas_cli.diagnosis.faults.rivals import leaves_noise
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
-from tsas_cli.diagnosis.faults.words import differing, record_of
+from tsas_cli.diagnosis.faults.words import differing, record_of, wandering
+from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 from tsas_cli.diagnosis.tolerances import frictions_of
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -88,9 +90,9 @@ def driven(monkeypatch):
     monkeypatch.setattr(shapes, "predict_driven", predict)
 
 
-def trial_of(residual):
-    unknowns = tuple(Unknown(name, None, 0.0, -1e6, 1e6, 1.0) for name in NAMES)
-    at_bound = np.array([False, False, True, False])
+def trial_of(residual, names=NAMES, bound=(2,)):
+    unknowns = tuple(Unknown(name, None, 0.0, -1e6, 1e6, 1.0) for name in names)
+    at_bound = np.isin(np.arange(4), bound)
     solution = Solution(np.zeros(4), at_bound, residual, JACOBIAN, True, "", 1)
     return HypothesisFit((), unknowns, solution, (2 * N,) * 2, on_mesh=False)
 
@@ -176,6 +178,16 @@ def test_a_length_of_one_run_is_its_stiffness():
     assert (best.code, best.channels) == ("run-length", ())
     assert best.amount == pytest.approx(0.1 if best.run else -0.1)
     assert best.reduction == pytest.approx(left.squares)
+
+
+@pytest.mark.parametrize("name", ["slack_mm", "tendon_stiffness_N"])
+def test_a_stiffness_that_is_not_free_is_told_by_a_difference_and_none_at_a_bound(name):
+    names = (NAMES[0], name, NAMES[2], NAMES[3])
+    trial = trial_of(-0.1 * JACOBIAN[:, 1] * (RUN == 1), names, (1, 2))
+    left = beside(trial, TOLERATED, RUN)
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)
+    lengths = [(c.run, c.amount) for c in best if c.code == "run-length"][:1]
+    assert lengths == ([] if name == NAMES[1] else [(1, pytest.approx(0.1))])
 
 
 @pytest.mark.parametrize("alike", [False, True])
@@ -322,6 +334,12 @@ def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(mon
         ("run-length", (), np.log(1.25), (), "its tendon is 1.25 times as stiff as in the other"),
         ("run-length", (), np.log(1.25), (), "sheath_length_mm were 0.8 times what is stated"),
         ("run-friction", (), np.log(0.5), (), "its friction is 0.5 times that of the other runs"),
+        ("run-lag", (X,), 0.08, (), "x_out_mm lags, as behind a low pass of 80 ms"),
+        ("lost-samples", (F,), -0.3, (7, None), "are lost: f_out_N comes 300 ms earlier than the"),
+        ("repeated-buffer", (F,), 0.3, (7, None), "are repeated: f_out_N comes 300 ms later than"),
+        ("ac-coupled", (F,), 5.55, (), "f_out_N loses its constant part within about 5.5 s, as"),
+        ("saturates", (F,), 46.0, (), "reads less than it should beyond about 46 N, as a sensor"),
+        ("hum", (F,), 1.5, (), "f_out_N swings at 1.5 Hz in all runs, whatever the motion"),
     ],
 )
 def test_a_fault_is_said_with_its_size_its_sign_and_its_time(code, channels, amount, between, said):
@@ -330,3 +348,21 @@ def test_a_fault_is_said_with_its_size_its_sign_and_its_time(code, channels, amo
     assert said in record.sentence
     assert record.sentence == f"run b: {of_all.sentence}"
     assert (record.run, record.column) == ("b", channels[0] if channels else None)
+
+
+def test_what_wanders_is_said_with_its_size_and_its_memory():
+    slow = {F: SlowPart(3.0, 1.25), X: SlowPart(2.0, 0.5)}
+    found = wandering(Remainder(9.0, {}, (), slow=slow))
+    assert found.column == F
+    assert "f_out_N wanders by 3 times its noise within 1.2 s and follows no" in found.sentence
+    assert wandering(Remainder(9.0, {}, ("x_in_mm",), slow=slow)) is None
+
+
+@pytest.mark.parametrize(("share", "noise"), [(1.14, True), (1.16, False)])
+def test_what_leaves_no_more_than_a_complete_model_may_leaves_noise(share, noise):
+    """15 % more than one for each residual, beside what is free and tolerated."""
+    plain = beside(trial_of(NOISE), TOLERATED, RUN).squares
+    search = search_of(NOISE * np.sqrt(share * RUN.size / plain))
+    for names in (frozenset(), frozenset({"backlash"})):
+        left = leaves_noise(search, names, SimpleNamespace(found=(fault(1.0),)))
+        assert left == noise

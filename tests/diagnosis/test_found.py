@@ -52,6 +52,8 @@ def test_single_effects_and_what_stands_in_place_of_the_named_ones():
     assert rows("ab", *sets) == [("ab", 60.0), ("a", 50.0), ("b", 20.0), ("ac", 10.0)]
     assert rows("", *sets) == [("a", 50.0), ("b", 20.0)]
     assert rows("a", (names("a"), True), (names(""), False)) == []
+    # What is named alone is worth what a new fit says, 48.2 %.
+    assert rows("a", (names("a"), False), (names("b"), False)) == [("a", 48.2), ("b", 20.0)]
 
 
 def test_a_candidate_says_how_it_was_fitted():

@@ -54,7 +54,7 @@ def test_pairs_hide_in_each_other_both_ways():
     sizes = [
         seen(LENGTH, 1.0, drive_compliance=11.0, backlash=11.0),
         seen("drive_compliance", 1.0, free_tendon=math.inf),
-        seen(PLAY, 1.0, free_tendon=9.0),
+        seen(PLAY, 1.0, free_tendon=9.0, load_inertia=math.inf),
     ]
     assert p._groups(sizes) == (("drive_compliance", "free_tendon"),)
 

@@ -341,3 +341,67 @@ def test_parts_within_the_interval_of_the_whole_do_not_differ(values, within):
     parts = tuple(zip(("low", "high"), values, strict=True))
     split = Split("backlash.play_mm", "speed", Reduction(0.1, 3.0), parts)
     assert p._within_interval(split, [CLEAR_PLAY]) == within
+
+
+HALF, HARDLY = np.full(40, 0.5), np.full(40, 0.99)
+BY_CHANCE = np.where(np.arange(40) % 4, 1.05, 0.3)  # in few blocks, a seventh of the squares
+APART = Split("backlash.play_mm", "speed", CLEAR, (("low", 0.09), ("high", 0.13)))
+ALIKE_PARTS = replace(APART, values=(("low", 0.09), ("high", 0.11)))
+OPPOSITE = replace(APART, values=(("low", -0.1), ("high", 0.3)))
+
+
+@pytest.mark.parametrize(
+    ("after", "how", "failed", "negligible", "law"),
+    [
+        (HALF, {}, [], False, False),
+        (HALF, {"zero": True}, [], False, False),
+        (HARDLY, {}, [], True, False),
+        (BY_CHANCE, {}, [], False, False),
+        (BY_CHANCE, {"zero": True}, [], True, False),
+        (HALF, {"tolerance": True}, ["is no more than a tolerance"], True, False),
+        (HALF, {"scatter": True}, ["is no more than a friction that"], True, False),
+        (HALF, {"split": APART}, [], False, True),
+        (HALF, {"split": ALIKE_PARTS}, [], False, False),
+        (HALF, {"split": OPPOSITE}, ["is not constant over"], False, False),
+        # More than a twentieth of what exceeds the noise, 40 · 3 − 40, is left by another law.
+        (HALF, {"split": APART, "structure": 4.1}, ["is not constant over"], False, False),
+        (HALF, {"split": APART, "structure": 3.9}, [], False, True),
+        (HALF, {"split": ALIKE_PARTS, "structure": 4.1}, ["is not constant over"], False, False),
+        (HALF, {"structure": 4.1}, [], False, False),
+    ],
+)
+def test_what_an_effect_of_the_last_fit_fails_to_prove(
+    monkeypatch, after, how, failed, negligible, law
+):
+    told = {"zero": False, "tolerance": False, "scatter": False, "split": None, "structure": 0.0}
+    told |= how
+    for name, answer in {
+        "worst_split": told["split"],
+        "may_be_zero": told["zero"],
+        "failures": (),
+        "within_tolerances": told["tolerance"],
+        "within_scatter": told["scatter"],
+        "largest_forces": {"f_in_N": 50.0},
+        "_of_another_law": (),
+    }.items():
+        monkeypatch.setattr(p, name, lambda *_, answer=answer, **__: answer)
+    name = frozenset({"backlash"})
+    judged = SimpleNamespace(
+        named=name,
+        rivals={"backlash": ("load_ripple",)},
+        bench=SimpleNamespace(closed=()),
+        folds=SimpleNamespace(block=np.arange(40), run=np.zeros(40, int)),
+        trial=lambda names: None,
+    )
+    moved = SimpleNamespace(estimates=(CLEAR_PLAY,), moved=(CLEAR_PLAY,), correlation=np.eye(1))
+    before, left = (HeldOutFit({}, {}, 3.0 * s, {}) for s in (np.ones(40), after))
+    held_out = {frozenset(): before, name: left}
+    last = p._LastFit(judged, moved, held_out, {}, told["structure"], np.zeros((40, 0)))
+    found = p._cause(last, "backlash")
+    assert [said.startswith(part) for said, part in zip(found.failed, failed, strict=True)] == [
+        True
+    ] * len(failed)
+    assert (found.negligible, bool(found.law_differs)) == (negligible, law)
+    assert found.gain_percent == pytest.approx(100.0 * (1.0 - np.sqrt(after.mean())))
+    assert found.gain_interval_percent[0] <= found.gain_percent <= found.gain_interval_percent[1]
+    assert (found.rivals, found.parameters) == (("load_ripple",), (CLEAR_PLAY,))

@@ -125,7 +125,10 @@ def test_a_law_that_differs_is_said_of_its_effect():
 
 @pytest.mark.parametrize(
     ("rms", "text"),
-    [(1.0, "1.00"), (1.004, "1.00"), (9.994, "9.99"), (9.996, "10.0"), (1234.0, "1230")],
+    [
+        *((1.0, "1.00"), (1.004, "1.00"), (9.994, "9.99"), (9.996, "10.0"), (99.96, "100")),
+        *((0.01234, "0.0123"), (1234.0, "1230")),
+    ],
 )
 def test_the_residual_is_said_to_three_digits(rms, text):
     channels = {"x_out_mm": HeldOutErrors(rms, rms, 0.1, 0.1)}

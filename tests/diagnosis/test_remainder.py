@@ -122,7 +122,11 @@ def test_an_error_far_above_the_noise_is_no_slow_noise():
         ((3.0, 3.4, 2.8, 3.1), True),
         ((-3.0, -3.4, -2.8, -3.1), True),  # a lead
         ((9.0, -8.0, 9.0, -8.0), False),  # errors of reversals, one by one
-        ((1.0, 1.1, 0.9, 1.0), False),
+        ((1.9, 1.95, 2.0, 1.95), False),
+        ((2.1, 2.15, 2.2, 2.15), True),
+        ((3.0, 3.4, 2.8), False),  # three strokes
+        ((6.0 + 2.51, 6.0 - 2.51) * 2, True),  # four standard errors, and a little more,
+        ((6.0 + 2.77, 6.0 - 2.77) * 2, False),  # or less
     ],
 )
 def test_strokes_that_all_lag_are_late(delays, late):
@@ -148,6 +152,23 @@ def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not
     some[300:330] += 9.0
     assert _is_brief(some)
     assert not any(map(_is_brief, (noise, 2.0 * noise, noise + slow, few)))
+
+
+@pytest.mark.parametrize(
+    ("rows", "far", "size", "brief"),
+    [
+        *((1000, 7, 12.0, False), (1000, 8, 12.0, True)),  # eight of them
+        *((1000, 60, 3.9, False), (1000, 60, 4.1, True)),  # four deviations
+        *((1000, 9, 4.05, False), (1000, 10, 4.05, True)),  # 0.15 of the squares
+        *((5400, 8, 20.0, False), (5200, 8, 20.0, True)),  # one counts for ten deviations
+    ],
+)
+def test_errors_are_brief_by_how_many_are_far_and_by_what_they_weigh(rows, far, size, brief):
+    """Beside noise whose quartiles are those of one deviation; three tenths are 2.5 of them."""
+    errors = 0.67449 * (-1.0) ** np.arange(rows)
+    errors[: 3 * rows // 10] *= 2.5 / 0.67449
+    errors[-far:] = size * np.sign(errors[-far:])
+    assert _is_brief(errors) == brief
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 
 from tests.diagnosis.planned import run
 from tsas_cli.diagnosis import simulated_runs
+from tsas_cli.diagnosis.further_runs import _clock
 from tsas_cli.diagnosis.motions import motion
 from tsas_cli.diagnosis.rig_file import PlannedRun, Sensors
 from tsas_cli.support.errors import InputError
@@ -89,3 +90,19 @@ def test_a_run_that_would_take_too_many_samples_is_refused(runs, fits):
     else:
         with pytest.raises(InputError, match="run a would take more than 1000000 samples"):
             simulated_runs._moved(runs, 100.0)
+
+
+def test_a_further_run_begins_five_minutes_after_the_last_one_ended():
+    """The second of two runs began an hour after the first, and lasted 90 s."""
+
+    def recorded(session_s, started=BEGIN + timedelta(hours=1)):
+        times = np.array([3.0, 93.0])
+        return SimpleNamespace(
+            session_s=session_s, time_s=times, run=SimpleNamespace(started=started)
+        )
+
+    first, last = recorded(0.0, BEGIN), recorded(3600.0)
+    for runs in ((first, last), (last, first)):
+        assert _clock(runs) == (BEGIN, BEGIN + timedelta(hours=1, seconds=90, minutes=5))
+    assert _clock((first,))[0] is None
+    assert _clock((recorded(60.0, None),))[0] is None

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tsas_cli.effects import EFFECTS, LAWS
 from tsas_cli.identification.fit import (
     Solution,
     Unknown,
@@ -206,3 +207,11 @@ def test_an_unknown_begins_at_its_neutral_value_or_at_a_given_one():
             return 3.0 * quantity.size
 
     assert further_unknown(name, Told()).initial == pytest.approx(3.0)
+
+
+def test_an_effect_is_in_units_of_the_way_from_nothing_to_its_start():
+    for effect in (*EFFECTS, *LAWS):
+        for one in effect.parameters:
+            size = QUANTITIES[f"{effect.name}.{one.name}"].size
+            way = abs(one.start - one.neutral)
+            assert size == (way or abs(one.start) or 1.0), one.name

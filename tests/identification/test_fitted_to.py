@@ -3,11 +3,12 @@
 import math
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tsas_cli.identification.fitted_to import FittedTo, departures, fitted_to, not_stated
+from tsas_cli.identification.fitted_to import FittedTo, _speeds, departures, fitted_to, not_stated
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import RigSheet, Run
 from tsas_cli.recordings.recording import Recording
@@ -124,6 +125,14 @@ def test_a_range_is_left_by_more_than_a_tenth_of_its_width_or_end():
     assert not_stated(FittedTo(ranges={"d_N": (0.0, 1.0), "a_N": (0.0, 1.0)}), fitted) == ["d_N"]
 
 
+def test_a_word_that_no_run_of_the_fit_had_leaves_it():
+    fitted = FittedTo(words={"tool": ("grasper", "hook")})
+    for words, left in ((("hook",), []), (("hook", "grasper"), []), (("hook", "knife"), ["tool"])):
+        here = FittedTo(words={"tool": words, "load": ("spring",)})
+        assert [one.quantity for one in departures(here, fitted)] == left
+        assert not_stated(here, fitted) == ["load"]
+
+
 def test_the_ranges_of_runs_go_from_the_lowest_to_the_highest():
     both = fitted_to(SHEET, [run(), run(bent(0.5), omega_rad_s=3.0)])
     assert both.ranges["total_bend_rad"] == pytest.approx((math.pi / 2.0, math.pi))
@@ -162,3 +171,17 @@ def test_the_speed_of_a_noisy_drive_is_that_of_its_motion():
         fitted_to(SHEET, [each]).ranges["speed_mm_per_s"][1] for each in (one, prepare(noisy))
     )
     assert speed == pytest.approx(clean_speed, rel=0.05)
+
+
+@pytest.mark.parametrize(("reversals", "window_s"), [(2, 4.0), (6, 2.0), (0, 4.0)])
+def test_a_speed_is_that_over_four_windows_or_a_tenth_of_a_stroke(reversals, window_s):
+    """A step of 1 mm within 100 s is as fast as the window is short."""
+    time_s = np.linspace(0.0, 100.0, 1001)
+    x_in = SimpleNamespace(
+        values=np.where(time_s > 50.0, 1.0, 0.0), reversals=np.zeros(reversals), window_s=1.0
+    )
+    speeds = _speeds(time_s, x_in)
+    assert speeds.max() == pytest.approx(1.0 / window_s)
+    assert np.mean(speeds > 0.5 / window_s) == pytest.approx(window_s / 100.0, rel=0.05)
+    x_in.window_s, x_in.values = 0.0, -3.0 * time_s
+    assert _speeds(time_s, x_in) == pytest.approx(np.full(1001, 3.0))

@@ -10,9 +10,10 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import fit_sentences as fs
 from tsas_cli.identification import joint_fit as j
+from tsas_cli.identification.base_fit import _zero_between, _zeros_by_laws
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown
-from tsas_cli.identification.fit_problem import FitProblem, rig_at
+from tsas_cli.identification.fit_problem import FitProblem, nominal_unknowns, rig_at
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
 
@@ -190,3 +191,55 @@ def test_what_is_fixed_is_said_once_for_each_reason():
         "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
     ]
     assert problem.ids == ["a", "b"]
+
+
+@pytest.mark.parametrize(("load", "bend_rad"), [("spring", 3.0), ("spring", None), ("force", 3.0)])
+def test_each_load_has_its_unknowns_as_far_off_as_they_may_be(load, bend_rad):
+    """A preload and a load's spring are told by a spring alone; a zero is off by a tenth."""
+    run = SimpleNamespace(id="a", load=load, total_bend_rad=bend_rad, sheath_length_mm=700.0)
+    runs = [SimpleNamespace(run=run, drive=SimpleNamespace(values=np.array([-3.0, 5.0])))] * 2
+    stated = Model((Estimate("friction_coefficient", 0.2, "1", "data sheet"),))
+    found = list(nominal_unknowns(stated, stated, runs, {"tendon_stiffness_N": (1e4, 2e4)}))
+    own = [("preload_N", 0), ("preload_N", 1)] if load == "spring" else []
+    zeros = [(f"x_{end}_zero_mm", k) for end in ("in", "out") for k in (0, 1)]
+    shared = ["friction_coefficient", *(["load_stiffness_N_per_mm"] if own else [])]
+    first = [(name, None) for name in shared]
+    expected = [*first, *own, ("tendon_stiffness_N", None), *zeros]
+    assert [(u.name, u.run) for u in found] == expected
+    scales = {u.name: u.scale for u in found}
+    assert scales["friction_coefficient"] == (1.0 if bend_rad else 7.0)
+    assert (scales["tendon_stiffness_N"], scales["x_in_zero_mm"]) == pytest.approx((7.0, 0.8))
+    tendon = next(u for u in found if u.name == "tendon_stiffness_N")
+    assert np.exp([tendon.lower, tendon.initial, tendon.upper]) == pytest.approx([1e4, 2e4, 2e4])
+    assert found[0].initial == pytest.approx(np.log(0.2))
+
+
+@pytest.mark.parametrize("far", [False, True])
+def test_a_run_is_laid_in_the_middle_of_the_displacements_that_a_law_holds_for(far):
+    """From 2 to 10 mm beside a law from 1 to 4 mm: by 6 less 2.5 mm."""
+    law = Model(
+        (
+            Estimate("drive_law.low_mm", 1.0, "mm", "given"),
+            Estimate("drive_law.high_mm", 4.0, "mm", "given"),
+        )
+    )
+    x = np.array([np.nan, 2.0, 10.0, 3.0]) if not far else np.full(4, np.nan)
+    run = SimpleNamespace(run=SimpleNamespace(id="a"), channel={"x_in_mm": x}.get)
+    found = _zeros_by_laws(law, run)
+    assert [(e.name, e.value, e.run) for e in found.estimates] == [("x_in_zero_mm", 3.5, "a")] * (
+        not far
+    )
+    assert _zeros_by_laws(Model(law.estimates[:1]), run).estimates == ()
+
+
+@pytest.mark.parametrize(("lead_mm", "slack"), [(-0.11, True), (-0.09, False)])
+def test_a_tendon_that_would_be_slack_between_two_drives_has_another_zero(lead_mm, slack):
+    """20 N stretch it by 0.1 mm, 30 N by half of that more."""
+    rig = GROUP_A._replace(preload_N=20.0, tendon_stiffness_N=4000.0, sheath_length_mm=20.0)
+    x = np.array([1.0, 2.0, 4.0])
+    ends = {"x_in_mm": SimpleNamespace(values=x + lead_mm), "x_out_mm": SimpleNamespace(values=x)}
+    run = SimpleNamespace(
+        measured={"f_out_N": np.full(3, 30.0)}, drive_column="x_in_mm", conditioned=ends
+    )
+    expected = {"x_in_zero_mm": pytest.approx(lead_mm - 0.05)} if slack else {}
+    assert _zero_between(run, rig) == expected

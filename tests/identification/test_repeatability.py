@@ -8,7 +8,7 @@ import pytest
 
 from tests.identification.recorded import ran
 from tsas_cli.identification.fitted_to import fitted_to
-from tsas_cli.identification.repeatability import StrokeAtTravel, repeatability
+from tsas_cli.identification.repeatability import StrokeAtTravel, _scatter, repeatability
 from tsas_cli.recordings.manifest import RigSheet
 
 RATE_HZ, NOISE_N, NOISE_MM = 193, 0.1, 0.005  # samples that fall between those of other strokes
@@ -41,14 +41,6 @@ def test_noise_alone_is_the_repeatability_of_strokes_that_repeat():
     assert one == pytest.approx(NOISE_N, rel=0.1)  # and not the loop of 20 N
 
 
-def test_what_differs_from_stroke_to_stroke_is_in_it():
-    offsets = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0]
-    (one,) = found(run(offsets_N=offsets))
-    # Without the first stroke three pull, with 1, 0 and -1 N, and four release, with 0, 1, 0, -1 N.
-    variance = (2.0 + 2.0) / (2 + 3) + NOISE_N**2
-    assert one == pytest.approx(math.sqrt(variance), rel=0.05)
-
-
 def test_x_out_repeats_where_strokes_begin_and_end_a_little_apart():
     """By 0.1 mm, twenty times the noise of x_out."""
     one = run((10.0, 9.9, 10.0, 10.1) * 3)
@@ -70,6 +62,31 @@ def test_a_stroke_repeats_another_within_a_fiftieth_of_its_way_and_a_tenth_of_it
         for share in (0.99, 1.01):
             other = replace(one, **{name: getattr(one, name) + sign * share * room})
             assert other.repeats(one) == (share < 1.0)
+
+
+def stroke(start_mm, end_mm, *values, name="f_in_N"):
+    """Return a stroke of 2 s whose channel goes straight between values, at even travels."""
+    travel_mm = np.linspace(0.0, abs(end_mm - start_mm), len(values))
+    return StrokeAtTravel(start_mm, end_mm, 2.0, {name: (travel_mm, np.array(values))})
+
+
+def test_the_scatter_is_that_of_all_strokes_about_the_mean_of_their_own_way():
+    """Three pull, by 1, 0 and -1 N, two release, 3 N apart: (2 + 4.5)/(2 + 1) N²."""
+    pulls = [stroke(0.0, 8.0, 10.0 + d, 30.0 + d) for d in (1.0, 0.0, -1.0)]
+    releases = [stroke(8.0, 0.0, 5.0 + d, 5.0 + d) for d in (1.5, -1.5)]
+    others = [stroke(0.0, 9.0, 0.0, 0.0), stroke(8.0, 0.0, 7.0, 7.0, name="f_out_N")]
+    variance = (2.0 + 4.5) / 3.0
+    found = _scatter([*pulls, *others, *releases], [*pulls, *others, *releases], "f_in_N", math.nan)
+    assert found == pytest.approx(math.sqrt(variance))
+    # Of another run's strokes only those count that repeat one of this run.
+    assert _scatter(pulls[:1], pulls + releases, "f_in_N", math.nan) == pytest.approx(1.0)
+    assert _scatter(pulls[:1], releases, "f_in_N", math.nan) is None
+
+
+def test_values_between_samples_scatter_less_by_two_thirds():
+    """Noise σ between two samples w apart has (w² + (1 − w)²) σ², 2/3 σ² on average."""
+    same = [stroke(0.0, 8.0, 10.0, 30.0)] * 3
+    assert _scatter(same, same, "f_in_N", 0.6) == pytest.approx(0.6 / math.sqrt(3.0))
 
 
 def test_runs_of_the_same_conditions_repeat_each_other():

@@ -18,7 +18,7 @@ from tests.physics.references import (
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.course import DRIVE, LOAD
 from tsas_cli.physics.lugre import state as rows
-from tsas_cli.physics.lugre.balance import balance, set_limits
+from tsas_cli.physics.lugre.balance import balance, end_friction, set_limits
 from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, phase_of
 from tsas_cli.physics.lugre.ends import (
     F_IN,
@@ -134,7 +134,11 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
     tensions = np.array([21.0, 22.0, 21.5, 22.3])
     start = np.array([[0.7, 0.5, 0.3, 0.2, 0.1], [*tensions, 0.0]])
     step = Step(1e-13, Given(21.5, 0.0), NONE, NONE, 0.14, 0.06, 2.0)
+    moving = (rows.SPEED, rows.SPEED_HISTORY, rows.RATE, rows.TENSION_SLOPE)
+    for row in moving:
+        nodes(s, row)[:] = 9.0
     ends = rest_at(s, start, step, at(law, DRIVEN_BY_FORCE))
+    assert not any(nodes(s, row).any() for row in moving)
     assert (ends.drive.tension, ends.drive.x) == (21.0, 0.7)
     assert (ends.load.tension, ends.load.x) == (22.3, 0.1)
     left = np.array([0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)])
@@ -288,3 +292,12 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
     assert 0.5 - 1e-9 < progress.reached_s < 0.5 + 1e-12
     assert progress.tries > progress.step_ends_s.size
     assert progress.step_ends_s[-1] == progress.reached_s
+
+
+def test_an_end_without_friction_has_none_and_bends_no_bristle():
+    law = cleared(GROUP_A)[1]
+    assert end_friction(0.3, 2.0, STEP, 0.0, law) == (0.0, 0.0, 0.0)
+    force, by_speed, deflection = end_friction(0.3, 2.0, STEP, 0.5, law)
+    ahead, behind = (end_friction(0.3, 2.0 + d, STEP, 0.5, law)[0] for d in (1e-5, -1e-5))
+    assert by_speed == pytest.approx((ahead - behind) / 2e-5, rel=1e-5)
+    assert (force > 0.0) == (deflection > 0.0)

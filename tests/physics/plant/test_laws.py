@@ -7,7 +7,14 @@ from tests.physics.plant.open_loop import run
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.plant.laws import friction_of_tendon, laws_at_rest, plant_laws
+from tsas_cli.physics.plant import laws as module
+from tsas_cli.physics.plant.laws import (
+    beside_drive,
+    friction_of_tendon,
+    laws_at_rest,
+    plant_laws,
+)
+from tsas_cli.physics.plant.turntable import Turntable
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
@@ -84,3 +91,28 @@ def test_a_reversal_ofthe_tendon_counts_in_proportion_as_it_moves_back():
     # 0.01 mm forward from 4.9 mm is 0.4 of a second reversal.
     expected[3] = 1.0 + 0.5 * (0.6 * np.exp(-0.09 / 6.4) + 0.4 * np.exp(-0.01 / 6.4))
     assert [friction_of_tendon(state, p, laws) for p in way] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_share_is_of_the_tension_without_the_force_of_the_step_before(way):
+    """Of 30 N less the line 2 N + 0.5 N/mm · 4 mm a tenth, once all elements have yielded."""
+    laws = plant_laws(rig_with("drive_law", {"travel_mm": 0.01, "share_1": 0.1}))
+    state = laws_at_rest(np.linspace(4.0 - way, 4.0, 11), 30.0, laws)
+    table = Turntable(4.0, 4.0, 0.0, 0.0, 30.0 + way * 3.0, 5.0 * way)
+    line = beside_drive(state.copy(), 4.0, table, 1e-3, laws)
+    assert line.ahead + 4.0 * line.slope == pytest.approx(way * 3.0)  # as at rest
+    state[module.AHEAD], state[module.SLOPE] = 2.0, 0.5
+    line = beside_drive(state, 4.0, Turntable(4.0, 4.0, 0.0, 0.0, 30.0, 5.0 * way), 1e-3, laws)
+    assert line.ahead + 4.0 * line.slope == pytest.approx(way * 0.1 * (30.0 - 2.0 - 2.0))
+    assert line.slope == pytest.approx(0.0, abs=1e-9)
+    assert state[module.SPEED] == pytest.approx(5.0 * way * (1.0 - np.exp(-1e-3 / 0.05)))
+
+
+def test_the_line_of_a_law_is_its_secant_over_a_step():
+    """An element of 2 N over 3 mm yields by 2/3 N/mm; at a turn of the way it is as stiff."""
+    laws = plant_laws(rig_with("drive_law", {"travel_mm": 3.0, "friction_1_N": 2.0}))
+    state = laws_at_rest(np.linspace(0.0, 1.0, 11), 30.0, laws)
+    for speed in (4.0, -4.0, 0.0):
+        table = Turntable(1.0, 1.0, 0.0, 0.0, 30.0, speed)
+        line = beside_drive(state.copy(), 1.0, table, 1e-2, laws)
+        assert (line.ahead + line.slope, line.slope) == pytest.approx((2.0 / 3.0, 2.0 / 3.0))

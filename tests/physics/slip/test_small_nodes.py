@@ -14,8 +14,10 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip import state as rows
 from tsas_cli.physics.slip.ends import drive_tangent, load_tangent, update_ends
 from tsas_cli.physics.slip.nodes import (
+    accept,
     breakaway,
     capstan_ratio,
+    is_linear,
     set_friction,
     slip_after_backwards,
     slips_backwards,
@@ -198,3 +200,34 @@ def test_the_tangents_of_both_ends_are_the_slopes_of_what_is_there(chain, way):
         slope, value = tangent(chain, NOW, slip_laws(rig, N, DRIVEN_BY_FORCE))
         assert slope * now + value == pytest.approx(force(now), rel=1e-9)
         assert slope == pytest.approx((force(now + 1e-6) - force(now - 1e-6)) / 2e-6, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("load_dependent_friction.exponent", "load_spring_nonlinearity.quadratic_per_mm"),
+        *("presliding.length_mm", "load_spring_nonlinearity.cubic_per_mm2"),
+        *("load_inertia.mass_kg", "load_ripple.sine_mm", "load_ripple.cosine_mm"),
+        "load_hysteresis.force_N",
+    ],
+)
+def test_a_law_that_bends_is_not_linear(name):
+    """Whatever its size; the nominal laws are, and so is a spring beside them."""
+    assert is_linear(laws({"load_damping.coefficient_N_s_per_mm": 1.0}))
+    assert not any(is_linear(laws({name: size})) for size in (1e-3, 1.0, 2.0))
+
+
+def test_an_accepted_step_is_the_one_before_and_a_bristle_slides_near_its_limit(chain):
+    """The rise of a step is where the next one is begun."""
+    shares = [0.999999, -0.999999, 0.9]
+    nodes(chain, rows.SHARE)[:] = shares
+    chain[rows.POSITION :][: N + 2], chain[rows.POSITION_BEFORE :][: N + 2] = 0.5, 0.2
+    before = chain[rows.TENSION_BEFORE :][: N + 2].copy()
+    accept(chain, BRISTLY)
+    assert nodes(chain, rows.SLIP).tolist() == [1.0, -1.0, 0.0]
+    assert nodes(chain, rows.SHARE_BEFORE).tolist() == shares
+    np.testing.assert_allclose(chain[rows.TRAVEL :][: N + 2], 0.3)
+    np.testing.assert_array_equal(chain[rows.POSITION_BEFORE :][: N + 2], 0.5)
+    now = chain[rows.TENSION :][: N + 2]
+    np.testing.assert_array_equal(chain[rows.TENSION_BEFORE :][: N + 2], now)
+    np.testing.assert_allclose(chain[rows.TENSION_RISE :][: N + 2], now - before)

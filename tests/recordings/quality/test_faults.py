@@ -278,3 +278,31 @@ def test_a_factor_of_both_forces_contradicts_the_stated_spring(factor):
     assert f"is {factor:.2g}" in remark.sentence
     assert "times load_stiffness_N_per_mm" in remark.sentence
     assert "unit and gain of f_out_N and x_out_mm" in remark.remedy
+
+
+FAULTS = {
+    "stuck": changed(x_out_mm=frozen_from(GOOD["x_out_mm"], 1700)),
+    "clipped": changed(x_in_mm=np.minimum(GOOD["x_in_mm"], 18.0)),
+    "late": changed(f_out_N=np.interp(TIME - 0.02, TIME, GOOD["f_out_N"])),
+    "exchanged": changed(f_in_N=GOOD["f_out_N"], f_out_N=GOOD["f_in_N"]),
+    "wrong sign": changed(x_in_mm=-GOOD["x_in_mm"]),
+    "coarse": changed(x_out_mm=np.round(GOOD["x_out_mm"] / 0.5) * 0.5),
+    "jump": changed(x_in_mm=GOOD["x_in_mm"] + 3.0 * (ROWS > 1234)),
+    "buffer": repeated(np.concatenate((ROWS[:1020], ROWS[1000:]))[:N]),
+    "lost": repeated(np.concatenate((ROWS[:700], ROWS[712:], ROWS[-12:]))),
+    "gap": with_gaps(),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_zeros_of_time_and_of_displacements_change_no_finding(fault):
+    """Nor does the length of a run's clock: all but the numbers in the sentences is the same."""
+    measured = FAULTS[fault]
+    zeros = {"time_s": 300.0, "x_in_mm": -40.0, "x_out_mm": -9.0}
+    moved = {name: values + zeros.get(name, 0.0) for name, values in measured.items()}
+    ours, theirs = (
+        [(code, f.severity, f.column, f.first_s and f.first_s - start) for code, f in found]
+        for found, start in ((remarks(measured), 0.0), (remarks(moved), 300.0))
+    )
+    assert [f[:3] for f in theirs] == [f[:3] for f in ours] != []
+    assert [f[3] or 0.0 for f in theirs] == pytest.approx([f[3] or 0.0 for f in ours], abs=1e-6)

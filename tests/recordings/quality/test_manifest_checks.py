@@ -5,8 +5,9 @@ from tsas_cli.recordings.quality import MANIFEST_CHECKS
 
 
 def remarks(rig=None, run=None, **top):
-    entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, **(run or {})}
-    content = {"format": 1, "name": "n", "kind": "measured", "rig": rig or {}, "run": [entry]}
+    entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64}
+    entries = run if isinstance(run, list) else [entry | (run or {})]
+    content = {"format": 1, "name": "n", "kind": "measured", "rig": rig or {}, "run": entries}
     manifest = Manifest.model_validate(content | top)
     return [(check.code, remark) for check in MANIFEST_CHECKS for remark in check.find(manifest)]
 
@@ -48,19 +49,39 @@ def test_a_condition_of_ones_own_in_a_run_is_no_finding():
     assert remarks({}, {"frequency_Hz": 0.5, "tool": "spindle"}) == []
 
 
-@pytest.mark.parametrize(
-    ("rig", "run", "likely"),
-    [
-        ({}, {"total_bend_rad": 180.0}, "degree"),
-        ({}, {"total_bend_rad": 45.0}, "degree"),
-        ({}, {"sheath_length_mm": 0.785}, "metre"),
-        ({"tendon_diameter_mm": 0.0012}, {}, "metre"),
-        ({"tendon_modulus_GPa": 6e4}, {}, "MPa"),
-        ({"tendon_modulus_GPa": 6e10}, {}, "Pa"),
-        ({"friction_coefficient": 12.5}, {}, "percent"),
-    ],
-)
-def test_a_value_in_another_unit_than_its_key(rig, run, likely):
-    ((code, remark),) = remarks(rig, run)
-    assert code == "manifest-unit"
+LIMITS = [
+    ("total_bend_rad", 50.01, 49.99, "degree"),
+    ("total_bend_rad", 45.0, 46.0, "degree"),  # a round number of degrees
+    ("total_bend_rad", 10.0, 5.0, "degree"),
+    ("sheath_length_mm", 4.99, 5.0, "metre"),
+    ("sheath_length_mm", 50_001.0, 50_000.0, "micrometre"),
+    ("tendon_diameter_mm", 0.0199, 0.02, "metre"),
+    ("tendon_diameter_mm", 50.1, 50.0, "micrometre"),
+    ("tendon_modulus_GPa", 1_001.0, 1_000.0, "MPa"),
+    ("tendon_modulus_GPa", 999_999.0, 200.0, "MPa"),
+    ("tendon_modulus_GPa", 1e6, 200.0, "Pa"),
+    ("friction_coefficient", 3.01, 3.0, "percent"),
+    ("proximal_length_mm", 0.49, 0.5, "metre"),
+    ("distal_length_mm", 0.01, 0.0, "metre"),
+    ("distal_length_mm", 0.49, 0.5, "metre"),
+]
+
+
+@pytest.mark.parametrize(("key", "wrong", "right", "likely"), LIMITS)
+def test_a_value_in_another_unit_than_its_key(key, wrong, right, likely):
+    run = key in ("total_bend_rad", "sheath_length_mm")
+    (remark,), none = (
+        [r for code, r in remarks({} if run else {key: v}, {key: v} if run else {})]
+        for v in (wrong, right)
+    )
     assert remark.sentence.endswith(f"looks like {likely}")
+    assert none == []
+
+
+def test_a_key_in_several_places_is_said_once():
+    files = [{"id": i, "file": f"{i}.parquet", "sha256": "0" * 64} for i in "ab"]
+    misspelt = [file | {"preload_n": 25} for file in files]
+    ((_, remark),) = remarks(run=misspelt)
+    assert remark.sentence.endswith("preload_n in run a and 1 more")
+    ((_, remark),) = remarks({"grip": 1}, run=[file | {"grip": 1} for file in files])
+    assert "the unknown key grip in [rig]" in remark.sentence

@@ -212,9 +212,8 @@ def accept(chain: Floats, laws: SlipLaws) -> None:
     if laws.presliding_mm > 0.0:
         for i in range(1, laws.n + 1):
             share = chain[at.SHARE + i]
-            direction = 1.0 if share > 0.0 else -1.0
             chain[at.SHARE_BEFORE + i] = share
-            chain[at.SLIP + i] = direction if abs(share) > SLIDING_SHARE else 0.0
+            chain[at.SLIP + i] = math.copysign(1.0, share) if abs(share) > SLIDING_SHARE else 0.0
     if not is_linear(laws):
         for j in range(laws.n + 2):
             chain[at.TRAVEL + j] = chain[at.POSITION + j] - chain[at.POSITION_BEFORE + j]
