@@ -122,7 +122,7 @@ def ends_of(
         at_load = true_value("x_out_mm", drive.load_values, drive.time_s, rig)
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
-        step_s[1:] = np.diff(time_s)
+        step_s[1:] = time_s[1:] - time_s[:-1]
     losses = losses_over(time_s, position, speed, drive.session_s, rig)
     direction = last_direction(at_drive, 0.0 if start is None else start[1])
     travel = since_reversal(at_drive, direction, math.inf if start is None else start[2])
