@@ -4,8 +4,10 @@ import json
 import os
 import pty
 import re
+import signal
 import subprocess
 import sys
+from contextlib import nullcontext
 
 import pytest
 
@@ -14,6 +16,7 @@ import tsas_cli.app
 from tests.rigs import dataset_of, recorded
 from tests.terminal import read_from
 from tests.test_app import CALLS
+from tsas_cli.commands.common import progress
 from tsas_cli.records.result import Result
 from tsas_cli.support.stopping import EXIT_CODE
 from tsas_studies.challenge.rig.tendon import Rig
@@ -191,11 +194,15 @@ def test_the_first_stop_ends_a_search_and_the_second_stops_it(
     assert found["reason"] in printed
 
 
-def test_under_make_the_first_stop_stops_a_search(searched, tmp_path):
-    out = tmp_path / "out"
-    program = ENDED.format(times=1, dataset=str(searched), out=str(out))
-    on_terminal([sys.executable, "-c", program], code=EXIT_CODE, MAKELEVEL="1")
-    assert not out.exists()
+def test_under_make_the_first_stop_stops_a_search(monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    for inside in (False, True):
+        monkeypatch.setenv("MAKELEVEL", "1") if inside else monkeypatch.delenv("MAKELEVEL", False)
+        with (
+            pytest.raises(KeyboardInterrupt) if inside else nullcontext(),
+            progress("fit", quiet=False, endable=True),
+        ):
+            signal.raise_signal(signal.SIGINT)
 
 
 def test_kernels_that_are_compiled_are_said(tmp_path):

@@ -8,10 +8,26 @@ import pytest
 from tsas_cli.diagnosis.faults.beside import Candidate
 from tsas_cli.diagnosis.faults.words import record_of
 from tsas_cli.stages.diagnose import diagnose
+from tsas_studies.challenge import bench
 from tsas_studies.challenge.cases import Case, Hidden
 from tsas_studies.challenge.make import make
 
 RATE_HZ = 30.0
+
+
+@pytest.fixture(scope="module", autouse=True)
+def simulated_once():
+    """A fault of the recording changes nothing of the motion: each is simulated once."""
+    kept, clean_run = {}, bench.clean_run
+
+    def once(*of, **how):
+        if (key := repr(of)) not in kept:
+            kept[key] = clean_run(*of, **how)
+        return kept[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bench, "clean_run", once)
+        yield
 
 
 def made(folder, kind, *hidden):

@@ -1,6 +1,7 @@
 """A law of unnamed origin for what the independent rig hides and no catalogue holds."""
 
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -29,23 +30,24 @@ from tsas_cli.identification.prepared import prepare
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_studies.challenge.rig.motions import sine
-from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
-from tsas_studies.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
 from tsas_studies.challenge.rig.transducers import Transducer
 
 PLAY_MM, NOISE_MM = 0.15, 0.01
 RIG = Rig(cells=60)
 
 
+@cache
+def clean(amplitude):
+    return simulate(RIG, sine(amplitude, rate_Hz=200.0))
+
+
 def bench_for(folder, sensors):
     """Return the bench of three runs of other amplitudes."""
     runs = [
-        Run(
-            name,
-            record(RIG, sine(amplitude, rate_Hz=200.0), sensors=sensors, seed=k),
-            conditions(RIG),
-        )
+        Run(name, measure(clean(amplitude), sensors, seed=k), conditions(RIG))
         for k, (name, amplitude) in enumerate((("a", 6.0), ("b", 8.0), ("c", 10.0)))
     ]
     data = read_dataset(write_dataset(folder, runs))

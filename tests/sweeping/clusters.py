@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 HERE = "127.0.0.1"
+CALM = {"OPENBLAS_NUM_THREADS": "1", "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False"}
 START_S = 60.0  # until a process has to be there, on a busy machine
 
 
@@ -27,18 +28,22 @@ class Cluster:
 
     def add(self, *, threads=1, **environment):
         """Add a worker and wait until the scheduler knows it."""
-        before = self.workers()
         call = ["worker", self.address, "--nthreads", threads, "--no-dashboard"]
         call += ["--local-directory", self.folder, "--no-nanny"]
-        worker = self._start(call, {"OPENBLAS_NUM_THREADS": "1"} | environment)
-        wait_for(lambda: self.workers() > before)
+        with self.client() as client:
+            before = workers(client)
+            worker = self._start(call, CALM | environment)
+            wait_for(lambda: workers(client) > before)
         return worker
 
-    def workers(self):
+    def client(self):
         from distributed import Client
 
-        with Client(self.address, set_as_default=False) as client:
-            return len(client.scheduler_info(n_workers=-1)["workers"])
+        return Client(self.address, set_as_default=False)
+
+    def workers(self):
+        with self.client() as client:
+            return workers(client)
 
     def _start(self, call, environment):
         variables = os.environ | {"PYTHONPATH": str(ROOT)} | environment
@@ -62,6 +67,10 @@ class Cluster:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+
+
+def workers(client):
+    return len(client.scheduler_info(n_workers=-1)["workers"])
 
 
 @contextmanager

@@ -169,16 +169,18 @@ def test_without_dask_the_line_says_what_to_install(monkeypatch, shared):
     refused("tcp://x:1", shared, r"pip install 'tsas\[dask\]'")
 
 
-def test_a_cluster_that_would_do_it_otherwise_is_refused(tmp_path, shared):
-    with cluster(tmp_path / "cluster") as made:
-        refused(made.address, shared, "has no workers; start some with `OPENBLAS_NUM")
-        worker = made.add(threads=2)
-        refused(made.address, shared, "runs 2 tasks at once in one process")
+def test_a_cluster_that_would_do_it_otherwise_is_refused(two, tmp_path, shared):
+    path = f"{other_version(tmp_path / 'other')}{os.pathsep}{ROOT}"
+    otherwise = {
+        "runs 2 tasks at once in one process": {"threads": 2},
+        r"worker tcp://\S+: tsas is 9.9.9; expected 0": {"PYTHONPATH": path},
+    }
+    for why, how in otherwise.items():
+        worker = two.add(**how)
+        refused(two.address, shared, why)
         worker.terminate()
         worker.wait()
-        other = other_version(tmp_path / "other")
-        made.add(PYTHONPATH=f"{other}{os.pathsep}{ROOT}")
-        refused(made.address, shared, r"worker tcp://\S+: tsas is 9.9.9; expected 0")
+        wait_for(lambda: two.workers() == 2)
 
 
 def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
@@ -190,6 +192,7 @@ def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
 
 def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, marks, shared):
     with cluster(tmp_path / "cluster", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as made:
+        refused(made.address, shared, "has no workers; start some with `OPENBLAS_NUM")
         made.add()
         made.add()
         outcomes = outcomes_of(made, "one_always_kills", texts(range(4)), shared)

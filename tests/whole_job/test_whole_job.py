@@ -83,6 +83,7 @@ def second(made, tmp_path_factory):
     root = tmp_path_factory.mktemp("second")
     elsewhere = {"TZ": "Asia/Kolkata", "PYTHONUTF8": "1", "PYTHONHASHSEED": "2"}
     elsewhere |= {"TSAS_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"} | german(root / "locale")
+    elsewhere["OPENBLAS_THREAD_TIMEOUT"] = "4"  # its threads sleep while they wait
     wrapped = SEALED if works(SEALED) else []
     return Job(root / "tiefer" / "Läufe 2", made, elsewhere, umask=0o077, wrapped=wrapped)
 

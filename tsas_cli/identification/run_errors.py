@@ -8,6 +8,7 @@ uncertain, and is reduced accordingly.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -155,10 +156,16 @@ class RunErrors:
 def _means(errors: Mapping[str, Floats]) -> Floats:
     parts = []
     for each in errors.values():
-        edges = mean_edges(each.size)
-        counts = np.diff(edges, append=each.size)
-        parts.append(np.add.reduceat(each, edges) / np.sqrt(counts))
+        edges, roots = _edges_and_roots(each.size)
+        parts.append(np.add.reduceat(each, edges) / roots)
     return np.concatenate(parts)
+
+
+@lru_cache
+def _edges_and_roots(size: int) -> tuple[Indices, Floats]:
+    """Return the first sample of each mean and the root of how many it is of."""
+    edges = mean_edges(size)
+    return edges, np.sqrt(np.diff(edges, append=size))
 
 
 def run_errors(

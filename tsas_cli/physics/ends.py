@@ -2,24 +2,24 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal, Self
+from typing import Literal, NamedTuple, Self
 
 import numpy as np
 
 from tsas_cli.effects import Effects
 from tsas_cli.effects.backlash import follow_play
-from tsas_cli.effects.bend_drift import drifted_bend
+from tsas_cli.effects.bend_drift import BendDrift, drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
-from tsas_cli.effects.friction_drift import friction_factor
+from tsas_cli.effects.friction_drift import FrictionDrift, friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
-from tsas_cli.effects.preload_loss import lost_preload
+from tsas_cli.effects.preload_loss import PreloadLoss, lost_preload
 from tsas_cli.effects.sheath_drag import drag_over
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import rippled
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.course import DIRECTION, DRIVE, MOTION, STEP, TRAVEL, Losses
 from tsas_cli.physics.rig import Rig
@@ -107,7 +107,8 @@ def ends_of(
         position = speed = np.zeros(n)
     else:
         x = drive.values - rig.x_in_zero_mm
-        at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
+        before = float(x[0]) if start is None else start[0]
+        at_drive = tendon_end(x, rig.effects.drive_ripple, rig.effects.backlash.play_mm, before)
         position, speed = at_drive, np.zeros(n)
         if (  # a fit asks thousands of times
             rig.effects.viscous_friction.coefficient_N_s_per_mm != 0.0
@@ -122,7 +123,7 @@ def ends_of(
         at_load = true_value("x_out_mm", drive.load_values, drive.time_s, rig)
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
-        step_s[1:] = np.diff(time_s)
+        step_s[1:] = time_s[1:] - time_s[:-1]
     losses = losses_over(time_s, position, speed, drive.session_s, rig)
     direction = last_direction(at_drive, 0.0 if start is None else start[1])
     travel = since_reversal(at_drive, direction, math.inf if start is None else start[2])
@@ -159,16 +160,17 @@ def boundary_of(drive: DriveInput) -> Boundary:
 
 
 @kernel
-def tendon_end(x: Floats, effects: Effects, position: float) -> Floats:
+def tendon_end(x: Floats, ripple: Wave, play_mm: float, position: float) -> Floats:
     """Return the positions of the tendon's end at the drive for displacements of the drive [mm].
 
-    `position` is the one before the first sample.
+    `position` is the one before the first sample. To hand over all effects would take a hundred
+    times as long as the loop.
     """
-    out, ripple = np.empty(x.size), effects.drive_ripple
+    out = np.empty(x.size)
     waves = ripple.sine_mm != 0.0 or ripple.cosine_mm != 0.0  # sines take half the time
     for i in range(x.size):
         moved = rippled(x[i], ripple) if waves else x[i]
-        position = follow_play(position, moved, effects.backlash.play_mm)
+        position = follow_play(position, moved, play_mm)
         out[i] = position
     return out
 
@@ -196,14 +198,56 @@ def since_reversal(x: Floats, direction: Floats, before: float) -> Floats:
     return out
 
 
-@kernel
+class LossValues(NamedTuple):
+    """The values of a rig that its losses depend on.
+
+    To hand over the whole rig would take a hundred times as long as the loop.
+    """
+
+    friction_coefficient: float
+    total_bend_rad: float
+    asymmetry: float
+    friction_drift: FrictionDrift
+    bend_drift: BendDrift
+    slope_per_mm: float
+    viscous_N_s_per_mm: float
+    drag_N: float
+    preload_loss: PreloadLoss
+
+
+def loss_values(rig: Rig) -> LossValues:
+    """Return the values that the losses of a rig depend on."""
+    effects = rig.effects
+    return LossValues(
+        rig.friction_coefficient,
+        rig.total_bend_rad,
+        effects.direction_dependent_friction.asymmetry,
+        effects.friction_drift,
+        effects.bend_drift,
+        effects.position_dependent_friction.slope_per_mm,
+        effects.viscous_friction.coefficient_N_s_per_mm,
+        effects.sheath_drag.force_N,
+        effects.preload_loss,
+    )
+
+
+_loss_values = kernel(loss_values)
+
+
 def losses_over(
     time_s: Floats, position: Floats, speed: Floats, session_s: float, rig: Rig
 ) -> Floats:
     """Return `losses_at` for each time, shape (4, n)."""
+    return _losses_over(time_s, position, speed, session_s, loss_values(rig))
+
+
+@kernel
+def _losses_over(
+    time_s: Floats, position: Floats, speed: Floats, session_s: float, values: LossValues
+) -> Floats:
     out = np.empty((4, time_s.size))
     for i in range(time_s.size):
-        now = losses_at(time_s[i], position[i], speed[i], session_s, rig)
+        now = _losses(time_s[i], position[i], speed[i], session_s, values)
         out[0, i], out[1, i], out[2, i], out[3, i] = now
     return out
 
@@ -211,15 +255,19 @@ def losses_over(
 @kernel
 def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
     """Return the losses at one moment, by position and speed of the end at the drive [mm, s]."""
-    effects = rig.effects
-    asymmetry = effects.direction_dependent_friction.asymmetry
-    wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
-    wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, time_s)
-    wrap *= position_factor(position, effects.position_dependent_friction.slope_per_mm)
+    return _losses(time_s, position, speed, session_s, _loss_values(rig))
+
+
+@kernel
+def _losses(
+    time_s: float, position: float, speed: float, session_s: float, values: LossValues
+) -> Losses:
+    wrap = values.friction_coefficient * friction_factor(values.friction_drift, time_s, session_s)
+    wrap *= drifted_bend(values.total_bend_rad, values.bend_drift, time_s)
+    wrap *= position_factor(position, values.slope_per_mm)
     return Losses(
-        wrap * direction_factor(asymmetry, 1.0),
-        wrap * direction_factor(asymmetry, -1.0),
-        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
-        + drag_over(1.0, effects.sheath_drag.force_N),
-        lost_preload(effects.preload_loss, time_s),
+        wrap * direction_factor(values.asymmetry, 1.0),
+        wrap * direction_factor(values.asymmetry, -1.0),
+        viscous_loss(speed, values.viscous_N_s_per_mm) + drag_over(1.0, values.drag_N),
+        lost_preload(values.preload_loss, time_s),
     )

@@ -33,13 +33,17 @@ def with_values(rig: Rig, values: Mapping[str, float]) -> Rig:
 
     Names are effect.parameter for effects and bristles.parameter for the dynamic model.
     """
-    own: dict[str, Any] = {name: value for name, value in values.items() if "." not in name}
-    effects, bristles = rig.effects, rig.bristles
+    own: dict[str, Any] = {}
+    grouped: dict[str, dict[str, float]] = {}
     for name, value in values.items():
         group, dot, parameter = name.partition(".")
-        if group == "bristles":
-            bristles = bristles._replace(**{parameter: value})
-        elif dot:
-            changed = getattr(effects, group)._replace(**{parameter: value})
-            effects = effects._replace(**{group: changed})
-    return rig._replace(effects=effects, bristles=bristles, **own)
+        if dot:
+            grouped.setdefault(group, {})[parameter] = value
+        else:
+            own[name] = value
+    if (bristles := grouped.pop("bristles", None)) is not None:
+        own["bristles"] = rig.bristles._replace(**bristles)
+    if grouped:
+        changed = {group: getattr(rig.effects, group)._replace(**v) for group, v in grouped.items()}
+        own["effects"] = rig.effects._replace(**changed)
+    return rig._replace(**own)

@@ -22,9 +22,9 @@ MADE = {
 BOTH = ["/joint.position[0]", "/force.newton"]
 
 
-@pytest.fixture(params=list(MADE))
-def bag(request, tmp_path):
-    return MADE[request.param](tmp_path / request.param)
+@pytest.fixture(scope="module", params=list(MADE))
+def bag(request, tmp_path_factory):
+    return MADE[request.param](tmp_path_factory.mktemp("bag") / request.param)
 
 
 def test_every_field_of_numbers_is_a_column(bag):

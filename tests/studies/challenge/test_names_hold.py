@@ -8,9 +8,9 @@ import json
 
 import pytest
 
+from tests.studies.challenge.recorded import recordings
 from tsas_cli.stages.diagnose import diagnose
 from tsas_studies.challenge.cases import cases
-from tsas_studies.challenge.make import make
 from tsas_studies.challenge.right_kind import RIGHT_KIND
 
 SEED = 3  # for building, never for scoring
@@ -20,9 +20,8 @@ EACH_TIME = ("strand_roll, size 1", "nothing 1 in slow noise")
 
 def diagnosed(case, folder):
     small = case.name in EACH_TIME
-    make(folder, [case], rate_Hz=30.0 if small else 100.0)
-    (dataset,) = (folder / "cases").glob("*/dataset")
-    diagnose(dataset, runs=["a", "b"] if small else None, out=folder / "answer")
+    how = {"rate_Hz": 30.0, "runs": "ab"} if small else {"rate_Hz": 100.0}
+    diagnose(recordings(folder, case, **how), out=folder / "answer")
     return json.loads((folder / "answer" / "diagnosis.json").read_text())
 
 
