@@ -19,6 +19,7 @@ CASES = part(cases(SEED))
 # tests/diagnosis/test_faults.py finds friction in the sheath that depends on the motion.
 EACH_TIME = {  # with the rate that is enough [Hz]
     "backlash, size 1": 30.0,
+    "viscous_friction, size 1": 50.0,
     "load_friction, size 1": 30.0,
     "force_sensor_gain, size 1": 30.0,
     "sheath_compression, size 1": 30.0,  # what a softer tendon does too
