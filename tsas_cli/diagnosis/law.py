@@ -91,20 +91,17 @@ def describe(
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
 
-    `unproven` is the trial with further effects that gain and are not proven. Where they predict,
-    laws are sought beside these effects first.
+    `unproven` is the trial with further effects that gain and are not proven: the laws act beside
+    these where that predicts better.
     """
     ranges = ranges_of([run.run for run in bench.closed])
     bench = in_channel_units(bench, trial, ranges)
-    starts = [_without_slopes(trial)]
-    if unproven is not None:
-        step.doing("fits the effects that are not proven")
-        starts = _better_first(bench, starts[0], _without_slopes(unproven), folds)
-    found = next(
-        filter(None, (_found(bench, start, folds, ranges, step) for start in starts)), None
-    )
+    found = _found(bench, _without_slopes(trial), folds, ranges, step)
     if found is None:
         return None
+    if unproven is not None:
+        step.doing("fits the laws beside effects that are not proven")
+        found = _beside(found, unproven, folds)
     bench, best, rivals = found
     solution = best.trial.solution
     covariance, _ = jackknife(
@@ -176,16 +173,17 @@ def _found(
     return _Found(*_at_lower_cost(bench, best, folds, scatter=scatter), tuple(rivals))
 
 
-def _better_first(
-    bench: Bench, trial: HypothesisFit, unproven: HypothesisFit, folds: Folds
-) -> list[HypothesisFit]:
-    """Return a trial, after that with effects that are not proven where this predicts better."""
-    mesh = bench.on_mesh([*trial.effects, *unproven.effects])
-    scatter = scatter_is_no_effect(trial, folds.run)
-    fits = [bench.fit(sorted(t.effects), near=t, on_mesh=mesh) for t in (unproven, trial)]
-    after, before = (refitted(bench, fit, folds, scatter=scatter) for fit in fits)
-    better = gain(before.squares, after.squares).beyond(AS_WELL) and not _worse(before, after)
-    return fits if better else [trial]
+def _beside(found: _Found, unproven: HypothesisFit, folds: Folds) -> _Found:
+    """Return the laws beside the effects of a trial too, where that predicts better."""
+    bench, best, _ = found
+    names = [*sorted(unproven.effects), *best.names]
+    mesh = best.trial.on_mesh or bench.on_mesh(names)
+    initial = unproven.values() | best.trial.values()
+    fitted = bench.fit(names, initial, near=best.trial, on_mesh=mesh)
+    after = refitted(bench, fitted, folds, scatter=scatter_is_no_effect(best.trial, folds.run))
+    if _worse(best.after, after) or not gain(best.after.squares, after.squares).beyond(AS_WELL):
+        return found
+    return found._replace(best=best._replace(trial=fitted, after=after))
 
 
 def _at_lower_cost(
