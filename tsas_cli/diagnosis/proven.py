@@ -72,6 +72,11 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
         proven = _judged(search, judged, tuple(stand_ins))
         first = first or proven
         failing = [cause for cause in proven.causes if cause.failed]
+        if failing:
+            weakest = min(failing, key=lambda cause: cause.gain_percent)
+            instead = _with_a_rival(search, weakest, tuple(stand_ins), step)
+            if instead is not None:
+                proven, failing = instead, []
         if not failing:
             if proven.after.complete:
                 kept = [
@@ -81,10 +86,6 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
                 ]
                 proven = replace(proven, stand_ins=tuple(kept))
             return replace(proven, with_stand_ins=first.estimates, whole=first.judged)
-        weakest = min(failing, key=lambda cause: cause.gain_percent)
-        instead = _with_a_rival(search, weakest, tuple(stand_ins), step)
-        if instead is not None:
-            return replace(instead, with_stand_ins=first.estimates, whole=first.judged)
         if not weakest.negligible:
             stand_ins.append(weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
