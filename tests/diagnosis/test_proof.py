@@ -261,25 +261,28 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
 
 
 @pytest.mark.parametrize(
-    ("proven", "named", "rivals"),
+    ("proven", "law", "complete", "named", "rivals"),
     [
-        ({"load_ripple", "free_tendon"}, "load_ripple", ("free_tendon", "friction_drift")),
-        ({"free_tendon", "friction_drift"}, "free_tendon", ("load_ripple", "friction_drift")),
-        ({"friction_drift"}, None, ()),  # the third does not fit as well as the first two
+        ({"load_ripple"}, "", True, "load_ripple", ("free_tendon", "friction_drift")),
+        ({"free_tendon"}, "", True, "free_tendon", ("load_ripple", "friction_drift")),
+        ({"friction_drift"}, "", True, None, ()),  # fits worse than the first two
+        ({"load_ripple"}, "", False, None, ()),  # more than noise is left
+        ({"load_ripple"}, "over the speed", True, None, ()),
     ],
 )
 def test_an_effect_that_fails_gives_way_to_a_rival_that_is_proven(
-    monkeypatch, proven, named, rivals
+    monkeypatch, proven, law, complete, named, rivals
 ):
     def judged(search, fits, found):
         causes = [
             FoundCause(
-                *(name, search.rivals[name], (), 9.0, (8.0, 10.0)),
+                *(name, search.rivals[name], (CLEAR_PLAY,), 9.0, (8.0, 10.0)),
                 failed=() if name in proven | {"preload_loss"} else ("fails",),
+                law_differs=law if name in proven else "",
             )
             for name in search.rivals
         ]
-        after = SimpleNamespace(complete=False)
+        after = SimpleNamespace(complete=complete)
         return p.Proven(search, fits, tuple(causes), found, (), {}, after, after, None)
 
     monkeypatch.setattr(p, "_judged", judged)

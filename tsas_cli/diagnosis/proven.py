@@ -61,9 +61,9 @@ class Proven:
 def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
-    The one that fails and gains least gives way to a rival that does not, or is left out, and the
-    others are fitted again, until none fails. What is negligible is no stand-in; nor, where nothing
-    is left without it, what may be zero or gains too little.
+    The one that fails and gains least gives way to a rival that explains all, or is left out, and
+    the others are fitted again, until none fails. What is negligible is no stand-in; nor, where
+    nothing is left without it, what may be zero or gains too little.
     """
     stand_ins: list[FoundCause] = []
     first: Proven | None = None
@@ -95,13 +95,17 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
 def _with_a_rival(
     search: Hypotheses, failing: FoundCause, stand_ins: tuple[FoundCause, ...], step: Steps
 ) -> Proven | None:
-    """Return the effects with a rival in the place of one that fails, where all then are proven."""
+    """Return the effects with a rival in the place of one that fails.
+
+    None where one of them is not proven then by the catalogue's law, or more than noise is left.
+    """
     for other in failing.rivals[:MOST_RIVALS]:
         rivals = {name: r for name, r in search.rivals.items() if name != failing.effect}
         rivals[other] = tuple(name for name in failing.rivals if name != other)
         instead = replace(search, named=frozenset(rivals), rivals=rivals)
         proven = _judged(instead, reweighted_hypotheses(instead, step), stand_ins)
-        if not any(cause.failed for cause in proven.causes):
+        doubtful = any(cause.failed or cause.law_differs for cause in proven.causes)
+        if proven.after.complete and not doubtful:
             return proven
     return None
 
