@@ -206,10 +206,9 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     if named:
         nominal = estimates_with_tolerances(judged, before, tolerances(bench, before)).estimates
     complete = after.complete and not any(cause.law_differs for cause in causes)
-    law = None
+    law, whole = None, proven.whole if stand_ins else None
     if not after.complete:
-        whole = proven.whole if stand_ins else None
-        unproven = None if whole is None else whole.trial(whole.named)
+        unproven = None if whole is None else whole.judged.trial(whole.judged.named)
         law = describe(bench, final, predicted_folds(final, folds), step, unproven)
     if law is not None:  # one number of one name: before the law is after the causes
         law = replace(law, before=proven.held_out[named])
@@ -251,7 +250,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         before,
         final,
         base.not_identifiable,
-        Model(proven.with_stand_ins).over(base.model) if stand_ins and law is None else None,
+        Model(whole.estimates).over(base.model) if whole is not None and law is None else None,
         law,
         fault,
     )

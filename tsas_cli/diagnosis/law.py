@@ -167,10 +167,10 @@ def _found(
     most = max(f.part for f in found)
     as_good = [f for f in found if 1.0 - f.part <= (1.0 + AS_WELL) * (1.0 - most)]
     best = min(as_good, key=lambda f: (len(f.names), -f.part))
-    rivals = ["+".join(f.names) for f in as_good if len(f.names) == len(best.names)]
-    rivals.remove("+".join(best.names))
+    rivals = [f for f in as_good if len(f.names) == len(best.names) and f is not best]
     step.doing(f"fits {' + '.join(best.names)} with a lower cost of its parameters")
-    return _Found(*_at_lower_cost(bench, best, folds, scatter=scatter), tuple(rivals))
+    bench, best = _at_lower_cost(bench, best, folds, scatter=scatter)
+    return _Found(bench, best, tuple("+".join(f.names) for f in rivals))
 
 
 def _beside(found: _Found, unproven: HypothesisFit, folds: Folds) -> _Found:

@@ -40,9 +40,9 @@ class Proven:
     """The effects that prove to be causes, with their fits, and those that do not.
 
     `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
-    `start` is what remains without them and `after` what remains with them; `with_stand_ins` are
-    the estimates with all effects that gain, and `whole` has their fit. `tolerated` is what one
-    standard deviation of each tolerance changes in the fit of the causes, shape (n, m).
+    `start` is what remains without them and `after` what remains with them. `tolerated` is what one
+    standard deviation of each tolerance changes in the fit of the causes, shape (n, m). `whole` is
+    the set of all effects that gain, as it was judged.
     """
 
     search: Hypotheses
@@ -54,8 +54,7 @@ class Proven:
     start: Remainder
     after: Remainder
     tolerated: Floats
-    with_stand_ins: tuple[Estimate, ...] = ()
-    whole: Hypotheses | None = None
+    whole: "Proven | None" = None
 
 
 def proven_effects(search: Hypotheses, step: Steps) -> Proven:
@@ -85,7 +84,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
                     if cause.convincing and not may_be_zero(cause.effect, cause.parameters)
                 ]
                 proven = replace(proven, stand_ins=tuple(kept))
-            return replace(proven, with_stand_ins=first.estimates, whole=first.judged)
+            return replace(proven, whole=first)
         if not weakest.negligible:
             stand_ins.append(weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
