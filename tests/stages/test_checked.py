@@ -7,20 +7,9 @@ import tsas_cli as tsas
 from tests.rigs import dataset_of, recorded
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.support.steps import Steps
 from tsas_studies.challenge.rig.tendon import Rig
 
 RIG = Rig(cells=60)
-
-
-class Said(Steps):
-    """Keeps what a stage says."""
-
-    def __init__(self):
-        self.said = []
-
-    def say(self, sentence):
-        self.said.append(sentence)
 
 
 @pytest.fixture(scope="module")
@@ -72,16 +61,15 @@ def test_a_warning_is_an_error_where_most_runs_have_it(tmp_path):
         assert len(found) == (2 if name == "both" else 1)
 
 
-def test_what_the_checks_warn_of_is_said_before_a_fit(tmp_path):
+def test_what_the_checks_warn_of_stands_in_the_result(tmp_path):
     good = recorded(RIG, 200.0)
     kept = np.delete(np.arange(good["time_s"].size), np.arange(900, 930))
     lost = {n: v[: kept.size] if n == "time_s" else v[kept] for n, v in good.items()}
-    for runs, said in (({"a": good, "b": lost}, ["b"]), ({"a": good}, [])):
-        step = Said()
-        folder = dataset_of(RIG, tmp_path / "-".join(runs), **runs)
-        tsas.calibrate(folder, step=step)
-        warned = [s for s in step.said if "the checks warn of lost-samples" in s]
-        assert [s.partition("(")[2].partition(")")[0] for s in warned] == said
+    for runs, warned in (({"a": good, "b": lost}, ["b"]), ({"a": good}, [])):
+        result = tsas.calibrate(dataset_of(RIG, tmp_path / "-".join(runs), **runs))
+        assert [w.run for w in result.record.warnings if w.code == "lost-samples"] == warned
+        said = [s for s in result.sentences() if "(`lost-samples`)" in s]
+        assert [s.partition(":")[0] for s in said] == ["- The checks warn of run b"] * len(warned)
 
 
 def test_an_error_that_runs_share_is_said_once(tmp_path):

@@ -5,7 +5,7 @@ is left alone (docs/formats.md).
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -165,32 +165,41 @@ class StageFile(Record):
 class OfDataset(StageFile):
     """What a stage says of a dataset; `chosen` and `conditions` as of `DatasetSource`.
 
-    `despite` are the errors in the recordings that were accepted.
+    `despite` are the errors in the recordings that were accepted, `warnings` what the checks warn
+    of.
     """
 
-    SPARSE = DatasetSource.SPARSE | {"despite"}
+    SPARSE = DatasetSource.SPARSE | {"despite", "warnings"}
     dataset: DatasetSource
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
     despite: tuple[Finding, ...] = ()
+    warnings: tuple[Finding, ...] = ()
 
     def accepted(self) -> list[str]:
         """Return a sentence for each kind of error in the recordings that was accepted."""
-        found: dict[tuple[str, str | None], list[Finding]] = {}
-        for error in self.despite:
-            found.setdefault((error.code, error.column), []).append(error)
-        said = []
-        for (code, _), errors in found.items():
-            where = listed([f"run {e.run}" if e.run else "the manifest" for e in errors])
-            alike = len({e.sentence for e in errors}) == 1
-            of_first = "" if alike else " (the first)"
-            said.append(f"Despite an error in {where}{of_first}: {errors[0].sentence} (`{code}`).")
-        return said
+        return _sentences("Despite an error in", self.despite)
+
+    def warned(self) -> list[str]:
+        """Return a sentence for each kind of warning of the checks."""
+        return _sentences("The checks warn of", self.warnings)
 
     def source(self) -> DatasetSource:
         """Return the recordings as a model file names them."""
         said = {"chosen": self.chosen, "conditions": self.conditions}
         return self.dataset.model_copy(update=said)
+
+
+def _sentences(opening: str, findings: Sequence[Finding]) -> list[str]:
+    kinds: dict[tuple[str, str | None], list[Finding]] = {}
+    for one in findings:
+        kinds.setdefault((one.code, one.column), []).append(one)
+    said = []
+    for (code, _), alike in kinds.items():
+        where = listed([f"run {one.run}" if one.run else "the manifest" for one in alike])
+        of_first = "" if len({one.sentence for one in alike}) == 1 else " (the first)"
+        said.append(f"{opening} {where}{of_first}: {alike[0].sentence} (`{code}`).")
+    return said
 
 
 class ModelFile(Record):

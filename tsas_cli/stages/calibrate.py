@@ -25,7 +25,7 @@ from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of, span_text
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.check import accepted_errors, unrecorded
+from tsas_cli.stages.check import errors_and_warnings, unrecorded
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -90,7 +90,7 @@ class CalibrationResult(Result):
 
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
-        return notes([*self.record.accepted(), *self.record.cannot_tell])
+        return notes([*self.record.accepted(), *self.record.warned(), *self.record.cannot_tell])
 
 
 def _few(runs: str, of: int) -> str:
@@ -150,7 +150,7 @@ def calibrate(
     data, given, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
-        accepted = accepted_errors(data, despite, step)
+        checked = errors_and_warnings(data, despite, step)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
         prepared = []
@@ -166,7 +166,7 @@ def calibrate(
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
         record = records.CalibrationFile(
             **counted.dataset.header(path),
-            despite=accepted,
+            **checked,
             model=source_of(given, path),
             dynamics=taken,
             segments={

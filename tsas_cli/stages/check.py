@@ -24,7 +24,6 @@ _SHOWN_BY = {
     "f_out_N": "the tension at the load rests on its stiffness, and errors of the distal force "
     "sensor cannot be judged",
 }
-FEW = 3  # runs that are named
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -96,12 +95,12 @@ def check(
     return CheckResult(record.content(), folder, record)
 
 
-def accepted_errors(
+def errors_and_warnings(
     dataset: Dataset, despite: str | Iterable[str], step: Steps, further: Sequence[str] = ()
-) -> tuple[Finding, ...]:
-    """Return the errors of the checks whose codes are in `despite`.
+) -> dict[str, tuple[Finding, ...]]:
+    """Return what the checks find: the errors whose codes are in `despite`, and the warnings.
 
-    `further` codes are allowed there too; `step` counts runs, and says what the checks warn of.
+    By their names in `OfDataset`. `further` codes are allowed in `despite` too; `step` counts runs.
 
     Raises
     ------
@@ -111,13 +110,6 @@ def accepted_errors(
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
     found = [one for one in check_runs(dataset, step).findings if one.code in CODES]
     errors = [one for one in found if one.severity == "error"]
-    warned: dict[str, dict[str, None]] = {}
-    for one in found:
-        if one.severity == "warning":
-            warned.setdefault(one.code, {})[one.run or MANIFEST_FILE] = None
-    for code, runs in warned.items():
-        where = ", ".join(runs) if len(runs) <= FEW else count_of(len(runs), "run")
-        step.say(f"the checks warn of {code} ({where}): see `tsas check`")
     refused = [one for one in errors if one.code not in accepted]
     if refused:
         first, *others = refused
@@ -129,7 +121,8 @@ def accepted_errors(
             where=MANIFEST_FILE if first.run is None else files[first.run],
             remedy=f"{first.remedy}, or accept what `tsas check` finds with {options}",
         )
-    return tuple(errors)
+    warnings = [one for one in found if one.severity == "warning"]
+    return {"despite": tuple(errors), "warnings": tuple(warnings)}
 
 
 def unrecorded(columns: Sequence[Container[str]]) -> Iterator[str]:

@@ -27,7 +27,7 @@ from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.check import accepted_errors, unrecorded
+from tsas_cli.stages.check import errors_and_warnings, unrecorded
 from tsas_cli.stages.given import Named, dataset_of, listed, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
@@ -129,7 +129,7 @@ class DiagnosisResult(Result):
             *(law.sentence for law in self.record.laws),
             *(noise.text(name) for name, noise in slow.items()),
             f"Next: {self.next_experiment}",
-            *notes([*self.record.accepted(), *self.record.cannot_tell]),
+            *notes([*self.record.accepted(), *self.record.warned(), *self.record.cannot_tell]),
         ]
 
 
@@ -179,7 +179,7 @@ def diagnose(
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
-        accepted = accepted_errors(data, despite, step, further=CODES)
+        checked = errors_and_warnings(data, despite, step, further=CODES)
         counted = without_duplicates(data)
         step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)
@@ -193,7 +193,7 @@ def diagnose(
         result = diagnose_runs(data.manifest, stated, prepared, step, accepted=listed(despite))
         record = records.DiagnosisFile(
             **counted.dataset.header(path),
-            despite=accepted,
+            **checked,
             model=source_of(known, path),
             verdict=result.verdict,
             reason=result.reason,
