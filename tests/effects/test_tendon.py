@@ -22,6 +22,7 @@ from tests.physics.references import (
 )
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.effects.free_tendon import free_compliance
+from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck, stribeck_factor
 from tsas_cli.physics.response import NODES, DriveInput, simulate
 from tsas_cli.physics.rig import with_values
 
@@ -76,6 +77,16 @@ def test_slow_sliding_has_more_friction(direction, speed):
     wrap = direction * np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
     assert np.all(least + 0.2 * (most - least) < wrap)
     assert np.all(wrap < most - 0.2 * (most - least))
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.4, 2.0, 4.0])
+def test_the_slope_of_friction_over_speed_is_that_of_its_factor(exponent):
+    law = StribeckFriction(0.3, 5.0, exponent)
+    assert stribeck(5.0, law)[0] == pytest.approx(1.0 + 0.3 * np.exp(-1.0), rel=1e-12)
+    for speed in (-7.0, -0.02, 0.02, 5.0, 12.0):
+        ahead, behind = (stribeck_factor(speed + h, law) for h in (1e-5, -1e-5))
+        assert stribeck(speed, law)[1] == pytest.approx((ahead - behind) / 2e-5, rel=1e-4, abs=1e-9)
+    assert stribeck(0.0, law) == (1.3, 0.0)
 
 
 def test_friction_follows_a_change_of_speed_ten_milliseconds_late():

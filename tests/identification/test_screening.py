@@ -104,7 +104,7 @@ def test_a_length_cannot_be_negative_nor_ten_times_the_plausible_one():
 
 
 def test_the_best_shape_is_taken():
-    (shape,) = [p for p in STRIBECK_FRICTION.parameters if p.shape]
+    shape = next(p for p in STRIBECK_FRICTION.parameters if p.shape)
     assert len(shape.starts) > 2
     right = shape.starts[-2]
     trial = trial_of(-0.3 * OWN[:, 0])
@@ -124,7 +124,7 @@ def test_what_explains_nothing_has_no_part():
 @pytest.mark.parametrize("known", [True, False])
 def test_what_cannot_be_simulated_explains_nothing(known):
     """Before, a decomposition of such signatures that failed ended the calibration."""
-    (shape,) = [p for p in STRIBECK_FRICTION.parameters if p.shape]
+    shape = next(p for p in STRIBECK_FRICTION.parameters if p.shape)
     lost = shape.starts[1:] if known else shape.starts
 
     class Lost(Bench):

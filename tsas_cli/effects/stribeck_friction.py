@@ -3,10 +3,11 @@
 What one sees: f_in over f_out is widest near reversals, where the drive is slow, and narrows
 towards the middle of a stroke; a whole run at a lower speed has a wider loop. The residual of f_in
 is proportional to the tension and changes sign with the direction.
-Equation: the exponential Stribeck curve of Yang 2025, Eq. (15), on the friction coefficient of
-Eq. (2); v is the sliding speed of each point of the tendon, which friction follows 10 ms late (the
-frictional lag of Hess and Soom 1990). The paper's 0.01 mm/s is far below the speed of its strokes,
-at which the excess has vanished.
+Equation: the exponential Stribeck curve on the friction coefficient of Eq. (2) of Yang 2025, with
+the exponent of Armstrong-Helouvry, Dupont and Canudas de Wit 1994: 2 in Eq. (15), 1 in Tustin's
+law; near 1 it is close to the 1/(1 + (v/vs)²) of Hess and Soom 1990. v is the sliding speed of each
+point of the tendon, which friction follows 10 ms late (the frictional lag of Hess and Soom). The
+paper's 0.01 mm/s is far below the speed of its strokes, at which the excess has vanished.
 Mistaken for: viscous_friction (more at high speed, at any tension the same); presliding (depends on
 travel since the reversal, not on speed); load_dependent_friction (depends on the tension).
 Not validated: stick-slip; how long the lag is.
@@ -20,19 +21,22 @@ from tsas_cli.numerics.elementary import exponential
 
 
 class StribeckFriction(NamedTuple):
-    """Excess of friction at rest [1] and the speed at which it has fallen to 1/e [mm/s]."""
+    """Excess of friction at rest [1], the speed at which it has fallen to 1/e [mm/s], exponent."""
 
     excess: float = 0.0
     velocity_mm_per_s: float = 5.0
+    exponent: float = 2.0
 
 
 @kernel
 def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
     """Return the factor of friction at a sliding speed [mm/s], and its slope [s/mm]."""
-    per_mm_s = 1.0 / law.velocity_mm_per_s  # hoisted out of loops over nodes
-    relative = speed * per_mm_s
-    left = law.excess * exponential(-relative * relative)
-    return 1.0 + left, -2.0 * relative * per_mm_s * left
+    relative = abs(speed) / law.velocity_mm_per_s
+    power = relative**law.exponent
+    left = law.excess * exponential(-power)
+    if relative == 0.0:
+        return 1.0 + left, 0.0
+    return 1.0 + left, -law.exponent * power / speed * left
 
 
 @kernel
@@ -46,11 +50,12 @@ STRIBECK_FRICTION = Effect(
     title="Higher friction at low speed",
     acts_on="tendon",
     closed_form=False,
-    equation="μ → μ·(1 + e·exp(−(v/vs)²))",
+    equation="μ → μ·(1 + e·exp(−(v/vs)^δ))",
     doc=__doc__,
     parameters=(
         Parameter("excess", "1", neutral=0.0, start=0.2, lower=0.0, upper=10.0),
         shape("velocity_mm_per_s", "mm/s", 5.0, lower=0.01, upper=500.0, starts=(1.0, 4.0, 15.0)),
+        shape("exponent", "1", 2.0, lower=1.0, upper=4.0),
     ),
     experiment="The same stroke at constant speeds over two decades: f_in/f_out at one position of "
     "the stroke, over the speed.",

@@ -57,7 +57,8 @@ def random_case(seed):
         effects=Effects(
             viscous_friction=ViscousFriction(between(1e-3, 0.5)),
             stribeck_friction=sometimes(
-                0.5, StribeckFriction(rng.uniform(0.0, 0.3), between(0.01, 20.0))
+                0.5,
+                StribeckFriction(rng.uniform(0.0, 0.3), between(0.01, 20.0), rng.uniform(1.0, 3.0)),
             ),
             presliding=sometimes(0.3, Presliding(between(1e-3, 0.1))),
             load_friction=sometimes(0.2, LoadFriction(rng.uniform(0.0, 2.0), 0.0)),

@@ -11,7 +11,7 @@ SPEED = np.array([0.0, 1.0, 2.0, 4.0, 3.0, 0.0, -1.0, -2.0, -6.0, -3.0, -1.0, 0.
 PLACE = np.concatenate(([0.0], np.cumsum(0.5 * (SPEED[1:] + SPEED[:-1]))))
 TENSION = np.array([25.0, 40.0, 50.0, 52.0, 20.0, 54.0, 40.0, 28.0, 26.0, 5.0, 24.0, 24.0])
 PHASE = np.array([0, 0, 1, 1, 1, 0, 0, -1, -1, -1, -1, 0], dtype=np.int8)
-RIG = with_values(GROUP_A, {"stribeck_friction.velocity_mm_per_s": 2.0 / 0.7})
+RIG = with_values(GROUP_A, {"stribeck_friction.velocity_mm_per_s": 2.0 * 2.0**0.5})
 
 
 def found(phase=PHASE, tension=TENSION):

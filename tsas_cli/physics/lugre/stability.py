@@ -26,7 +26,6 @@ from tsas_cli.support.arrays import Floats
 
 LUMPS = 24  # the growth is the same for 24 to 200
 FOLDS = 3.0  # e-folds by which a disturbance may grow during its moment
-STEEPEST = 0.7  # of the Stribeck velocity, where friction falls fastest with speed
 SLOW = 0.02  # of the highest speed: below it the drive reverses
 NUDGE = 1e-6  # of a state, for its derivative by central differences
 
@@ -151,7 +150,9 @@ def moments(
     speed, rate = np.gradient(x_in_mm, time_s), np.gradient(f_in_N, time_s)
     lasts = np.abs(speed) / (np.abs(np.gradient(speed, time_s)) + 1e-300)
     moves = (speed != 0.0) & (f_in_N > 0.0)
-    steepest = STEEPEST * rig.effects.stribeck_friction.velocity_mm_per_s
+    stribeck = rig.effects.stribeck_friction
+    falls_fastest = (1.0 - 1.0 / stribeck.exponent) ** (1.0 / stribeck.exponent)
+    steepest = falls_fastest * stribeck.velocity_mm_per_s
     chosen: list[tuple[int, bool]] = []
     for direction in (1, -1):
         slips = np.flatnonzero(moves & (phase == direction) & (np.sign(speed) == direction))
