@@ -7,7 +7,8 @@ import pytest
 
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.diagnosis import diagnose as d
-from tsas_cli.diagnosis.diagnose import nominal_fit, verdict_of
+from tsas_cli.diagnosis.diagnose import verdict_of
+from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.identification.model import data_sheet
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig

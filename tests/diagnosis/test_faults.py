@@ -3,6 +3,9 @@
 The recordings are those of the independent rig.
 """
 
+import re
+import tomllib
+
 import pytest
 
 from tsas_cli.diagnosis.faults.beside import Candidate
@@ -118,6 +121,22 @@ def test_a_mechanism_and_a_sound_rig_are_not_accused(effect, tmp_path):
     result = diagnose(made(tmp_path, "one" if effect else "nothing", *hidden))
     assert result.record.faults == ()
     assert [cause.effect for cause in result.causes] == ([effect] if effect else [])
+
+
+def test_a_tendon_that_is_stiffer_than_its_data_sheet_is_a_fault_of_the_manifest(tmp_path):
+    """A modulus in 10^6 psi that is stated as GPa: the tendon is 6.9 times as stiff."""
+    folder = made(tmp_path, "null")
+    manifest = folder / "dataset.toml"
+    stated = tomllib.loads(manifest.read_text())["rig"]["tendon_modulus_GPa"]
+    wrong = f"tendon_modulus_GPa = {stated / 6.895}"
+    manifest.write_text(re.sub(r"tendon_modulus_GPa = \S+", wrong, manifest.read_text()))
+    found = diagnose(folder, runs=["a", "b"])
+    (fault,) = found.record.faults
+    assert (found.verdict, fault.code) == ("undecided", "tendon-stiffness")
+    ratio = float(fault.sentence.partition("the tendon is ")[2].partition(" times")[0])
+    assert ratio == pytest.approx(6.895, rel=0.1)
+    again = diagnose(folder, runs=["a", "b"], despite="tendon-stiffness")
+    assert again.verdict == "sufficient"
 
 
 def test_where_one_run_has_its_bend_a_law_of_friction_is_said_beside_a_wrong_bend(tmp_path):

@@ -236,7 +236,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
     fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
     fits.trial(names()).solution.residual = sign * apart
     seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
-    assert s._best_pair(fits, names()) == names(A, C)
+    assert s._best_pair(fits, names(), 2.6) == names(A, C)
     assert set(fits.bench.fitted) == {names(), names(A, C)}
     assert s._better(fits, names()) == [names(A, C)]
 
@@ -249,7 +249,7 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
     fits.trial(names()).solution.residual = apart
     seen(fits, names(), (A, 0.0), (C, 0.01), signatures=signatures)
-    assert s._best_pair(fits, names()) is None
+    assert s._best_pair(fits, names(), 2.6) is None
     assert s._better(fits, names()) == []
 
 
@@ -391,5 +391,5 @@ def paired(grown, squares, surplus, needed=None):
 )
 def test_a_pair_has_to_explain_more_than_both_alone(grown, nothing, surplus, looked):
     fits = paired(grown, {names(): nothing, names(A, B): 1.0}, surplus)
-    assert (s._best_pair(fits, names()) == names(A, B)) == looked
+    assert (s._best_pair(fits, names(), 2.6) == names(A, B)) == looked
     assert (names(A, B) in fits.bench.fitted) == looked

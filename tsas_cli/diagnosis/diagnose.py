@@ -12,20 +12,18 @@ from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.intervals import estimates_with_tolerances
 from tsas_cli.diagnosis.law import Law, describe
+from tsas_cli.diagnosis.nominal import STIFFER, nominal_fit, stiffer_than_stated
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.diagnosis.rivals import find_effects
 from tsas_cli.diagnosis.tolerances import frictions_of, tolerances
-from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
 from tsas_cli.identification.extension import Bench, bench_of
-from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.joint_fit import FittedModel, solve_fit
-from tsas_cli.identification.model import Model, data_sheet
-from tsas_cli.identification.phases import segment
+from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
@@ -33,7 +31,6 @@ from tsas_cli.records.diagnosis import INCOMPLETE, RecordingFault, Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Endable, Ended, Steps
 from tsas_cli.support.wording import count_of
 
-PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
 FEW_BLOCKS = 6  # fewer are too few for a test
 
 
@@ -109,7 +106,8 @@ def diagnose_runs(
     """
     step.doing("fits the nominal model")
     step.ahead(1)
-    base = solve_fit(nominal_fit(manifest, stated, runs))
+    bounded = STIFFER not in accepted
+    base = solve_fit(nominal_fit(manifest, stated, runs, bounded=bounded))
     step()
     model, cannot_tell = base.model, tuple(base.cannot_tell)
     reason = _not_possible(base)
@@ -123,6 +121,9 @@ def diagnose_runs(
     step = Endable(step)
     fits = Fits(bench, folds, step)
     try:
+        stiffer = stiffer_than_stated(manifest, stated, base, fits.trial(frozenset()))
+        if stiffer is not None:
+            return _undecided_by(*stiffer, base)
         fault = fault_of_recording(fits, accepted)
         if fault is not None and not any(effects_as_good(fits, fault)):
             return _of_a_fault(fault, base)
@@ -146,7 +147,12 @@ def diagnose_runs(
 def _of_a_fault(fault: FoundFault, base: FittedModel) -> Diagnosis:
     """Return that a fault of the recordings comes before any mechanism."""
     record = record_of(fault.found, [run.run.id for run in base.problem.runs])
-    reason = reason_of_fault(record, fault.share)
+    return _undecided_by(record, fault.share, base)
+
+
+def _undecided_by(record: RecordingFault, share: float, base: FittedModel) -> Diagnosis:
+    """Return that a fault explains a share of what the nominal model leaves."""
+    reason = reason_of_fault(record, share)
     cannot_tell = tuple(base.cannot_tell)
     return Diagnosis(
         "undecided", reason, base.model, base.model, cannot_tell=cannot_tell, fault=record
@@ -161,21 +167,6 @@ def _ended(fits: Fits, model: Model, cannot_tell: tuple[str, ...]) -> Diagnosis:
     if fits.leads:
         reason += f"; {' + '.join(sorted(fits.leads))} leads, and nothing is tested"
     return Diagnosis("undecided", f"{reason}.", model, model, search=found, cannot_tell=cannot_tell)
-
-
-def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:
-    """Return the fit of the nominal parameters; the tendon is bounded by its data sheet.
-
-    Not where the length of a sheath is unknown: the data show the stiffness over it.
-    """
-    segments = [segment(run) for run in runs]
-    measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
-    plausible = {}
-    stiffness = data_sheet(manifest).value("tendon_stiffness_N")
-    if stiffness is not None and all(run.run.sheath_length_mm for run in runs):
-        bounds = stiffness * (1.0 - PLAUSIBLE), stiffness / (1.0 - PLAUSIBLE)
-        plausible["tendon_stiffness_N"] = bounds
-    return base_fit(stated, runs, segments, measured, plausible)
 
 
 def _not_possible(base: FittedModel) -> str | None:

@@ -50,7 +50,8 @@ def rivals_of(
     """Return the effects that do as well as a named one in its place, or better.
 
     Those that leave more by a share that is `unsure` do as well too; so do those whose reduction is
-    smaller by less than the share `of_forms`.
+    smaller by less than the share `of_forms`. One that fits all the data no worse, by more
+    parameters, may predict worse by what these cost.
     """
     fewer = named - {name}
     alike = (1.0 - of_forms) * fits.gain(fewer, named).part
@@ -61,7 +62,9 @@ def rivals_of(
             continue
         if not fits.trial(instead).solution.converged:
             continue
-        worse = fits.gain(instead, named).beyond(LEAST_DIFFERENCE + unsure)
+        fits_worse = fits.trial(instead).mean_square > fits.trial(named).mean_square
+        costs = LEAST_DIFFERENCE if fits_worse else LEAST_REDUCTION_PER_COMPLEXITY
+        worse = fits.gain(instead, named).beyond(costs + unsure)
         if not worse or (of_forms > 0.0 and fits.gain(fewer, instead).part > alike):
             out.append(other)
     return tuple(out)

@@ -2,7 +2,8 @@
 
 Stepwise selection: one effect after the other is added while the best one is significant; after
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
-pairs are screened together, because effects of opposite sign mask each other.
+pairs are screened together, because effects of opposite sign mask each other. Where the nominal
+model leaves noise alone, the best of all effects has to be significant as such.
 """
 
 from itertools import combinations
@@ -10,6 +11,8 @@ from itertools import combinations
 import numpy as np
 
 from tsas_cli.diagnosis.evidence import (
+    CRITICAL_VALUE,
+    CRITICAL_VALUE_OF_ANY,
     LEAST_REDUCTION,
     LEAST_REDUCTION_PER_COMPLEXITY,
     Reduction,
@@ -102,11 +105,16 @@ def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reducti
 def _better(fits: Fits, names: Names) -> list[Names]:
     """Return the extended sets: with the simplest effect, and with the best if it differs."""
     fitted = add(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
-    singles = [(n, g) for n, g in fitted if g.convincing and matters(fits, names, frozenset({n}))]
+    critical = CRITICAL_VALUE_OF_ANY if not names and is_quiet(fits, names) else CRITICAL_VALUE
+    singles = [
+        (name, found)
+        for name, found in fitted
+        if found.beyond(LEAST_REDUCTION, critical) and matters(fits, names, frozenset({name}))
+    ]
     if singles:
         branches = dict.fromkeys((_simplest(fits, names, singles), singles[0][0]))
         return [names | {name} for name in branches]
-    pair = _best_pair(fits, names) if len(names) + 2 <= MOST_EFFECTS else None
+    pair = _best_pair(fits, names, critical) if len(names) + 2 <= MOST_EFFECTS else None
     return [] if pair is None else [names | pair]
 
 
@@ -122,7 +130,7 @@ def _simplest(fits: Fits, names: Names, singles: list[tuple[str, Reduction]]) ->
     return best
 
 
-def _best_pair(fits: Fits, names: Names) -> Names | None:
+def _best_pair(fits: Fits, names: Names, critical: float) -> Names | None:
     """Return two effects that are significant only together."""
     screened = fits.screen(names)
     least = _least_part(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
@@ -142,7 +150,8 @@ def _best_pair(fits: Fits, names: Names) -> Names | None:
         pair = frozenset({a.effect.name, b.effect.name})
         fits.step.ahead(fits.is_new(names | pair))
         fits.fit(names, names | pair, a.initial | b.initial)
-        if fits.gain(names, names | pair).convincing and matters(fits, names, pair):
+        found = fits.gain(names, names | pair)
+        if found.beyond(LEAST_REDUCTION, critical) and matters(fits, names, pair):
             return pair
     return None
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
+from tsas_cli.diagnosis.diagnose import bench_folds
+from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Names
 from tsas_cli.diagnosis.search import MOST_EFFECTS, add
