@@ -125,7 +125,7 @@ def test_a_mechanism_and_a_sound_rig_are_not_accused(effect, tmp_path):
 
 def test_a_tendon_that_is_stiffer_than_its_data_sheet_is_a_fault_of_the_manifest(tmp_path):
     """A modulus in 10^6 psi that is stated as GPa: the tendon is 6.9 times as stiff."""
-    folder = made(tmp_path, "null")
+    folder = made(tmp_path, "nothing")
     manifest = folder / "dataset.toml"
     stated = tomllib.loads(manifest.read_text())["rig"]["tendon_modulus_GPa"]
     wrong = f"tendon_modulus_GPa = {stated / 6.895}"
