@@ -32,8 +32,8 @@ def test_json_is_the_record(done):
     assert content["name"] == "stribeck_friction"
     assert content["acts_on"] == "tendon"
     assert "Mistaken for:" in content["doc"]
-    excess, velocity, exponent = content["parameters"]
-    assert [p["shape"] for p in (excess, velocity, exponent)] == [False, True, True]
+    excess, velocity, *others = content["parameters"]
+    assert [p["shape"] for p in (excess, velocity, *others)] == [False, True, True, True]
     assert velocity["starts"] == [1.0, 4.0, 15.0]
 
 

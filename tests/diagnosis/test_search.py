@@ -214,6 +214,30 @@ def test_what_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals, mo
     assert rivals_of(fits, names(A), A, unsure, of_forms) == rivals
 
 
+@pytest.mark.parametrize(("in_sample", "rivals"), [(1.0, (C,)), (1.001, ())])
+def test_what_its_parameters_cost_is_no_reason_against_a_rival(
+    made, in_sample, rivals, monkeypatch
+):
+    """It predicts worse by 2 %, and fits all the data as well, or worse."""
+    fits = made({names(): 9.0, names(A): 1.0, names(C): in_sample})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
+    for effects, held_out in ((names(A), 1.0), (names(C), 1.02)):
+        of = effects, fits.trial(effects).on_mesh
+        fits.squares[of] = fits.scattered[of] = np.full(BLOCKS, held_out * SIZE / BLOCKS)
+    assert rivals_of(fits, names(A), A) == rivals
+
+
+@pytest.mark.parametrize(
+    ("nothing", "one", "found"), [(1.05, 0.95, False), (1.05, 0.94, True), (1.3, 1.24, True)]
+)
+def test_of_noise_alone_a_first_effect_has_to_take_more(made, nothing, one, found, monkeypatch):
+    """A tenth of it; a fortieth where there is more than noise."""
+    fits = made({names(): nothing, names(A): one})
+    monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
+    seen(fits, names(), (A, 0.5))
+    assert s._better(fits, names()) == ([names(A)] if found else [])
+
+
 def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
     """One after the other, in the order of their names."""
     squares = {names(A, C, D): 1.0, names(C, D): 1.01, names(D): 1.02, names(C): 2.0}
@@ -236,7 +260,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
     fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
     fits.trial(names()).solution.residual = sign * apart
     seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
-    assert s._best_pair(fits, names(), 2.6) == names(A, C)
+    assert s._best_pair(fits, names(), 0.025) == names(A, C)
     assert set(fits.bench.fitted) == {names(), names(A, C)}
     assert s._better(fits, names()) == [names(A, C)]
 
@@ -249,7 +273,7 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
     fits.trial(names()).solution.residual = apart
     seen(fits, names(), (A, 0.0), (C, 0.01), signatures=signatures)
-    assert s._best_pair(fits, names(), 2.6) is None
+    assert s._best_pair(fits, names(), 0.025) is None
     assert s._better(fits, names()) == []
 
 
@@ -391,5 +415,5 @@ def paired(grown, squares, surplus, needed=None):
 )
 def test_a_pair_has_to_explain_more_than_both_alone(grown, nothing, surplus, looked):
     fits = paired(grown, {names(): nothing, names(A, B): 1.0}, surplus)
-    assert (s._best_pair(fits, names(), 2.6) == names(A, B)) == looked
+    assert (s._best_pair(fits, names(), 0.025) == names(A, B)) == looked
     assert (names(A, B) in fits.bench.fitted) == looked

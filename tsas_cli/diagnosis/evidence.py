@@ -8,9 +8,9 @@ import numpy as np
 from tsas_cli.support.arrays import Floats
 
 CRITICAL_VALUE = 2.6  # critical value of the test statistic; 1 in 200 by chance
-CRITICAL_VALUE_OF_ANY = 3.7  # the same for the best of forty effects
 AGREE = 0.9  # of its largest possible value, the critical value for few blocks
 LEAST_REDUCTION = 0.025  # least reduction of the squares by a cause; conditioning leaves up to 0.01
+LEAST_REDUCTION_OF_NOISE = 0.1  # where the nominal model leaves noise alone
 LEAST_DIFFERENCE = 0.01  # least reduction of the squares that distinguishes a cause from a rival
 LEAST_REDUCTION_PER_COMPLEXITY = (
     0.03  # least reduction of the squares by a cause with more parameters than another
@@ -24,18 +24,17 @@ class Reduction:
 
     `part` is the share of all squares; `test_statistic` that of Wilcoxon's signed-rank test of the
     blocks' relative reductions, in standard deviations by chance: a block without a change has no
-    weight, and one with a large change not much more than others. It is largest, `most`, where all
-    blocks agree: of few blocks most have to.
+    weight, and one with a large change not much more than others. It is largest where all blocks
+    agree, so that most of few have to: `needed` is the critical value.
     """
 
     part: float
     test_statistic: float
-    most: float = math.inf
+    needed: float = CRITICAL_VALUE
 
-    def beyond(self, part: float, critical_value: float = CRITICAL_VALUE) -> bool:
+    def beyond(self, part: float) -> bool:
         """Return whether the reduction is significant, and larger than a share of the squares."""
-        significant = self.test_statistic > min(critical_value, AGREE * self.most)
-        return significant and self.part > part
+        return self.test_statistic > self.needed and self.part > part
 
     @property
     def convincing(self) -> bool:
@@ -51,7 +50,7 @@ def gain(before: Floats, after: Floats) -> Reduction:
     part = 1.0 - float(after.sum()) / float(before.sum())
     test_statistic = float(np.sign(relative) @ ranks) / by_chance if by_chance > 0.0 else 0.0
     most = float(ranks.sum()) / math.sqrt(float(ranks @ ranks))
-    return Reduction(part, test_statistic, most)
+    return Reduction(part, test_statistic, min(CRITICAL_VALUE, AGREE * most))
 
 
 def gain_percent(

@@ -3,7 +3,7 @@
 Stepwise selection: one effect after the other is added while the best one is significant; after
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other. Where the nominal
-model leaves noise alone, the best of all effects has to be significant as such.
+model leaves noise alone, a first effect has to take more of it.
 """
 
 from itertools import combinations
@@ -11,9 +11,8 @@ from itertools import combinations
 import numpy as np
 
 from tsas_cli.diagnosis.evidence import (
-    CRITICAL_VALUE,
-    CRITICAL_VALUE_OF_ANY,
     LEAST_REDUCTION,
+    LEAST_REDUCTION_OF_NOISE,
     LEAST_REDUCTION_PER_COMPLEXITY,
     Reduction,
 )
@@ -105,16 +104,17 @@ def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reducti
 def _better(fits: Fits, names: Names) -> list[Names]:
     """Return the extended sets: with the simplest effect, and with the best if it differs."""
     fitted = add(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
-    critical = CRITICAL_VALUE_OF_ANY if not names and is_quiet(fits, names) else CRITICAL_VALUE
+    of_noise = not names and is_quiet(fits, names)
+    least = LEAST_REDUCTION_OF_NOISE if of_noise else LEAST_REDUCTION
     singles = [
         (name, found)
         for name, found in fitted
-        if found.beyond(LEAST_REDUCTION, critical) and matters(fits, names, frozenset({name}))
+        if found.beyond(least) and matters(fits, names, frozenset({name}))
     ]
     if singles:
         branches = dict.fromkeys((_simplest(fits, names, singles), singles[0][0]))
         return [names | {name} for name in branches]
-    pair = _best_pair(fits, names, critical) if len(names) + 2 <= MOST_EFFECTS else None
+    pair = _best_pair(fits, names, least) if len(names) + 2 <= MOST_EFFECTS else None
     return [] if pair is None else [names | pair]
 
 
@@ -130,10 +130,10 @@ def _simplest(fits: Fits, names: Names, singles: list[tuple[str, Reduction]]) ->
     return best
 
 
-def _best_pair(fits: Fits, names: Names, critical: float) -> Names | None:
-    """Return two effects that are significant only together."""
+def _best_pair(fits: Fits, names: Names, least: float) -> Names | None:
+    """Return two effects that only together reduce the squares by at least a share."""
     screened = fits.screen(names)
-    least = _least_part(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
+    part_of_both = _least_part(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
     parts = []
     for a, b in combinations(screened, 2):
         mesh = fits.bench.on_mesh([*names, a.effect.name, b.effect.name])
@@ -141,7 +141,7 @@ def _best_pair(fits: Fits, names: Names, critical: float) -> Names | None:
         residual = fits.trial(names, on_mesh=mesh).solution.residual
         basis = np.linalg.qr(both)[0]
         part = float(np.sum((basis.T @ residual) ** 2)) / float(residual @ residual)
-        if part >= least:
+        if part >= part_of_both:
             parts.append((part - a.part - b.part, a, b))
     parts.sort(key=lambda p: -p[0])
     for surplus, a, b in parts[:PAIRS]:
@@ -150,8 +150,7 @@ def _best_pair(fits: Fits, names: Names, critical: float) -> Names | None:
         pair = frozenset({a.effect.name, b.effect.name})
         fits.step.ahead(fits.is_new(names | pair))
         fits.fit(names, names | pair, a.initial | b.initial)
-        found = fits.gain(names, names | pair)
-        if found.beyond(LEAST_REDUCTION, critical) and matters(fits, names, pair):
+        if fits.gain(names, names | pair).beyond(least) and matters(fits, names, pair):
             return pair
     return None
 

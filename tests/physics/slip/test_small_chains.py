@@ -32,13 +32,13 @@ SPRINGY = GROUP_A._replace(
 )
 UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 1.47, 1.1, 0.5, -0.1, -0.7, -0.6])
 MASS_TAKES_UP_S = 0.004  # documented in `slip.ends`
-FRICTION_LAGS_S = 0.01  # documented in `slip.nodes`
 ROUNDING = 1e-6  # [N, mm]
 FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
 FALLING = {
     "stribeck_friction.excess": 0.5,
     "stribeck_friction.velocity_mm_per_s": 4.0,
     "stribeck_friction.exponent": 1.3,
+    "stribeck_friction.lag_s": 0.02,
 }
 EFFECTS = {
     "friction alone": {},
@@ -133,10 +133,10 @@ class Nodes:
         exponent = self.rig.effects.load_dependent_friction.exponent
         factor = (abs(mean) / self.rig.preload_N) ** exponent
         factor *= 1.0 + self.rig.effects.uneven_friction.slope * ((i - 0.5) / N - 0.5)
-        excess, falls_mm_s, power = self.rig.effects.stribeck_friction
+        excess, falls_mm_s, power, lag_s = self.rig.effects.stribeck_friction
         factor *= 1.0 + excess * math.exp(-((self.speed[i] / falls_mm_s) ** power))
         if now.step_s < math.inf:  # friction of the next step
-            taken = -math.expm1(-now.step_s / FRICTION_LAGS_S)
+            taken = -math.expm1(-now.step_s / lag_s)
             self.speed[i] += taken * (abs(way) / now.step_s - self.speed[i])
         loss, sign = 0.5 * drag_N / N, math.copysign(1.0, mean)
         length = self.rig.effects.presliding.length_mm

@@ -21,7 +21,6 @@ from tsas_cli.support.arrays import Floats
 
 MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
 MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions by a tangent
-FRICTIONAL_LAG_S = 0.01  # of friction behind the speed; 3 to 9 ms in Hess and Soom 1990
 SLIDING_SHARE = 0.99  # of its friction limit, from which a node with presliding slips
 
 
@@ -63,7 +62,7 @@ def update_speeds(chain: Floats, step_s: float, laws: SlipLaws) -> None:
     """
     if laws.stribeck.excess == 0.0 or step_s == math.inf:
         return
-    share = 1.0 - math.exp(-step_s / FRICTIONAL_LAG_S)
+    share = 1.0 - math.exp(-step_s / laws.stribeck.lag_s)
     for i in range(1, laws.n + 1):
         speed = abs(chain[at.POSITION + i] - chain[at.POSITION_BEFORE + i]) / step_s
         chain[at.SPEED + i] += share * (speed - chain[at.SPEED + i])
