@@ -11,10 +11,10 @@ from tsas_cli.diagnosis import law as law_module
 from tsas_cli.diagnosis import law_bench
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import bench_folds
-from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe
 from tsas_cli.diagnosis.law_bench import priors_of
 from tsas_cli.diagnosis.law_words import after_reversal, records_of, sentence_of
+from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.remainder import LATE, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals

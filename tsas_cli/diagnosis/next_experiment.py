@@ -32,7 +32,7 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     """Return the instruction for the next experiment."""
     if result.verdict == "undecided" and result.fault is not None:
         if result.fault.run is None:
-            return "Correct the recordings or their manifest, or remove what disturbs and record again."
+            return "Correct recordings or manifest, or remove what disturbs and record again."
         return (
             "Correct the recording, or leave its run out, and diagnose again; then record that run "
             "once more without any change."

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.diagnosis.diagnose import bench_folds
-from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Names
+from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.search import MOST_EFFECTS, add
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.extension import bench_of
