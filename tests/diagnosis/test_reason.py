@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
+from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder
@@ -48,6 +49,22 @@ def test_what_no_effect_explains_is_said_with_what_it_depends_on():
         "It depends on the time in the run and the displacement of the drive. "
         "At each reversal x_out_mm lags behind the model, or leads it."
     )
+
+
+@pytest.mark.parametrize(
+    ("found", "why"),
+    [
+        (Reduction(0.36, 2.5), "not in enough stretches of the runs"),
+        (Reduction(0.36, 3.0), "too little of what is beyond the noise"),
+        (Reduction(0.09, 2.5), None),
+    ],
+)
+def test_where_nothing_is_named_the_nearest_effect_is_said_with_what_it_lacks(found, why):
+    nearest = f"{TITLE[PLAY].capitalize()} comes nearest: it takes 20 % off it, but {why}."
+    for stand_ins, said in (([], why is not None), ([cause(MASS, failed=("is rare",))], False)):
+        reason = reason_of("unexplained", [], stand_ins, START, left(9.0), None, (PLAY, found))
+        assert (nearest in reason) == said
+        assert ("nearest" in reason) == said
 
 
 def test_causes_are_named_with_their_reduction():

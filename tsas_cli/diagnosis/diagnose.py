@@ -216,7 +216,9 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         frictions = frictions_of(final, proven.tolerated, folds.run)
         fault = differing(frictions, [errors.run.run.id for errors in bench.closed])
         verdict = verdict if fault is None else "unexplained"
-    reason = reason_of(verdict, causes, stand_ins, by_causes, after, law)
+    judged_ones = frozenset[str]() if proven.whole is None else proven.whole.judged.named
+    nearest = proven.search.best_alone(judged_ones)
+    reason = reason_of(verdict, causes, stand_ins, by_causes, after, law, nearest)
     if fault is not None:
         reason += f" {fault.sentence}."
     channels = by_causes

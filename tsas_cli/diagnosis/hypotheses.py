@@ -47,6 +47,12 @@ class Hypotheses:
         mesh = self.bench.on_mesh(names)
         return gain(self.held_out(frozenset(), on_mesh=mesh), self.held_out(names))
 
+    def best_alone(self, without: Names) -> tuple[str, Reduction] | None:
+        """Return the effect that gains most alone, but for some; None where none was fitted."""
+        alone = {names for names, _ in self.trials if len(names) == 1 and not names & without}
+        found = [(name, self.gain(names)) for names in alone for name in names]
+        return max(found, key=lambda pair: pair[1].part, default=None)
+
 
 def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypotheses:
     """Return the fits of the named effects, of none, and of all but one, with new weights.

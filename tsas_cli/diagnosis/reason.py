@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
+from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.law import Law
 from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
 from tsas_cli.diagnosis.remainder import LEAST_SLOW, Remainder
@@ -14,6 +15,8 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.wording import listed
 
+NEAR = 0.1  # least reduction of the squares by an effect that comes near
+
 
 def reason_of(
     verdict: Verdict,
@@ -22,11 +25,12 @@ def reason_of(
     channels: Mapping[str, HeldOutErrors],
     after: Remainder,
     law: Law | None = None,
+    nearest: tuple[str, Reduction] | None = None,
 ) -> str:
     """Return the verdict in sentences: what is lacking, what it gains, what remains.
 
     `channels` are the residuals on held-out data with the causes, `after` is what remains with
-    them, and `law` describes it.
+    them, and `law` describes it. `nearest` is the effect that gains most alone.
     """
     sentences = []
     if causes:
@@ -68,6 +72,8 @@ def reason_of(
             f"The RMS of the residual of {name} on held-out data is {_digits(most.rmse_before, 3)} "
             f"{BY_COLUMN[name].unit}, and no catalogued effect explains it."
         )
+        if nearest is not None and not stand_ins:
+            sentences += _nearest(*nearest)
     for failed in dict.fromkeys(cause.failed[0] for cause in stand_ins):
         alike = [cause for cause in stand_ins if cause.failed[0] == failed]
         names = listed([_title(cause.effect) for cause in alike])
@@ -92,6 +98,17 @@ def reason_of(
             f"in {listed(falls)}."
         )
     return " ".join(text[0].upper() + text[1:] for text in sentences)
+
+
+def _nearest(effect: str, found: Reduction) -> list[str]:
+    """Return why the effect that gains most is not named, where it gains much."""
+    if found.part < NEAR:
+        return []
+    takes = 100.0 * (1.0 - math.sqrt(1.0 - found.part))
+    why = "not in enough stretches of the runs"
+    if found.convincing:
+        why = "too little of what is beyond the noise"
+    return [f"{_title(effect)} comes nearest: it takes {takes:.0f} % off it, but {why}."]
 
 
 def _dependence(after: Remainder) -> list[str]:
