@@ -101,14 +101,12 @@ def reason_of(
 
 
 def _nearest(effect: str, found: Reduction) -> list[str]:
-    """Return why the effect that gains most is not named, where it gains much."""
+    """Return the effect that gains most, where it gains much."""
     if found.part < NEAR:
         return []
     takes = 100.0 * (1.0 - math.sqrt(1.0 - found.part))
-    why = "not in enough stretches of the runs"
-    if found.convincing:
-        why = "too little of what is beyond the noise"
-    return [f"{_title(effect)} comes nearest: it takes {takes:.0f} % off it, but {why}."]
+    said = f"takes {takes:.0f} % off it, but not in enough stretches of the runs"
+    return [f"{_title(effect)} comes nearest: it {said}."]
 
 
 def _dependence(after: Remainder) -> list[str]:
