@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.effects.runs import UP_AND_DOWN, run
+from tests.effects.runs import run
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
@@ -27,11 +27,6 @@ def test_a_damper_at_the_drive_is_felt_by_its_sensor_alone(speed):
     np.testing.assert_array_equal(damped.x_out_mm, plain.x_out_mm)
 
 
-def test_without_times_a_damper_does_nothing():
-    rig, drive = with_values(GROUP_A, {DAMPER: 0.3}), DriveInput(UP_AND_DOWN)
-    np.testing.assert_array_equal(simulate(rig, drive).f_in_N, simulate(GROUP_A, drive).f_in_N)
-
-
 @pytest.mark.parametrize("dynamics", ["slip", "lugre"])
 def test_a_damped_drive_gives_way_to_a_force_by_an_exponential(dynamics):
     """c dx/dt + K x = r t without friction: x = r/K (t − c/K (1 − e^(−K t/c)))."""
@@ -47,15 +42,6 @@ def test_a_damped_drive_gives_way_to_a_force_by_an_exponential(dynamics):
 
 
 MASS = "drive_inertia.mass_kg"
-
-
-def test_a_mass_at_the_drive_is_felt_by_its_sensor_alone():
-    t, omega = np.arange(0.0, 3.0, 1e-3), 5.0
-    x = 5.0 - 5.0 * np.cos(omega * t)
-    heavy, plain = run({MASS: 4.0}, x, time_s=t), run({}, x, time_s=t)
-    newton = 4.0 * 1e-3 * 5.0 * omega**2 * np.cos(omega * t)
-    np.testing.assert_allclose((heavy.f_in_N - plain.f_in_N)[2:-2], newton[2:-2], atol=1e-4)
-    np.testing.assert_array_equal(heavy.f_out_N, plain.f_out_N)
 
 
 @pytest.mark.parametrize(("dynamics", "late_s"), [("slip", SLIPS_ALONG_S), ("lugre", 0.0)])

@@ -7,11 +7,14 @@ import pytest
 
 from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
+from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
+from tsas_cli.effects.position_sensor_ripple import without_ripple
 from tsas_cli.numerics.settling import lag_after
+from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.sensors import low_pass, true_value
+from tsas_cli.physics.sensors import low_pass
 
 TIME_S = np.arange(UP_AND_DOWN.size) * 0.02
 DRIFTED = (1.0 - np.exp(-0.1 * TIME_S)) / 0.1
@@ -67,25 +70,11 @@ def test_a_late_channel_shows_what_was(channel, late):
         np.testing.assert_allclose(read[:-5], plain[5:], atol=1e-9)
 
 
-def test_without_times_nothing_is_late():
-    rig = with_values(GROUP_A, {"channel_delay.f_in_delay_s": 0.1})
-    without = simulate(GROUP_A, DriveInput(UP_AND_DOWN))
-    np.testing.assert_array_equal(simulate(rig, DriveInput(UP_AND_DOWN)).f_in_N, without.f_in_N)
-
-
 LAG = 0.08
-UNEVEN = np.cumsum(np.random.default_rng(3).uniform(0.0, 0.04, 400))
 
 
 def filtered(values, time_s, lag_s=LAG):
     return low_pass(values, time_s, lag_s, np.full(5, np.nan))
-
-
-def test_a_line_is_followed_with_the_lag_of_its_rate():
-    """y = r (t − τ (1 − e^(−t/τ))), at any sampling."""
-    t = UNEVEN - UNEVEN[0]
-    exact = 3.0 * (t - LAG * (1.0 - np.exp(-t / LAG)))
-    np.testing.assert_allclose(filtered(7.0 + 3.0 * t, UNEVEN), 7.0 + exact, atol=1e-12)
 
 
 def test_a_sine_loses_amplitude_and_phase():
@@ -106,28 +95,23 @@ def test_after_a_step_a_low_pass_comes_by_an_exponential():
     assert lag_after(4.0, 9.0, math.inf, LAG) == 0.0
 
 
-@pytest.mark.parametrize(("channel", "unit"), [("f_in", "N"), ("f_out", "N"), ("x_out", "mm")])
-def test_one_channel_is_filtered_and_no_other(channel, unit):
-    plain, read = run({}), run({f"sensor_lag.{channel}_lag_s": LAG})
-    time_s = np.arange(UP_AND_DOWN.size) * 0.02
-    for name in ("x_in_mm", "f_in_N", "f_out_N", "x_out_mm"):
-        true = getattr(plain, name)
-        expected = filtered(true, time_s) if name == f"{channel}_{unit}" else true
-        np.testing.assert_allclose(getattr(read, name), expected, atol=1e-10)
+@pytest.mark.parametrize("curvature", [-2e-3, 0.0, 2e-3])
+def test_a_reading_of_a_curved_scale_has_one_force(curvature):
+    forces = np.array([-20.0, 0.0, 25.0, 120.0])
+    back = straightened(read_curved(forces, curvature), curvature)
+    np.testing.assert_allclose(back, forces, rtol=1e-12)
+    assert straightened(1e3, -2e-3) == pytest.approx(2e3)  # beyond the vertex, which reads 125 N
 
 
-def test_without_times_nothing_is_filtered():
-    rig = with_values(GROUP_A, {"sensor_lag.f_in_lag_s": LAG})
-    without = simulate(GROUP_A, DriveInput(UP_AND_DOWN))
-    np.testing.assert_array_equal(simulate(rig, DriveInput(UP_AND_DOWN)).f_in_N, without.f_in_N)
+def test_a_wave_too_steep_has_no_position():
+    gentle, steep = Wave(0.2, -0.1, 4.0), Wave(0.0, 0.9, 2.0)
+    assert without_ripple(rippled(3.3, gentle), gentle) == pytest.approx(3.3, abs=1e-10)
+    assert any(np.isnan(without_ripple(x, steep)) for x in np.linspace(-3.0, 3.0, 200))
 
 
-def test_a_measured_load_is_taken_back_to_where_it_was():
-    """To second order in the time constant, by the rate of the reading."""
-    t, omega = np.arange(0.0, 4.0, 1e-3), 2.0
-    rig = with_values(GROUP_A, {"sensor_lag.f_out_lag_s": LAG})
-    wave = 25.0 + np.sin(omega * t)
-    back = true_value("f_out_N", filtered(wave, t), t, rig)
-    np.testing.assert_allclose(back[1:-1], wave[1:-1], atol=1.1 * LAG * omega)
-    settled = slice(1500, -1)
-    np.testing.assert_allclose(back[settled], wave[settled], atol=1e-5)
+def test_a_drive_by_force_is_taken_with_the_loop_that_it_has():
+    drive = DriveInput(run({}).f_in_N, kind="force")
+    rig = with_values(GROUP_A, {"force_sensor_hysteresis.f_in_share": 0.05})
+    with_it, without = simulate(rig, drive), simulate(GROUP_A, drive)
+    np.testing.assert_array_equal(with_it.x_in_mm, without.x_in_mm)
+    np.testing.assert_array_equal(with_it.f_in_N, without.f_in_N)

@@ -17,7 +17,6 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     branches,
     course_of,
-    follow,
     slip_chain,
 )
 from tsas_cli.effects import Effects, FreeTendon
@@ -162,7 +161,6 @@ def test_at_the_load_it_softens_the_spring_and_moves_the_output_less():
 
 DRAG = 3.0
 DRAGGED = {"sheath_drag.force_N": DRAG}
-STRAIGHT = GROUP_A._replace(total_bend_rad=0.0)
 
 
 @pytest.mark.parametrize("direction", [1, -1])
@@ -176,46 +174,3 @@ def test_drag_is_lost_beside_the_friction_of_the_capstan(direction):
 
     along = solve_ivp(slope, (0.0, 1.0), answer.f_in_N[slip], rtol=1e-10, atol=1e-10)
     np.testing.assert_allclose(answer.f_out_N[slip], along.y[:, -1], atol=1e-4)
-
-
-def raised(motion):
-    """Return the closed form with drag: T + D/(μθ) follows the capstan law in every dead band."""
-    f_in, f_out, phase = branches(motion, GROUP_A._replace(preload_N=25.0 + DRAG / A))
-    return f_in - DRAG / A, f_out - DRAG / A, phase
-
-
-def test_nested_dead_bands_with_drag_are_those_of_higher_tensions():
-    f_in, f_out, phase = raised(MOTION)
-    answer = run(DRAGGED, MOTION)
-    assert f_in.min() > 0.0
-    assert {-1, 0, 1} == set(phase)
-    assert np.sqrt(np.mean((answer.f_in_N - f_in) ** 2)) < 0.03
-    np.testing.assert_allclose(answer.f_out_N, f_out, atol=0.02)
-
-
-def test_drag_is_of_second_order_in_the_mesh():
-    exact = raised(np.array([20.0]))[0][0]
-    how = {"rig": with_values(GROUP_A, DRAGGED), "drag": DRAG}
-    errors = [abs(follow([20.0], n=n, **how)[2][0] - exact) for n in (10, 20, 40, 80)]
-    for coarse, fine in pairwise(errors):
-        assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
-
-
-def test_a_straight_sheath_loses_its_drag_and_no_more():
-    """After a reversal the front has run q/(2d) when f_in has changed by q: q² = 4 d EA x."""
-    L, rise = STRAIGHT.sheath_length_mm, np.linspace(0.0, 14.0, 701)
-    back = np.linspace(0.0, DRAG * L / EA, 101)[1:]
-    answer = run(DRAGGED, np.concatenate((rise, 14.0 - back, rise[-2::-1])), rig=STRAIGHT)
-    for direction in (1, -1):
-        slip = in_slip(answer, direction)
-        lost = answer.f_in_N[slip] - answer.f_out_N[slip]
-        np.testing.assert_allclose(lost, direction * DRAG, rtol=1e-8)
-    fall = answer.f_in_N[700] - answer.f_in_N[701:801]
-    np.testing.assert_allclose(fall, np.sqrt(4.0 * DRAG / L * EA * back), atol=2.0 * DRAG / NODES)
-
-
-def test_drag_dissipates_its_force_times_the_way():
-    stiff = STRAIGHT._replace(tendon_stiffness_N=1e9)
-    answer = run(DRAGGED, rig=stiff)
-    work = np.trapezoid(answer.f_in_N, answer.x_in_mm)
-    assert work == pytest.approx(DRAG * 28.0, rel=2e-3)

@@ -30,15 +30,6 @@ def test_no_law_acts_by_default():
     assert {law.name for law in LAWS} <= set(Effects._fields)
 
 
-def test_friction_at_the_drive_has_the_sign_of_its_motion_once_it_yields():
-    plain, law = run(), run(drive_law__travel_mm=0.4, drive_law__friction_1_N=1.5)
-    added = (law.f_in_N - plain.f_in_N)[SETTLED]
-    turned = np.abs(np.cos(TIME_S[SETTLED])) < 0.55  # within twice the width of a reversal
-    assert added[~turned] == pytest.approx(1.5 * np.sign(np.cos(TIME_S[SETTLED][~turned])))
-    assert np.abs(added).max() <= 1.5 + 1e-12
-    assert (law.f_out_N == plain.f_out_N).all()
-
-
 def test_friction_with_a_gap_changes_at_both_ends_of_the_travel_after_a_reversal():
     """Of width 2 mm: 1 mm until the spring is loose, 2 mm of gap, 1 mm until it yields."""
     rising = np.linspace(2.0, 10.0, 401)
@@ -55,39 +46,11 @@ def test_friction_with_a_gap_changes_at_both_ends_of_the_travel_after_a_reversal
     )
 
 
-def test_friction_at_the_drive_changes_with_its_speed_but_not_below_the_low_one():
-    """At 0.5, 10 and 100 mm/s, over 1 to 100 mm/s: by 0, 20 and 50 %."""
-    speed = np.repeat([0.5, 10.0, 100.0], 200)
-    x = np.cumsum(speed) / 1000.0
-    drive = DriveInput(x, time_s=np.arange(x.size) / 1000.0)
-    plain = run(drive)
-    values = {"slow_mm_per_s": 1.0, "fast_mm_per_s": 100.0, "speed_2": 0.2, "speed_3": 0.5}
-    law = run(
-        drive,
-        drive_law__travel_mm=0.01,
-        drive_law__friction_1_N=2.0,
-        **{f"drive_law__{name}": value for name, value in values.items()},
-    )
-    added = (law.f_in_N - plain.f_in_N)[[150, 350, 550]]
-    assert added == pytest.approx([2.0, 2.4, 3.0])
-
-
 def test_a_share_grows_with_the_tension_of_the_tendon():
     plain, law = run(), run(drive_law__travel_mm=0.01, drive_law__share_1=0.1)
     moving = SETTLED & (np.abs(np.cos(TIME_S)) > 0.2)
     expected = 0.1 * plain.f_in_N[moving] * np.sign(np.cos(TIME_S[moving]))
     assert (law.f_in_N - plain.f_in_N)[moving] == pytest.approx(expected)
-
-
-def test_the_elements_follow_the_motor_where_it_was_recorded():
-    """A motor that turns back while the drive stands still is what changes the friction."""
-    still = np.full(TIME_S.size, 8.0)
-    drive = DriveInput(still, time_s=TIME_S, motor_mm=X_MM)
-    plain = run(drive)
-    law = run(drive, drive_law__travel_mm=0.01, drive_law__friction_1_N=2.0)
-    moving = (np.abs(np.cos(TIME_S)) > 0.1) & (TIME_S > 0.1)
-    added = (law.f_in_N - plain.f_in_N)[moving]
-    assert added == pytest.approx(2.0 * np.sign(np.cos(TIME_S[moving])))
 
 
 def test_motion_is_lost_at_the_load_and_the_forces_do_not_know():

@@ -28,13 +28,6 @@ def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
     np.testing.assert_array_equal(spring.phase, phase)
 
 
-def test_dynamics_static_asks_the_lumped_model():
-    answer = simulate(RIG, DriveInput(np.array([3.0, 3.01])), "static")
-    assert answer.f_in_N[1] - answer.f_in_N[0] == pytest.approx(1.751, abs=2e-3)
-    assert answer.x_out_mm == pytest.approx([-7.0, -7.0])
-    assert answer.solver == "lumped dead bands"
-
-
 def mid_cycle(spring, load, part):
     values = {"spring": None, "force": spring.f_out_N, "displacement": spring.x_out_mm}[load]
     load_values = None if values is None else values[part]
