@@ -40,6 +40,7 @@ def of_nothing(tmp_path_factory):
     """Answers to recordings of a rig with nothing hidden; nothing is named."""
     answers = Answers(recorded(), tmp_path_factory.mktemp("nothing") / "x")
     assert answers.verdict == ("sufficient", [])
+    assert answers.diagnose.record.faults == ()
     return answers
 
 
@@ -48,6 +49,7 @@ def of_hidden(tmp_path_factory):
     """Answers to recordings of a rig with tendon outside its sheath; it is named."""
     answers = Answers(recorded("free_tendon"), tmp_path_factory.mktemp("hidden") / "x")
     assert answers.verdict == ("named", [("free_tendon", [])])
+    assert answers.diagnose.record.faults == ()
     return answers
 
 
