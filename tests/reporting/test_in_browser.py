@@ -125,7 +125,7 @@ def test_it_is_drawn_whole_and_no_fault_is_found(made, tab, axe, kind, width, sc
 
 
 def test_the_keyboard_reaches_the_content_at_once_and_shows_where_it_is(made, tab):
-    one = tab(made("pipeline"), DESK)
+    one = tab(made("closing"), DESK)
     focused = "document.activeElement.textContent.trim()"
     one.keyboard.press("Tab")
     assert one.evaluate(focused) == "Skip to the content"
@@ -233,11 +233,11 @@ def test_a_folded_section_opens_by_its_link_its_address_and_the_keyboard(made, t
 
 def test_contents_are_folded_on_a_phone_and_stay_beside_the_text_on_a_desk(made, tab):
     link = "nav ol ol a"
-    one = tab(made("pipeline"), PHONE)
+    one = tab(made("diagnosis"), PHONE)
     expect(one.locator(link).first).not_to_be_visible()
     one.locator("nav summary").click()
     expect(one.locator(link).first).to_be_visible()
-    one = tab(made("pipeline"), DESK)
+    one = tab(made("diagnosis"), DESK)
     expect(one.locator(link).first).to_be_visible()
     one.evaluate("window.scrollTo(0, document.body.scrollHeight)")
     nav, main = (one.locator(name).bounding_box() for name in ("nav", "main"))
@@ -254,7 +254,7 @@ def test_every_address_leads_into_view_and_into_folds(made, tab):
 
 
 def test_paper_is_light_whole_and_unfolded(made, tab):
-    one = tab(made("pipeline"), 700, "dark")
+    one = tab(made("diagnosis"), 700, "dark")
     one.emulate_media(media="print", color_scheme="dark")
     expect(one.locator("main details:not([open]) svg").last).to_be_visible()
     assert one.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
