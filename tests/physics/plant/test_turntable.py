@@ -142,38 +142,6 @@ def test_tensions_are_those_of_the_model_whose_drive_is_moved_likewise(values):
     np.testing.assert_allclose(run.f_in, there.f_in_N[1:], atol=1e-5)
 
 
-def test_viscous_friction_is_late_by_a_step():
-    """Tensions come to those of the model in first order, and are not those without the effect."""
-    rig, errors = with_values(GROUP_A, {"viscous_friction.coefficient_N_s_per_mm": 0.05}), []
-    for h in (1e-3, 5e-4, 2.5e-4):
-        run = Run(there_and_back(1500.0, -1200.0, each_s=0.15, h=h), rig, h=h)
-        there, plain = (moved_likewise(run, r) for r in (rig, GROUP_A))
-        errors.append(np.mean(np.abs(run.f_in - there.f_in_N[1:])))
-        assert np.mean(np.abs(run.f_in - plain.f_in_N[1:])) > 5.0 * errors[-1]
-    for coarse, fine in pairwise(errors):
-        assert 0.7 < math.log2(coarse / fine) < 1.6
-
-
-def play_of(x, play):
-    """Return the play operator of a way that begins in its middle."""
-    end, out = 0.0, []
-    for place in x:
-        end = min(max(end, place - play / 2.0), place + play / 2.0)
-        out.append(end)
-    return np.array(out)
-
-
-def test_the_tendon_rests_while_the_drive_crosses_its_play():
-    rig = with_values(GROUP_A, {"backlash.play_mm": 0.4})
-    run = Run(there_and_back(1500.0, -200.0, 200.0, -1500.0), rig)
-    np.testing.assert_allclose(run.end, play_of(run.x, 0.4), atol=1e-9)
-    resting = np.diff(run.end, prepend=0.0) == 0.0
-    assert 30 < resting.sum() < 400
-    crossing = resting[1:] & resting[:-1]
-    np.testing.assert_array_equal(run.f_in[1:][crossing], run.f_in[:-1][crossing])
-    assert np.abs(np.diff(run.x))[crossing].max() > 1e-3
-
-
 def test_friction_at_the_drive_sticks_until_the_gear_is_wound_up():
     rig = with_values(GROUP_A, {"drive_friction.friction_N": 6.0})
     slow = Run(np.full(800, 30.0), rig)
