@@ -16,7 +16,6 @@ STEP_S = 2e-3
 TIME_S = np.arange(0.0, 2.0 * math.pi, STEP_S)
 NESTED = 10.0 - 10.0 * np.cos(TIME_S) + 1.5 * np.sin(5.0 * TIME_S)
 STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=5e5))
-DAMPED = ACTUATOR._replace(damping_N_s_per_mm=1.0)
 
 
 def apart(rig, motor_mm=NESTED, **how):
