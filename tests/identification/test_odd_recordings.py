@@ -152,14 +152,6 @@ def test_the_drive_is_cleaned_by_its_own_samples():
     assert np.array_equal(full.values[::2], alone.values)
 
 
-def test_the_clock_may_begin_anywhere():
-    columns = recorded()
-    moved = calibrated(ran(columns | {"time_s": columns["time_s"] + 1e9}))
-    plain = calibrated(ran(columns))
-    for name, estimate in fitted(plain).items():
-        assert fitted(moved)[name].value == pytest.approx(estimate.value, rel=1e-6, abs=1e-6)
-
-
 def test_sampling_may_be_irregular():
     exact = clean(TRUE).columns
     rng = np.random.default_rng(2)
