@@ -82,19 +82,11 @@ def test_a_taken_port_is_refused(stream, refused):
     assert re.match(rf"tsas: --port: port {port} cannot be had \(.*\); choose", line)
 
 
-def test_it_is_reported_once_of_analytics_and_the_port_and_form_can_be_chosen(stream, tmp_path):
+def test_analytics_are_reported_and_the_port_can_be_chosen(stream, tmp_path):
     (port,) = free_ports(1)
     with started("view", stream, "--web", "--port", port, state=tmp_path) as process:
         assert int(address_in(process.stdout)[1]) == port
         assert ended(process)[2].count("rerun analytics disable") == 1
-    with started("view", stream, "--json", state=tmp_path) as process:
-        content = ""
-        while not content.endswith("}\n"):
-            content += process.stdout.readline()
-        assert ended(process) == (0, "", "- Ctrl-C ends it\n")
-    summary = json.loads(content)
-    assert summary["stream"] == str(stream)
-    assert ADDRESS.fullmatch(summary["address"])
 
 
 def test_folders_make_a_stream_that_is_gone_afterwards(folders, tmp_path):
@@ -110,12 +102,18 @@ def test_folders_make_a_stream_that_is_gone_afterwards(folders, tmp_path):
     assert list(temporary.iterdir()) == []
 
 
-def test_a_stream_in_the_folder_is_what_is_shown(folders, stream, tmp_path):
+def test_a_stream_in_the_folder_is_what_is_shown_and_told_as_json(folders, stream, tmp_path):
     folder = shutil.copytree(folders / "dataset", tmp_path / "dataset")
     shutil.copy(stream, folder / "stream.rrd")
-    with started("view", folder, state=tmp_path) as process:
-        assert shown_by(address_in(process.stdout)[0]) == stream.read_bytes()
-        assert ended(process)[0] == 0
+    with started("view", folder, "--json", state=tmp_path) as process:
+        content = ""
+        while not content.endswith("}\n"):
+            content += process.stdout.readline()
+        summary = json.loads(content)
+        assert summary["stream"] == str(folder / "stream.rrd")
+        assert ADDRESS.fullmatch(summary["address"])
+        assert shown_by(summary["address"]) == stream.read_bytes()
+        assert ended(process)[:2] == (0, "")
 
 
 @pytest.mark.parametrize(

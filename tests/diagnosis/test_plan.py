@@ -28,7 +28,7 @@ from tsas_cli.support.errors import InputError
 
 INERTIA = "load_inertia.mass_kg"
 PERIODS = 4  # 8 strokes: 7 are the least that is planned from
-RATE_HZ = 40.0  # of a plan, which looks at further runs too
+RATE_HZ = 30.0  # of a plan, which looks at further runs too
 FEW = ("a fast sine", "fast ramps", "a long run")  # all: tests/commands/test_plan.py, large
 VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
 

@@ -55,7 +55,7 @@ def answer(recording, one, samples=None):
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("tendon")
-    dataset = by_hand.make_dataset(folder / "dataset", ids=("a",), samples=3000)
+    dataset = by_hand.make_dataset(folder / "dataset", ids=("a",), samples=1500)
     out = by_hand.make_diagnosis(dataset, folder / "diagnose", "named")
     for name, one in (("model-nominal.toml", NOMINAL), ("model-extended.toml", EXTENDED)):
         write_model(out / name, MODELS[one], version="0.1.0", dataset=by_hand.source(dataset, out))
