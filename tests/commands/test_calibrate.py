@@ -1,13 +1,11 @@
 """`tsas calibrate` in a process of its own, with every warning an error."""
 
-import hashlib
 import json
 import re
 import tomllib
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -78,25 +76,6 @@ def test_odd_names_of_runs(done, tmp_path):
     assert {p.stem for p in (tmp_path / "s" / "runs").iterdir()} == set(IDS)
 
 
-def test_integer_and_float32_and_further_columns(done, folder, tmp_path):
-    """Micrometres in whole numbers as another tool may write them are no obstacle."""
-    path, whole = folder / "runs" / "a.parquet", recorded(RIG)
-    table = {
-        "time_s": whole["time_s"],
-        "x_in_mm": whole["x_in_mm"].astype(np.float32),
-        "f_in_N": np.round(whole["f_in_N"]).astype(np.int16),
-        "f_out_N": whole["f_out_N"].astype(np.float32),
-        "comment": ["x"] * whole["time_s"].size,
-    }
-    pq.write_table(pa.table(table), path)
-    manifest, digest = folder / "dataset.toml", hashlib.sha256(path.read_bytes()).hexdigest()
-    text = manifest.read_text(encoding="utf-8")
-    manifest.write_text(re.sub(r'sha256 = "\w+"', f'sha256 = "{digest}"', text), encoding="utf-8")
-    summary = json.loads(done("calibrate", folder, "--out", tmp_path / "c", "--json"))
-    found = {p["name"]: p["value"] for p in summary["parameters"]}
-    assert found["friction_coefficient"] == pytest.approx(0.125, rel=0.01)
-
-
 @pytest.mark.parametrize("names", [("x_in_mm",), ("f_in_N", "f_out_N"), ("x_in_mm", "x_out_mm")])
 def test_a_wrong_sign_is_one_line(refused, tmp_path, names):
     turned = {name: -v if name in names else v for name, v in recorded(RIG).items()}
@@ -144,14 +123,3 @@ def test_effects_of_a_model_stay(done, tmp_path):
     (sentence,) = (s for s in said if "stiffness" in s)
     assert float(sentence.split("identifiable: ")[1].split(" ")[0]) > 2e4
     assert not any("wrong somewhere" in s for s in summary["cannot_tell"])
-
-
-def test_a_short_recording_is_no_error_and_no_number(done, tmp_path):
-    """Two rows: the data sheet's values without intervals, and the reason."""
-    short = {name: v[100:102] for name, v in recorded(RIG).items()}
-    folder = dataset_of(RIG, tmp_path / "d", a=short)
-    summary = json.loads(done("calibrate", folder, "--out", tmp_path / "c", "--json"))
-    assert all(p["stderr"] is None for p in summary["parameters"])
-    assert summary["fit"]["message"] == "nothing to fit"
-    assert summary["cannot_tell"]
-    assert summary["channels"]["a"]["f_in_N"]["noise"] is None

@@ -180,11 +180,3 @@ def test_what_is_wrong_is_reported_and_nothing_is_written(
         track("--settings", quick(more), *options)
     assert message in str(refused.value)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["settings.toml"]
-
-
-def test_an_unstable_loop_is_one_line_with_its_time_and_state(refused, quick, tmp_path):
-    unstable = quick("[controllers.pid]\nproportional_rpm_per_mm = 1e6\n")
-    call = ("--settings", unstable, "--controller", "pid", "--out", tmp_path / "out")
-    said = "tsas: controller pid: the loop is unstable: from 0 s on the mot"
-    assert refused("track", *call).startswith(said)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["settings.toml"]

@@ -36,13 +36,6 @@ def test_what_belongs_to_no_dataset_is_not_replaced(dataset, bucket):
     assert not (there / "dataset.toml").is_file()
 
 
-def test_an_upload_that_was_cut_off_goes_on(dataset, bucket):
-    tsas.upload(dataset, f"{bucket}/bench")
-    storage.files_of("s3").rm_file(f"{bucket}/bench/dataset.toml")
-    tsas.upload(dataset, f"{bucket}/bench")
-    assert tsas.read(f"{bucket}/bench").runs[0].id == "a"
-
-
 def test_a_replacement_that_was_cut_off_goes_on(dataset, bucket):
     tsas.upload(dataset, f"{bucket}/bench")
     location_of(f"{bucket}/bench/runs/a.parquet").write_bytes(b"of another version")

@@ -68,18 +68,6 @@ def test_the_documented_files_are_read(tmp_path):
     assert named.parameters["play_mm"].interval == pytest.approx((0.11408, 0.12192))
 
 
-def test_a_case_that_fails_is_listed_and_scored_as_no_answer(strict, tmp_path):
-    sealed = write_set(tmp_path / "set", {"a": case("backlash")})
-    done = strict("challenge", "run", sealed, "--out", tmp_path / "entry", "--workers", 1)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "0 of 1 cases answered" in done.stdout
-    scored = strict("challenge", "score", sealed, tmp_path / "entry", "--json")
-    (entry,) = json.loads(scored.stdout)["entries"].values()
-    assert entry["no_answer"].keys() == {"a"}
-    assert all(reason in done.stdout for reason in entry["no_answer"].values())
-    assert {c["outcome"] for c in entry["cases"].values()} == {"no answer"}
-
-
 def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, tmp_path):
     """Two cases stand for all of a seed, which take minutes."""
     few = cases.cases(17)[:2]
