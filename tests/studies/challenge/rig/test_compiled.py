@@ -29,8 +29,8 @@ def use_the_rig(**environment):
 
 
 def test_the_second_process_compiles_nothing():
-    _, tension = use_the_rig()  # compiles where no test has done so before
-    assert use_the_rig() == [0, tension]
+    compilations, tension = use_the_rig()  # some where no test has used the rig before
+    assert compilations == 0 or use_the_rig() == [0, tension]
 
 
 @pytest.mark.large

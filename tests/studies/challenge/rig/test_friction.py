@@ -9,7 +9,6 @@ from tsas_studies.challenge.rig.motions import through
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 A = 0.125 * math.pi
-F0 = 25.0
 UP, DOWN = 10.0, 3.0
 
 
@@ -27,28 +26,6 @@ def test_friction_falls_with_speed(speed):
     expected = A * (1.0 + 0.3 * math.exp(-((speed / 5.0) ** 2)))
     assert pulling == pytest.approx(expected, rel=0.01)
     assert releasing == pytest.approx(-expected, rel=0.01)
-
-
-def test_viscous_friction_adds_evenly_along_the_sheath():
-    """dT/ds = μκT + c v/L from the load to the drive: T_in = T_out e^a + c v (e^a − 1)/a."""
-    columns, _ = run(4.0, viscous_N_s_per_mm=0.5)
-    i = int(UP * 50)
-    expected = columns["f_out_N"][i] * math.exp(A) + 0.5 * 4.0 * math.expm1(A) / A
-    assert columns["f_in_N"][i] == pytest.approx(expected, rel=2e-3)
-    plain, _ = run(4.0)
-    assert columns["f_in_N"][i] - plain["f_in_N"][i] > 1.5
-
-
-@pytest.mark.parametrize("bend", [math.pi, 1e-6])
-def test_drag_adds_evenly_along_the_sheath_at_any_tension(bend):
-    """dT/ds = ∓(μκT + D/L): T_out = (T_in + D/a) e^(−a) − D/a on a pull, with −a on a release."""
-    a, motion = 0.125 * bend, through([UP, DOWN, DOWN + 0.5], speed_mm_s=4.0, rate_Hz=200.0)
-    rig = Rig(cells=80, total_bend_rad=bend, friction=Friction(drag_N=2.0))
-    columns = simulate(rig, motion).columns
-    for i, sign in ((int(UP * 50), 1.0), (int((2.0 * UP - DOWN) * 50), -1.0)):
-        f_in, f_out = columns["f_in_N"][i], columns["f_out_N"][i]
-        expected = (f_in + 2.0 / a) * math.exp(-sign * a) - 2.0 / a
-        assert f_out == pytest.approx(expected, rel=1e-3)
 
 
 def test_friction_and_bend_never_turn_negative():

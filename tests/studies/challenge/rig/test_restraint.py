@@ -19,11 +19,6 @@ def added(motion=MOTION, **options):
     return motion.time_s, x, columns["f_out_N"] - F0 - KL * x
 
 
-def test_nothing_holds_back_by_itself():
-    _, _, force = added()
-    assert np.abs(force).max() < 1e-6
-
-
 def test_inner_friction_costs_work_in_a_closed_loop_and_turns_over_its_length():
     _, x, force = added(hysteresis_N=1.2, hysteresis_mm=0.4)
     tops = np.flatnonzero(MOTION.x_in_mm > 10.0 - 1e-9)
@@ -33,14 +28,6 @@ def test_inner_friction_costs_work_in_a_closed_loop_and_turns_over_its_length():
     expected = 2.0 * 1.2 * (stroke - 2.0 * 0.4)
     assert np.trapezoid(force[loop], x[loop]) == pytest.approx(expected, rel=0.02)
     assert force[tops[0]] == pytest.approx(1.2, rel=1e-3)
-
-
-def test_an_eccentric_pulley_stretches_the_spring_more_and_less():
-    _, x, force = added(ripple_sine_mm=0.3, ripple_cosine_mm=0.2, ripple_period_mm=6.0)
-    turn = 2.0 * np.pi * x / 6.0
-    np.testing.assert_allclose(
-        force, KL * (0.3 * np.sin(turn) + 0.2 * (np.cos(turn) - 1.0)), atol=1e-6
-    )
 
 
 def test_a_clamp_slides_in_its_slot_between_its_forces():

@@ -112,18 +112,6 @@ def test_friction_over_the_stroke_the_travel_and_a_temperature():
         assert ratio[[pulling, releasing]] == pytest.approx(sign * factors, rel=1e-3)
 
 
-def test_friction_that_is_uneven_keeps_the_capstan_ratio_and_changes_the_stretch():
-    """ln T grows as a (s + slope (s² − s)/2) from the drive to the load; the stretch is ∫ T ds."""
-    motion = through([UP], speed_mm_s=SPEED, rate_Hz=100.0)
-    rig = Rig(cells=80, friction=Friction(slope_along=1.0))
-    last = {name: v[-1] for name, v in simulate(rig, motion).columns.items()}
-    assert math.log(last["f_in_N"] / last["f_out_N"]) == pytest.approx(A, rel=1e-3)
-    s = np.linspace(0.0, 1.0, 4001)
-    tension = last["f_in_N"] * np.exp(-A * (s + 0.5 * (s**2 - s)))
-    stretch = np.trapezoid(tension - rig.preload_N, s) * rig.sheath_length_mm / rig.axial_stiffness
-    assert last["x_in_mm"] - last["x_out_mm"] == pytest.approx(stretch, rel=2e-3)
-
-
 def test_a_sheath_that_shifts_bends_by_the_tension_at_the_drive():
     motion = through([UP], speed_mm_s=SPEED, rate_Hz=400.0)
     rig = Rig(cells=40, friction=Friction(shift_per_N=0.004))

@@ -109,18 +109,6 @@ def test_a_prescribed_distal_end_repeats_the_spring(load, channel, distal_length
         np.testing.assert_allclose(again[name], spring[name], atol=1e-5)
 
 
-def test_free_tendon_is_in_series():
-    free = Rig(proximal_length_mm=150.0, distal_length_mm=60.0, cells=60)
-    columns = simulate(free, sine(periods=1.0, rate_Hz=400.0)).columns
-    inside = columns["x_in_mm"] - (columns["f_in_N"] - F0) * 150.0 / free.axial_stiffness
-    motion = Motion(columns["time_s"], inside)
-    shorter = simulate(Rig(distal_length_mm=60.0, cells=60), motion).columns
-    np.testing.assert_allclose(shorter["f_in_N"], columns["f_in_N"], atol=1e-4)
-    bare = simulate(Rig(load="force", cells=60), motion, distal=columns["f_out_N"]).columns
-    stretch = (columns["f_out_N"] - F0) * 60.0 / free.axial_stiffness
-    np.testing.assert_allclose(bare["x_out_mm"] - stretch, columns["x_out_mm"], atol=1e-6)
-
-
 def test_where_the_bend_sits_changes_the_elongation_but_not_the_ratio():
     motion = through([10.0], rate_Hz=200.0)
     near = simulate(Rig(bend_profile=((0.0, 1.0), (0.02, 1.0), (0.021, 0.0))), motion).columns
