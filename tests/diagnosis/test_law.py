@@ -65,7 +65,7 @@ def described(folder, sensors):
 
 
 def test_play_of_an_encoder_is_lost_motion_at_the_load(tmp_path):
-    sensors = Sensors(rate_Hz=50.0)
+    sensors = Sensors(rate_Hz=40.0)
     sensors = replace(sensors, x_out_transducer=Transducer(play=PLAY_MM))
     law = described(tmp_path / "dataset", sensors)
     assert law.names == ("load_law",)
@@ -107,7 +107,7 @@ def test_a_parameter_that_does_as_much_as_the_residual_costs_a_tenth_of_a_block(
 
 
 def test_a_cost_that_holds_the_law_back_is_lowered_while_held_out_runs_gain(tmp_path, monkeypatch):
-    sensors = replace(Sensors(rate_Hz=50.0), x_out_transducer=Transducer(play=PLAY_MM))
+    sensors = replace(Sensors(rate_Hz=40.0), x_out_transducer=Transducer(play=PLAY_MM))
     monkeypatch.setattr(law_bench, "PRIOR", 10.0)
     lowered = described(tmp_path / "lowered", sensors)
     monkeypatch.setattr(law_module, "LIGHTER", 0)
@@ -123,7 +123,7 @@ def test_a_cost_that_holds_the_law_back_is_lowered_while_held_out_runs_gain(tmp_
 )
 def test_a_law_acts_beside_what_is_not_proven_where_that_predicts_better(tmp_path, effect, beside):
     """A cell tilts by 5 % over the stroke, which no law describes; no load is damped."""
-    sensors = Sensors(rate_Hz=50.0, f_out_tilt_per_mm=0.005)
+    sensors = Sensors(rate_Hz=40.0, f_out_tilt_per_mm=0.005)
     sensors = replace(sensors, x_out_transducer=Transducer(play=PLAY_MM))
     bench = bench_for(tmp_path / "dataset", sensors)
     unproven = bench.fit([effect])
@@ -134,7 +134,7 @@ def test_a_law_acts_beside_what_is_not_proven_where_that_predicts_better(tmp_pat
 
 
 def test_a_sound_rig_has_no_law(tmp_path):
-    assert described(tmp_path / "dataset", Sensors(rate_Hz=50.0)) is None
+    assert described(tmp_path / "dataset", Sensors(rate_Hz=40.0)) is None
 
 
 def mean_delay(bench, rigs):
@@ -144,7 +144,7 @@ def mean_delay(bench, rigs):
 
 def test_a_load_cell_that_feels_the_other_a_little_explains_what_lags_at_reversals(tmp_path):
     """Where strokes turn, residuals have no weight: the tolerances are known from the others."""
-    bench = bench_for(tmp_path / "dataset", Sensors(rate_Hz=50.0, f_out_of_f_in=0.003))
+    bench = bench_for(tmp_path / "dataset", Sensors(rate_Hz=40.0, f_out_of_f_in=0.003))
     trial, folds = bench.fit(), bench_folds(bench)
     tolerated = tolerances(bench, trial)
     fitted = [bench.rig(trial, k) for k in range(3)]
@@ -182,7 +182,7 @@ def test_a_law_that_makes_a_run_or_a_channel_worse_is_refused(force, length, wor
 
 def test_the_share_that_exceeds_the_noise_and_the_share_that_a_law_takes(tmp_path):
     """Of 3 times the noise 8 of 9 parts of the squares exceed it; 5 parts left are 4 taken."""
-    bench = bench_for(tmp_path, Sensors(rate_Hz=50.0))
+    bench = bench_for(tmp_path, Sensors(rate_Hz=40.0))
     noise = {name: noise_floor(bench, name, 0.0) for name in bench.channels}
 
     def held_out(squares):

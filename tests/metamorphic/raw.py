@@ -13,7 +13,7 @@ from tsas_studies.challenge.bench import RUNS, SENSORS, clean_run, data_sheet, d
 from tsas_studies.challenge.cases import FULL, Hidden
 from tsas_studies.challenge.rig.sensors import measure, quantised
 
-RATE_HZ = 50.0
+RATE_HZ = 40.0
 TAKEN = ("b", "d")  # of the runs of the benchmark: two speeds, two bends and two lengths
 UNITS = {"time_s": "s", "x_in_mm": "mm", "x_out_mm": "mm", "f_in_N": "N", "f_out_N": "N"}
 IMPERIAL = {"time_s": "ms", "x_in_mm": "in", "x_out_mm": "in", "f_in_N": "lbf", "f_out_N": "lbf"}
