@@ -7,7 +7,6 @@ import pytest
 
 from tests.physics.references import GROUP_A, branches
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import first_determined_sample, simulate
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
@@ -58,14 +57,3 @@ def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
     assert first > 5
     np.testing.assert_allclose(pulled[first:], released[first:], rtol=1e-6)
     assert np.all(pulled[:first] > released[:first] + 1e-3)
-
-
-def test_the_dynamic_chain_follows_the_closed_form_with_small_steps():
-    """Two strides in which the tendon slides: 50 lumps with bristles, to a thousandth."""
-    drive = DriveInput(np.array([0.0, 0.1, 0.2]), time_s=np.array([0.0, 0.02, 0.04]))
-    dynamic, closed = simulate(GROUP_A, drive, "lugre"), simulate(GROUP_A, drive)
-    assert dynamic.solver.startswith("LuGre chain, 50 lumps, ")
-    np.testing.assert_allclose(dynamic.f_in_N, closed.f_in_N, rtol=1e-4)
-    np.testing.assert_allclose(dynamic.x_out_mm, closed.x_out_mm, atol=1e-3)
-    assert (dynamic.phase != UNCONVERGED).all()
-    assert 100 < dynamic.step_ends_s.size < 300
