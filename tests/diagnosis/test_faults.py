@@ -1,7 +1,4 @@
-"""A fault of one run is said in place of a mechanism; a sound rig and a mechanism are not accused.
-
-The recordings are those of the independent rig.
-"""
+"""A fault of one run is said in place of a mechanism; a mechanism is not accused."""
 
 import re
 import tomllib

@@ -25,10 +25,7 @@ def names(*found):
 
 
 class Bench:
-    """Fits whose mean square is given by the set of effects; `mesh` are those that need it.
-
-    A list of mean squares is that of one fit after the other.
-    """
+    """Fits whose mean square is given by the effects, or by a list of one after the other."""
 
     def __init__(self, mean_squares, mesh=()):
         self.mean_squares, self.mesh = mean_squares, mesh

@@ -275,10 +275,7 @@ def test_no_tolerance_counts_for_more_than_is_plausible():
 
 
 def test_tolerances_and_the_noise_add_up_in_squares(monkeypatch):
-    """Noise leaves each of two unknowns by 1, a tolerance both together by 3, moved by 2 and −9.
-
-    They are known by their difference. Blocks are counted from 0 in each run.
-    """
+    """Noise leaves each of two unknowns by 1, a tolerance both together by 3, moved by 2 and −9."""
     given = {}
     fitted = Fitted(*(np.full(2, v) for v in (7.0, 1.0, 2.0)), np.zeros(2, bool), True, "", 1)
 

@@ -20,10 +20,7 @@ def noise_of(seconds, step_s=0.02, seed=1, part=0.7):
 
 
 def spectra(run, segment_s):
-    """Return means of |U|², U*X and |X|² over segments of one length that overlap by half.
-
-    Each loses its straight line and is weighted by Hann's window; in units of power per hertz.
-    """
+    """Return means of |U|², U*X and |X|² over segments of one length that overlap by half."""
     step_s = run.u.step_s
     n = round(segment_s / step_s)
     k = np.arange(n)

@@ -46,10 +46,7 @@ MASS = "drive_inertia.mass_kg"
 
 @pytest.mark.parametrize(("dynamics", "late_s"), [("slip", SLIPS_ALONG_S), ("lugre", 0.0)])
 def test_a_mass_at_a_drive_by_force_is_a_second_order_low_pass(dynamics, late_s):
-    """m x″ + c x′ + K x = A sin ωt without friction, once it has settled.
-
-    In the slip chain the mass takes up its speed late.
-    """
+    """m x″ + c x′ + K x = A sin ωt without friction, once it has settled."""
     t, omega, mass, damping = np.arange(0.0, 2.0, 5e-4), 12.0, 5.0, 0.05
     wave = 20.0 * np.sin(omega * t)
     drive = DriveInput(40.0 + wave, kind="force", time_s=t)

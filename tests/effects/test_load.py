@@ -34,11 +34,7 @@ MASS, OMEGA = 3.0, 4.0
 
 
 def of_a_mass(samples):
-    """Return f_out and what it should be, for a load that is made to follow a known motion.
-
-    The load moves with 1 − cos ωt, and its mass with the same after a lag of the first order.
-    Without friction the drive's travel is that of the load and the stretch of the tendon.
-    """
+    """Return f_out and what it should be, for a load that is made to follow a known motion."""
     t = np.linspace(0.0, 3.0, samples)
     x_out = t - np.sin(OMEGA * t) / OMEGA
     phase = math.atan(OMEGA * SLIPS_ALONG_S)

@@ -1,8 +1,4 @@
-"""What acts along the tendon, against solutions in closed form.
-
-Friction at a moment and at a node is held to its laws in tests/physics/test_small_runs.py and
-tests/physics/slip/test_small_chains.py.
-"""
+"""What acts along the tendon, against solutions in closed form."""
 
 import math
 from itertools import pairwise

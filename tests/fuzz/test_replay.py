@@ -1,7 +1,4 @@
-"""What the search has learned, and every input that once broke a rule, is tried in each run.
-
-So is some of it changed at random, the same way in each run.
-"""
+"""Every kept input, and some of each changed at random in the same way, is tried in each run."""
 
 import random
 import sys

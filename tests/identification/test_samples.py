@@ -66,10 +66,7 @@ def test_gaps_of_the_drive_and_of_a_channel_do_not_count(forgets):
 
 @pytest.mark.parametrize(("smallest", "last"), [(0.5, 58), (3.0, 55), (3.5, 55), (100.0, 59)])
 def test_a_turn_that_noise_may_hide_is_left_out_with_what_follows(forgets, smallest, last):
-    """What is further from the last place than the smallest reversal counts: 4 mm and more of 3.
-
-    Where the drive never goes further than that, all is kept.
-    """
+    """What is further from the last place than the smallest reversal counts: 4 mm and more of 3."""
     forgets(0)
     assert kept(run_of(UP, smallest=smallest))["f_in_N"] == list(range(last + 1))
 

@@ -1,7 +1,4 @@
-"""Recordings as a person has them, CSV files and a map, and what may be done to them.
-
-No answer need be known: what one does to the files says how the answers change.
-"""
+"""Recordings as a person has them, CSV files and a map, and what may be done to them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -1,8 +1,4 @@
-"""What is done to recordings without changing what they say leaves every answer as it is.
-
-Each relation says which outputs must be the same to the last bit, which to rounding, and which
-within a part of their standard errors, and why.
-"""
+"""What is done to recordings without changing what they say leaves every answer as it is."""
 
 from dataclasses import replace
 

@@ -15,10 +15,7 @@ WRAP = wrap_of(GROUP_A)
 
 
 def dead_band(x):
-    """Return the travel from contraction at x to loosening, by the formulas of Yang 2025.
-
-    The tension there is that of Eq. (30); the band ends where it has fallen by e^(−2a).
-    """
+    """Return the travel from contraction at x to loosening, by the formulas of Yang 2025."""
     slope = KL * math.exp(WRAP) / (1.0 + KL * (math.exp(WRAP) - 1.0) * L / (WRAP * EA))
     tension = slope * (x + F0 * (1.0 / KL + L / EA))
     return L / (WRAP * EA) * tension * (1.0 - math.exp(-WRAP)) ** 2

@@ -325,10 +325,7 @@ LATE = {"quantity": "friction_coefficient", "value": 0.16, "from_s": 6.0}
 
 
 def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **more) -> Path:
-    """Write what `tsas track` would say about a force that is missed by 1 N, and by 2 N later.
-
-    The drive lags behind by 0.25 (1 - cos t) mm, and phi1 lies at its upper bound half of the time.
-    """
+    """Write what `tsas track` would say about a force that is missed by 1 N, and by 2 N later."""
     time_s = np.arange(0.0, 4 * math.pi, 0.01)
     wanted = 43.0 - 18.0 * np.cos(time_s)
     x_inv = 12.0 - 12.0 * np.cos(time_s)

@@ -1,9 +1,4 @@
-"""The dynamic chain with three lumps: its equations piece by piece, and a general solver's run.
-
-What Newton's method is given is held against slopes by differences, formulas in time against
-polynomials that they are exact for, and whole runs against scipy's solver of the equations as one
-reads them (`benchmarks/lugre_rivals/ode.py`).
-"""
+"""The dynamic chain with three lumps: its equations piece by piece, and a general solver's run."""
 
 import math
 

@@ -25,11 +25,7 @@ CHANNELS = {"x_in_mm": X_IN, "x_out_mm": X_OUT, "f_in_N": F_IN, "f_out_N": F_OUT
 
 
 def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, later=None, at=-1):
-    """Return the channels, the motor's speed [mm/s], and how many steps did not settle.
-
-    The motor goes straight from each place to the next, from rest at the first one; from sample
-    `at` on the rig is `later`.
-    """
+    """Return the channels, the motor's speed [mm/s], and how many steps did not settle."""
     m = motor_mm.size
     rpm = np.append(np.diff(motor_mm) / step_s, 0.0) / actuator.gain_mm_per_s_rpm
     laws = (

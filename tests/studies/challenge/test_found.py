@@ -1,9 +1,4 @@
-"""A small fixed part of the blind benchmark: what is hidden has to be found, every time.
-
-Each effect once at full size, two recordings with nothing hidden, two causes that the catalogue
-does not hold; all made by the independent rig. One of each part of a rig and of each kind is tried
-with every change, all by `make test-large`; `make challenge` runs the whole.
-"""
+"""A small fixed part of the blind benchmark (`make challenge`): what is hidden has to be found."""
 
 import json
 

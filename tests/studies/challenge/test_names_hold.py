@@ -1,8 +1,4 @@
-"""Beside the catalogue a diagnosis names nothing that is not there, or says that it is not sure.
-
-A few causes near to the catalogue, and nothing hidden in slow noise, made by the independent rig;
-`make test-large` tries all of one seed.
-"""
+"""Beside the catalogue a diagnosis names nothing that is not there, or says that it is not sure."""
 
 import json
 

@@ -1,9 +1,4 @@
-"""The rig and the product's model mean the same by every parameter of the catalogue.
-
-Both simulate one run with an effect at its full size and without it, and must change alike in
-every channel; the rig's own physics differs where `APART` says so. Sensors read at each sample of
-the rig, so that what lies between them makes no difference.
-"""
+"""The rig and the product's model mean the same by every parameter of the catalogue."""
 
 from dataclasses import replace
 
