@@ -35,7 +35,7 @@ LONGEST = (
     *("studies/commands/test_close_loop", "whole_job/test_whole_job"),
     *("hostile/test_hostile_files", "commands/test_streams", "commands/test_live"),
     *("studies/challenge/test_found", "sweeping/test_cluster", "diagnosis/test_faults"),
-    *("reporting/test_in_browser", "studies/challenge/test_names_hold", "commands/test_calibrate"),
+    *("reporting/test_in_browser", "commands/test_calibrate"),
     *("identification/test_odd_recordings", "metamorphic/test_relations"),
     *("identification/test_long_runs", "diagnosis/test_counted_once", "studies/challenge/test_run"),
     *("diagnosis/test_plan", "fuzz/test_replay", "studies/commands/test_challenge"),

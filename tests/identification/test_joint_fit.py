@@ -243,3 +243,17 @@ def test_a_tendon_that_would_be_slack_between_two_drives_has_another_zero(lead_m
     )
     expected = {"x_in_zero_mm": pytest.approx(lead_mm - 0.05)} if slack else {}
     assert _zero_between(run, rig) == expected
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "values", "held"),
+    [
+        (0.1, 0.3, (0.1, 0.3), True),
+        (0.1, 0.3, (0.2, 0.31), False),
+        (0.1, 0.3, (0.0,), False),
+        (None, None, (0.2,), False),
+    ],
+)
+def test_an_interval_holds_values_only_where_there_is_one(low, high, values, held):
+    e = Estimate("friction", 0.2, "1", "fitted", interval_low=low, interval_high=high)
+    assert e.holds(*values) == held

@@ -1,10 +1,15 @@
 import re
 from pathlib import Path
 
+import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
+from tsas_cli import ingest
 from tsas_cli.recordings.ingest_map import ColumnMap, read_map
+from tsas_cli.recordings.readers import delimited, parquet
 from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.support.errors import InputError
 
 REPOSITORY = Path(__file__).parents[2]
@@ -85,3 +90,111 @@ def test_the_page_shows_a_map_that_works_and_names_every_key(ask):
     assert ask(example).columns["x_in_mm"].sign == -1
     for key in [*ReadOptions.model_fields, *ColumnMap.model_fields]:
         assert f"`{key}`" in PAGE
+
+
+ROWS = 1000
+MAP = """
+[dataset]
+name = "parts"
+[read]
+drop_repeated_rows = {drop}
+extra = ["note"]
+[columns.time_s]
+{clock}
+[columns.x_in_mm]
+source = "x"
+unit = "in"
+sign = -1
+offset = "first"
+[columns.f_in_N]
+source = "f"
+unit = "N"
+offset = 2.0
+"""
+
+
+@pytest.fixture
+def parts(monkeypatch):
+    """Return a function that lets files be read in parts of so many rows."""
+
+    def set_rows(rows):
+        for module in (delimited, parquet):
+            monkeypatch.setattr(module, "BATCH_ROWS", rows)
+
+    return set_rows
+
+
+def lines(*, repeats=True):
+    """Return rows as text; the first displacements are empty, some rows repeat."""
+    rng = np.random.default_rng(1)
+    rows = []
+    for i in range(ROWS):
+        place = "" if i < 230 else f"{np.sin(i / 40):.6f}"
+        rows.append(f"{i},{place},{rng.normal():.5f},{i % 7}\n")
+        if repeats and i % 97 == 50:
+            rows.append(rows[-1])
+    return rows
+
+
+def made(folder, name, text, *, clock='source = "t"\nunit = "ms"', drop="true"):
+    folder.mkdir(exist_ok=True)
+    (folder / "map.toml").write_text(MAP.format(clock=clock, drop=drop))
+    (folder / "a.csv").write_text("t,x,f,note\n" + "".join(text))
+    ingest(folder / "a.csv", map=folder / "map.toml", out=folder / name)
+    return pq.read_table(folder / name / "runs" / "a.parquet")
+
+
+@pytest.mark.parametrize("rows", [1, 7, 100, 513])
+@pytest.mark.parametrize("clock", ['source = "t"\nunit = "ms"', "rate_Hz = 500.0"])
+def test_parts_give_what_the_whole_gives(tmp_path, parts, rows, clock):
+    drop = "true" if "source" in clock else "false"
+    whole = made(tmp_path, "whole", lines(), clock=clock, drop=drop)
+    parts(max(rows, 2))  # one row alone is no recording
+    assert made(tmp_path, "parts", lines(), clock=clock, drop=drop).equals(whole)
+    assert whole.column("x_in_mm").null_count >= 230
+    assert whole.num_rows == (ROWS if drop == "true" else len(lines()))
+
+
+def test_parts_of_parquet_give_what_the_whole_gives(tmp_path, parts):
+    whole = made(tmp_path, "whole", lines())
+    source = tmp_path / "b.parquet"
+    write_parquet(source, whole.rename_columns(["t", "x", "f", "note"]))
+    for name, rows in (("one", 10_000), ("parts", 130)):
+        parts(rows)
+        ingest(source, map=tmp_path / "map.toml", out=tmp_path / name)
+    one, some = (pq.read_table(tmp_path / n / "runs" / "b.parquet") for n in ("one", "parts"))
+    assert one.num_rows == ROWS
+    assert some.equals(one)
+
+
+def test_a_comment_far_down_is_left_out_as_one_at_the_top_is(tmp_path, parts):
+    text = lines()
+    whole = made(tmp_path, "whole", text)
+    parts(100)
+    assert made(tmp_path, "parts", [*text[:700], "# a stop\n", *text[700:]]).equals(whole)
+
+
+@pytest.mark.parametrize(
+    ("at", "line", "message"),
+    [
+        (600, "5,0,0,0\n", r"row 602: the time does not increase \(0.599 s, then 0.005 s\)"),
+        (640, "x,0,0,0\n", r"row 642: column t holds 'x'; expected a number"),
+        (500, ",0,0,0\n", r"row 502: the time is empty"),
+    ],
+)
+def test_a_fault_far_down_is_reported_with_its_row(tmp_path, parts, at, line, message):
+    parts(100)
+    text = lines(repeats=False)
+    with pytest.raises(InputError, match=message):
+        made(tmp_path, "parts", [*text[:at], line, *text[at:]], drop="false")
+
+
+def test_time_that_stands_between_two_parts_is_seen(tmp_path, parts):
+    parts(100)
+    with pytest.raises(InputError, match=r"row 102: the time does not increase"):
+        made(tmp_path, "a", [f"{i - (i >= 100)},0,0,0\n" for i in range(300)], drop="false")
+
+
+def test_rows_that_are_all_the_same_are_no_recording(tmp_path):
+    with pytest.raises(InputError, match="all rows are identical"):
+        made(tmp_path, "a", ["1,2,3,4\n"] * 5)
