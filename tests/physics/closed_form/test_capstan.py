@@ -16,7 +16,6 @@ from tsas_cli.physics.closed_form.capstan import (
 )
 
 A = wrap_of(GROUP_A)
-EA, KL = GROUP_A.tendon_stiffness_N, GROUP_A.load_stiffness_N_per_mm
 OTHERS = [(0.3, 40.0, 310.0, 5.0e4), (1.7, 0.2, 90.0, 3.0e3), (0.01, 900.0, 2500.0, 8.0e5)]
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tests.physics.references import FREE, GROUP_A, branches, pulled_through, static_model, wrap_of
-from tsas_cli.effects import Effects, FreeTendon
 
 UP = math.exp(wrap_of(GROUP_A))
 
@@ -53,12 +52,3 @@ def test_while_the_whole_tendon_slips_it_is_the_distributed_model(rig):
         np.testing.assert_allclose(ours[both], exact[both], rtol=1e-9)
     assert {1, -1, 2} <= set(lumped[2])
     assert lumped[0].min() == 0.0
-
-
-def test_free_tendon_at_the_drive_is_in_series_with_the_dead_band():
-    """A free length of 278 mm would turn 175.1 into 101.96 N/mm, as in the paper's Fig. 7."""
-    rig = GROUP_A._replace(
-        sheath_length_mm=785.0, effects=Effects(free_tendon=FreeTendon(278.0, 0.0))
-    )
-    f_in, _, _ = static_model(np.array([0.0, 0.01]), rig)
-    assert (f_in[1] - f_in[0]) / 0.01 == pytest.approx(101.96, abs=0.1)
