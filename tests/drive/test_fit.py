@@ -150,29 +150,6 @@ def test_the_numbers_of_a_set_are_in_a_fixed_order_the_gain_first():
     assert usual.motor_lag_s == 0.0
 
 
-def test_the_measured_response_is_that_of_the_drive_where_it_is_excited():
-    runs = [driven(TRUTH), driven(TRUTH, "steps")]
-    seen = frequency_response(runs)
-    assert seen.band is not None
-    assert seen.band[0] < 2.5
-    assert 15.0 < seen.band[1] < 40.0
-    jw = 2j * math.pi * seen.frequency_Hz
-    exact = response_by_hand(TRUTH, jw)
-    chosen = seen.excited & (seen.frequency_Hz > 2.0) & (seen.frequency_Hz < 15.0)
-    off = np.abs(seen.response[chosen] / exact[chosen] - 1.0)
-    assert chosen.sum() > 8
-    assert np.median(off) < 0.06
-    assert np.all((seen.coherence >= 0.0) & (seen.coherence <= 1.0 + 1e-9))
-    assert np.all(seen.coherence[seen.excited] > 0.8)
-
-
-def test_noise_that_has_nothing_to_do_with_the_motor_is_no_band():
-    run = driven(TRUTH)
-    noise = np.random.default_rng(4).standard_normal(TIME_S.size)
-    seen = frequency_response([DriveRun("n", run.u, noise, 1.0, at_rest=True)])
-    assert seen.band is None or seen.excited.sum() < 4
-
-
 def response_of(values, frequency_Hz, wrong=()):
     response = response_by_hand(values, 2j * math.pi * frequency_Hz)
     for k in wrong:
