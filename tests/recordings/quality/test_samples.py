@@ -180,14 +180,18 @@ CURVE = np.arange(60.0)
 
 @pytest.mark.parametrize("step_s", [1.0, 0.01])
 def test_jumps_are_those_between_two_parabolas(step_s):
-    """Of 4 from row 30 on, beside a parabola: to the last digit, and none elsewhere."""
+    """Of 4 from row 30 on, beside a parabola: to the last digit, and none elsewhere.
+
+    What it changes by at once is beyond the larger change beside it: of the parabola, 0.04 less.
+    """
     smooth = 3.0 + 0.7 * CURVE - 0.02 * CURVE**2
     found = rows._jumps(smooth + 4.0 * (CURVE >= 30.0), 6, step_s)
     expected = np.zeros(60 - 11)
     expected[30 - 6] = 4.0
     far = np.abs(np.arange(49) - 24) >= 6
     assert found.jump[24] == pytest.approx(4.0)
-    assert found.at_once[24] == pytest.approx(4.0)
+    assert found.at_once[24] == pytest.approx(4.0 - 0.04)
+    assert found.at_once[far] == pytest.approx(0.0, abs=1e-9)
     assert found.jump[far] == pytest.approx(expected[far], abs=1e-9)
     slope = (0.7 - 0.04 * (5.5 + np.arange(49.0))) / step_s  # between two rows
     for side in (found.before, found.after):

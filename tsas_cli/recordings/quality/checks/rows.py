@@ -30,7 +30,7 @@ class _Jumps(NamedTuple):
     after: Floats
     usual: float
     slope_sd: float
-    at_once: Floats  # what it changes by between the two rows, without its slope
+    at_once: Floats  # what it changes by between the two rows, beyond the changes beside
 
 
 def lost_samples(trial: RunSignals) -> Findings:
@@ -39,8 +39,9 @@ def lost_samples(trial: RunSignals) -> Findings:
     Where the rows of a lost buffer are closed up, every channel jumps by its slope times the same
     time, and goes on with that slope. A corner of the motion changes the slope, a slipped encoder
     moves one channel alone, and a tendon that slips moves no drive. Reported where x_in and another
-    channel jump by the same time from one row to the next, far beyond the noise. A drive that
-    sticks and slips takes several rows. A reversal among the lost samples leaves no such slope:
+    channel jump by the same time from one row to the next, far beyond the noise, and by more than
+    from the row before and to the row after. A drive that starts, brakes, or sticks and slips takes
+    several rows. A reversal among the lost samples leaves no such slope:
     there both change by many times what they do anywhere else.
     """
     interval = np.diff(trial.time_s)
@@ -144,8 +145,9 @@ def _jumps(values: Floats, rows: int, step_s: float) -> _Jumps:
     windows = np.lib.stride_tricks.sliding_window_view(values, rows)
     left, right = windows[:-rows], windows[rows:, ::-1]
     jump = right @ fit[2] - left @ fit[2]
-    slope = 0.5 * (left @ fit[1] - right @ fit[1])
-    at_once = values[rows : rows + jump.size] - values[rows - 1 : rows - 1 + jump.size] - slope
+    change = np.diff(values)[rows - 2 : rows + jump.size]
+    between = change[1:-1]
+    at_once = between - np.clip(between, *np.sort((change[:-2], change[2:]), axis=0))
     usual = 1.4826 * float(np.median(np.abs(jump - np.median(jump))))
     before, after = left @ fit[1] / step_s, -(right @ fit[1]) / step_s
     slope_sd = 1.05 * float(np.median(np.abs(after - before)))  # of one side
