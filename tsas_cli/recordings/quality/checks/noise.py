@@ -8,6 +8,7 @@ from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Mask
 from tsas_cli.support.wording import count_of
 
 _ASIDE = 3  # neighbours on each side
@@ -178,9 +179,11 @@ def filtered(trial: RunSignals) -> Findings:
     frequency, and what is recorded above is the rounding of the converter, or nothing. A filter
     delays the channel, or rounds off its corners, so that friction, backlash and delays are not
     those of the rig. Reported where the noise falls thirtyfold towards the highest frequencies, and
-    a filter that ends there would change the channel by more than ten times its noise. Not
-    reported: noise that grows slower towards low frequencies, a fast amplifier, a recording without
-    noise.
+    a filter that ends there would change the channel by more than ten times its noise. What a
+    smooth motion leaves falls too, and may be alike in all parts of the run; but it falls slower
+    than noise behind a filter, so that the highest frequencies at which anything stands out are
+    the motion's then, and differ from part to part. Not reported: noise that grows slower towards
+    low frequencies, a fast amplifier, a recording without noise.
     """
     segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
     for name, values in trial.mechanical.items():
@@ -214,13 +217,17 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
     white = middle.size == 0 or float(np.median(middle)) < _WHITE * top
     if white and top > _ROUNDING * rounding:
         return None
-    noisy = spectrum.is_noise & (spectrum.power > _FALLS * top)
-    if not noisy.any():
-        return None
-    highest = float(spectrum.power[noisy].max())
+    stands_out = spectrum.power > _FALLS * top
+    highest = float(spectrum.power[stands_out & spectrum.is_noise].max(initial=0.0))
+    noisy = stands_out & _up_from_here(spectrum.is_noise | ~stands_out)
     even = np.count_nonzero(noisy & (spectrum.power > highest / _EVEN))
     computed = rounding == 0.0 or top < _FLOOR * rounding
     if even < _FEWEST_BANDS[computed]:
         return None  # what is left of a smooth motion
     level = float(np.median(spectrum.power[noisy]))
     return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())
+
+
+def _up_from_here(of_bands: Mask) -> Mask:
+    """Return in which bands, and in all above, something holds, shape (bands,)."""
+    return np.logical_and.accumulate(of_bands[::-1])[::-1]
