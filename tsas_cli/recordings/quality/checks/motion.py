@@ -106,17 +106,22 @@ def exchanged(trial: RunSignals) -> Findings:
 
 
 def _excess_while_pulling(trial: RunSignals) -> float:
-    """Return d of f_in = a + b f_out + d/2 · direction, fitted while the drive moves [N].
+    """Return d of f_in = a + b f_out + d/2 · direction, fitted over the travel of the drive [N].
 
-    A wrong gain or offset of a sensor enters a and b. If the load's own tension reverses with the
+    Each row counts by what the drive moves there: in a rest friction may have either sign. A wrong
+    gain or offset of a sensor enters a and b. If the load's own tension reverses with the
     direction, b and d are indistinguishable; a negative b is implausible and left out.
     """
     f_in, f_out, direction = trial.channels["f_in_N"], trial.channels["f_out_N"], trial.direction
-    rows = (direction != 0.0) & np.isfinite(f_in) & np.isfinite(f_out)
-    terms = np.column_stack([direction[rows] / 2.0, np.ones(int(rows.sum())), f_out[rows]])
-    fit = np.linalg.lstsq(terms, f_in[rows], rcond=None)[0]
+    travel = direction * np.gradient(trial.channels["x_in_mm"])
+    rows = (travel > 0.0) & np.isfinite(f_in) & np.isfinite(f_out)
+    weight = np.sqrt(travel[rows])
+    terms = np.column_stack([direction[rows] / 2.0, np.ones(weight.size), f_out[rows]])
+    terms *= weight[:, None]
+    measured = weight * f_in[rows]
+    fit = np.linalg.lstsq(terms, measured, rcond=None)[0]
     if fit[2] < 0.0:
-        fit = np.linalg.lstsq(terms[:, :2], f_in[rows], rcond=None)[0]
+        fit = np.linalg.lstsq(terms[:, :2], measured, rcond=None)[0]
     return float(fit[0])
 
 
