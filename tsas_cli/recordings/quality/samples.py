@@ -24,6 +24,8 @@ _STEEPER = 10.0  # than those: a motion that reverses within a few samples has s
 _COMMON = 0.02  # of all samples: more frequent deviations are the signal
 _FEWEST = 16  # samples for an estimate of the noise
 _FEWEST_CHANGES = 20
+_BLOCK = 16  # rows
+_THIRD = 20.0  # variance of third differences over that of noise
 
 
 class NoiseSpectrum(NamedTuple):
@@ -83,6 +85,15 @@ def alternates(values: Floats) -> bool:
     third = np.diff(clean, 3)
     third = third[np.abs(third) > 1e-9 * np.abs(clean).max(initial=0.0)]
     return third.size >= _FEWEST and bool(np.mean(third[1:] * third[:-1] < 0.0) > 0.5)
+
+
+def calm_noise(values: Floats) -> float:
+    """Return the noise in the calmest quarter of blocks of rows [unit]; NaN without a whole one."""
+    third = np.diff(values, 3)
+    blocks = third[: third.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+    level = np.sqrt(np.mean(blocks**2, axis=1) / _THIRD)
+    level = level[np.isfinite(level)]
+    return float(np.quantile(level, 0.25)) if level.size else np.nan
 
 
 def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:

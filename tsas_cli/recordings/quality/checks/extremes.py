@@ -4,10 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, Severity
-from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
+from tsas_cli.recordings.quality.samples import (
+    alternates,
+    calm_noise,
+    plateaus,
+    rows_between_changes,
+)
 from tsas_cli.recordings.quality.trial import RunSignals, Stroke
 from tsas_cli.support.wording import count_of
 
@@ -173,9 +177,10 @@ _LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed chan
 def stuck(trial: RunSignals) -> Findings:
     """A channel does not change at all while the motion goes back and forth.
 
-    The sensor, its cable or its software hangs. A noisy channel is stuck if it does not change for
-    20 updates during visible motion; a noiseless one only if the drive crosses most of its span and
-    returns, because the distal end also rests in a dead band.
+    The sensor, its cable or its software hangs. A channel with noise in its calm rows is stuck if
+    it does not change for 20 updates during visible motion; one without only if the drive crosses
+    most of its span and returns, because the distal end also rests in a dead band, and a drive that
+    hunts within a step of its encoder moves the tension.
     """
     for name, values in trial.mechanical.items():
         if name == trial.prescribed:
@@ -223,12 +228,15 @@ def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
 
 
 def _noisy(trial: RunSignals, name: str, long: list[slice]) -> bool:
-    """Return whether the noise exceeds the quantisation outside the long plateaus."""
+    """Return whether the noise exceeds the quantisation outside the long plateaus.
+
+    Noise of a sensor is there in the calmest rows too, where a motion leaves nothing in its place.
+    """
     values = trial.channels[name].copy()
     for rows in long:
         values[rows] = np.nan
     least = max(trial.sizes[name].step, _LEAST_NOISE * trial.sizes[name].span)
-    return alternates(values) and noise_sd(values) > least
+    return alternates(values) and calm_noise(values) > least
 
 
 _NOTE, _WARNING = 1 / 500, 1 / 50
