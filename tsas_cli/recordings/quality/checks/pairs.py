@@ -200,7 +200,8 @@ def delay(trial: RunSignals) -> Findings:
     together with the spring's curvature and a friction at the load, and reported when the cycles
     agree and it matters: above half a sample, and with an error of the tension above a quarter of
     the noise. Other pairs of channels lag by the physics of the sheath and are not judged. A load
-    with a damper or a mass, or one that relaxes, looks like a delay too.
+    with a damper, a mass or hysteresis, or one that relaxes, looks like a tension that comes before
+    the displacement.
     """
     strokes = zip(trial.strokes[::2], trial.strokes[1::2], strict=False)
     cycles = [slice(one.start, other.stop + 1) for one, other in strokes]
@@ -223,7 +224,8 @@ def delay(trial: RunSignals) -> Findings:
             f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
             f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
             "use the same filter and clock for both channels, or shift one at the source (offset_s "
-            "in a .join list), unless the load relaxes, or has a damper or a mass",
+            "in a .join list)"
+            + ("" if mean > 0 else ", unless the load relaxes, has a damper, a mass or hysteresis"),
         )
 
 
