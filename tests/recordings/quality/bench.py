@@ -68,7 +68,8 @@ def columns(bench: Bench) -> dict[str, Floats]:
     return measured
 
 
-def _spring(x_in: Floats, time: Floats) -> tuple[Floats, Floats, Floats]:
+def spring(x_in: Floats, time: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return x_out, f_in and f_out of a load like a spring."""
     up, down = math.exp(FRICTION), math.exp(-FRICTION)
     x_out, out = 0.0, np.empty_like(x_in)
     for i, x in enumerate(x_in):
@@ -101,7 +102,7 @@ def _displacement(x_in: Floats, time: Floats) -> tuple[Floats, Floats, Floats]:
     return np.zeros_like(x_in), f_in, f_out
 
 
-_LOADS = {"spring": _spring, "force": _force, "displacement": _displacement}
+_LOADS = {"spring": spring, "force": _force, "displacement": _displacement}
 
 
 def trial(

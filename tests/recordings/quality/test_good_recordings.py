@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tests.recordings.quality.bench import Bench, columns, motion, remarks, trial
+from tests.recordings.quality.bench import Bench, columns, motion, remarks, spring, trial
 from tsas_cli.recordings.quality import RUN_CHECKS
 
 SHAPES = ("sine", "triangle", "chirp", "dwells", "nested", "decaying")
@@ -137,3 +137,85 @@ def test_a_spring_that_pulls_beside_the_tendon_is_no_other_unit_of_f_out():
     subject = trial(measured)
     unit = next(check for check in RUN_CHECKS if check.code == "unit")
     assert any("pound-force" in remark.sentence for remark in unit.find(subject))
+
+
+def by_steps(rate_Hz, hold_s, levels, natural=20.0, damping=0.8):
+    """Return the times of 12 s, and a position that goes to each level as a second-order loop."""
+    time = np.arange(int(12.0 * rate_Hz)) / rate_Hz
+    step = (time // hold_s).astype(int)
+    since = time - hold_s * step
+    damped = natural * np.sqrt(1.0 - damping**2)
+    left = np.exp(-damping * natural * since) * (
+        np.cos(damped * since) + damping * natural / damped * np.sin(damped * since)
+    )
+    to = np.resize(levels, step[-1] + 1)
+    before = np.append(0.0, to)[:-1]
+    return time, to[step] + (before - to)[step] * left
+
+
+def counted(values, step, jitter=0.0):
+    """Return what an encoder reads, with so many counts of jitter."""
+    noise = jitter * np.random.default_rng(1).standard_normal(values.size)
+    return np.round(values / step + noise) * step
+
+
+def all_channels(time, x, x_out):
+    noise = 0.1 * np.random.default_rng(2).standard_normal((2, x.size))
+    forces = {"f_in_N": 30.0 + 3.0 * x + noise[0], "f_out_N": 25.0 + 1.5 * x_out + noise[1]}
+    return {"time_s": time, "x_in_mm": counted(x, 0.002), "x_out_mm": x_out, **forces}
+
+
+@pytest.mark.parametrize("rate_Hz", [50.0, 100.0])
+def test_a_drive_that_goes_by_steps_loses_no_samples(rate_Hz):
+    for natural in (14.0, 20.0, 28.0):
+        time, x = by_steps(rate_Hz, 2.0, [20.0, 0.0], natural)
+        assert "lost-samples" not in complaints(all_channels(time, x, counted(x, 0.005, 0.3)))
+
+
+def test_samples_that_a_drive_loses_as_it_goes_by_a_step_are_missed():
+    time, x = by_steps(100.0, 2.0, [20.0, 0.0], 14.0)
+    left = np.delete(x, range(206, 210))
+    measured = all_channels(time[: left.size], left, counted(left, 0.005, 0.3))
+    assert "lost-samples" in complaints(measured)
+
+
+def test_a_load_that_swings_between_rests_is_behind_no_median_filter():
+    """Near half the sampling rate that looks like noise; the encoder itself is quiet."""
+    time, x = by_steps(50.0, 2.0, [20.0, 0.0])
+    swing = 0.3 * np.exp(-8.0 * np.mod(time, 2.0)) * np.sin(2.0 * np.pi * 21.5 * time)
+    measured = all_channels(time, x, counted(x + swing, 0.005, 0.3))
+    assert trial(measured).is_noisy("x_out_mm")
+    assert "repeated-values" not in complaints(measured)
+
+
+@pytest.mark.parametrize("amplitude_mm", [2.5, 5.0])
+def test_a_smooth_motion_is_not_filtered_where_it_is_alike_in_all_parts_of_a_run(amplitude_mm):
+    time = np.arange(650) / 50.0
+    x = amplitude_mm * (2.0 - np.cos(np.pi * time) - np.cos(2.3 * np.pi * time))
+    x_out, f_in, f_out = spring(x, time)
+    noise = 0.1 * np.random.default_rng(2).standard_normal((2, x.size))
+    positions = {"x_in_mm": counted(x, 0.002), "x_out_mm": counted(x_out, 0.005, 0.3)}
+    forces = {"f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
+    assert "filtered" not in complaints({"time_s": time, **positions, **forces})
+
+
+def test_a_drive_that_hunts_within_a_count_is_not_stuck():
+    """The tension follows what the encoder does not resolve."""
+    time, x = by_steps(100.0, 1.5, [20.0, 8.0, 14.0, 0.0], damping=0.99)
+    hunts = 0.45 * np.sin(1.8 * np.pi * time)
+    tension = 30.0 + x + 4.0 * hunts + 0.1 * np.random.default_rng(2).standard_normal(x.size)
+    hunting = {"time_s": time, "x_in_mm": counted(x + 0.004 * hunts, 0.004), "f_in_N": tension}
+    assert "stuck" not in complaints(hunting)
+
+
+def test_a_rest_within_each_stroke_exchanges_no_tensions():
+    """There the friction may have either sign, and longer than the drive moves."""
+    measured = columns(Bench(shape="triangle", noise_mm=0.0))
+    x, f_out = measured["x_in_mm"], measured["f_out_N"]
+    rests = np.flatnonzero(np.diff(np.sign(x - 12.0)))
+    held = {name: np.insert(v, np.repeat(rests, 900), np.repeat(v[rests], 900))
+            for name, v in measured.items()}  # fmt: skip
+    at_rest = np.insert(np.zeros(x.size), np.repeat(rests, 900), 1.0) > 0.0
+    held["f_in_N"][at_rest] = np.repeat(f_out[rests] ** 2 / measured["f_in_N"][rests], 900)
+    held["time_s"] = np.arange(at_rest.size) / 200.0
+    assert "exchanged" not in complaints(held)
