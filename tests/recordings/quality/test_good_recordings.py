@@ -219,3 +219,9 @@ def test_a_rest_within_each_stroke_exchanges_no_tensions():
     held["f_in_N"][at_rest] = np.repeat(f_out[rests] ** 2 / measured["f_in_N"][rests], 900)
     held["time_s"] = np.arange(at_rest.size) / 200.0
     assert "exchanged" not in complaints(held)
+
+
+@pytest.mark.parametrize("rate_Hz", [20.0, 30.0])
+def test_the_corners_of_a_triangle_are_no_outliers(rate_Hz):
+    bench = Bench(shape="triangle", rate_Hz=rate_Hz, duration_s=40.0, noise_N=0.02, noise_mm=0.002)
+    assert complaints(columns(bench)) == []

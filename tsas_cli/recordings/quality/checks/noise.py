@@ -14,7 +14,7 @@ from tsas_cli.support.wording import count_of
 _ASIDE = 3  # neighbours on each side
 _NEAR, _FAR = 3.5, 5.0  # times their usual deviation from their median
 _APART = 1.5  # times as many as between these: noise with long tails has fewer
-_BEYOND = 3.0  # the same, beyond both neighbours
+_BEYOND = 3.0  # the same, beyond the neighbours
 _RARE, _OFTEN = 0.012, 0.1  # share of all samples
 _PARTS, _EVERYWHERE = 20, 0.6  # of the run, and the share of them that holds some
 
@@ -61,11 +61,12 @@ def _frequent(trial: RunSignals) -> Iterator[Finding]:
         noise = 1.4826 * float(np.nanmedian(np.abs(deviation)))
         if not noise > 0.0:
             continue
-        # A spike lies beyond both of its neighbours; on a slope one is above, the other below.
-        inner = values[_ASIDE:-_ASIDE]
-        left = inner - values[_ASIDE - 1 : -_ASIDE - 1]
-        right = inner - values[_ASIDE + 1 :][: inner.size]
-        spike = (left * right > 0.0) & (np.fmin(np.abs(left), np.abs(right)) > _BEYOND * noise)
+        # A spike lies beyond both of its neighbours, and beyond the lines through two on each side:
+        # on a slope one neighbour is above, the other below, and a corner lies on the lines.
+        near = window[:, [_ASIDE - 1, _ASIDE + 1]]
+        lines = 2.0 * near - window[:, [_ASIDE - 2, _ASIDE + 2]]
+        beyond = window[:, [_ASIDE]] - np.hstack((near, lines))
+        spike = np.maximum(beyond.min(axis=1), -beyond.max(axis=1)) > _BEYOND * noise
         size = np.where(spike, np.abs(deviation) / noise, 0.0)
         far = size > _FAR
         between = np.count_nonzero((size > _NEAR) & ~far)
@@ -94,7 +95,7 @@ def bursts(trial: RunSignals) -> Findings:
 
     A radio, a welder, a motor's brake or a loose plug. Reported where a few short stretches have
     four times the noise of the rest of the run. Not reported: noise that grows with the speed or
-    lasts as long as the motion.
+    lasts as long as the motion. A tendon that is shaken, or sticks and slips, has such bursts too.
     """
     if float(trial.repeats.mean()) > _REPEATS:
         yield NotChecked("rows repeat")
@@ -117,7 +118,7 @@ def bursts(trial: RunSignals) -> Findings:
                 name,
                 f"the noise of {name} rises to {more:.2g} times its level in "
                 f"{count_of(len(bursts), 'burst')}, the first at {trial.time_s[start]:.4g} s",
-                "look for what switches at that time, shield the cable, or leave these cells empty",
+                "look for what switches or shakes then, shield the cable, or leave these cells out",
                 float(trial.time_s[start]),
             )
 
