@@ -225,13 +225,23 @@ def test_what_its_parameters_cost_is_no_reason_against_a_rival(
 
 
 @pytest.mark.parametrize(
-    ("nothing", "one", "found"), [(1.05, 0.95, False), (1.05, 0.94, True), (1.3, 1.24, True)]
+    ("nothing", "part", "statistic", "found"),
+    [
+        (1.05, 0.09, 3.69, False),
+        (1.05, 0.11, 2.7, True),
+        (1.05, 0.03, 3.71, True),
+        (1.05, 0.02, 9.0, False),
+        (1.3, 0.09, 2.7, True),
+    ],
 )
-def test_of_noise_alone_a_first_effect_has_to_take_more(made, nothing, one, found, monkeypatch):
-    """A tenth of it; a fortieth where there is more than noise."""
-    fits = made({names(): nothing, names(A): one})
+def test_of_noise_alone_a_first_effect_has_to_take_more(
+    made, nothing, part, statistic, found, monkeypatch
+):
+    """A tenth of it, or be more significant; a fortieth where there is more than noise."""
+    fits = made({names(): nothing, names(A): nothing * (1.0 - part)})
     monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
-    seen(fits, names(), (A, 0.5))
+    monkeypatch.setattr(s, "add", lambda *_: [(A, Reduction(part, statistic))])
+    monkeypatch.setattr(s, "_best_pair", lambda *_: None)
     assert s._better(fits, names()) == ([names(A)] if found else [])
 
 
@@ -257,7 +267,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
     fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
     fits.trial(names()).solution.residual = sign * apart
     seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
-    assert s._best_pair(fits, names(), 0.025) == names(A, C)
+    assert s._best_pair(fits, names(), of_noise=False) == names(A, C)
     assert set(fits.bench.fitted) == {names(), names(A, C)}
     assert s._better(fits, names()) == [names(A, C)]
 
@@ -270,7 +280,7 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
     fits.trial(names()).solution.residual = apart
     seen(fits, names(), (A, 0.0), (C, 0.01), signatures=signatures)
-    assert s._best_pair(fits, names(), 0.025) is None
+    assert s._best_pair(fits, names(), of_noise=False) is None
     assert s._better(fits, names()) == []
 
 
@@ -412,5 +422,5 @@ def paired(grown, squares, surplus, needed=None):
 )
 def test_a_pair_has_to_explain_more_than_both_alone(grown, nothing, surplus, looked):
     fits = paired(grown, {names(): nothing, names(A, B): 1.0}, surplus)
-    assert (s._best_pair(fits, names(), 0.025) == names(A, B)) == looked
+    assert (s._best_pair(fits, names(), of_noise=False) == names(A, B)) == looked
     assert (names(A, B) in fits.bench.fitted) == looked

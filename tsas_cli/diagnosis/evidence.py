@@ -10,7 +10,8 @@ from tsas_cli.support.arrays import Floats
 CRITICAL_VALUE = 2.6  # critical value of the test statistic; 1 in 200 by chance
 AGREE = 0.9  # of its largest possible value, the critical value for few blocks
 LEAST_REDUCTION = 0.025  # least reduction of the squares by a cause; conditioning leaves up to 0.01
-LEAST_REDUCTION_OF_NOISE = 0.1  # where the nominal model leaves noise alone
+LEAST_REDUCTION_OF_NOISE = 0.1  # where the nominal model leaves noise alone, or
+CRITICAL_VALUE_OF_ANY = 3.7  # that of the best of forty effects
 LEAST_DIFFERENCE = 0.01  # least reduction of the squares that distinguishes a cause from a rival
 LEAST_REDUCTION_PER_COMPLEXITY = (
     0.03  # least reduction of the squares by a cause with more parameters than another
@@ -40,6 +41,12 @@ class Reduction:
     def convincing(self) -> bool:
         """Whether the reduction is significant and large enough."""
         return self.beyond(LEAST_REDUCTION)
+
+    @property
+    def convincing_of_noise(self) -> bool:
+        """Whether it is so where there may be no more than noise: larger, or more significant."""
+        more = self.part > LEAST_REDUCTION_OF_NOISE or self.test_statistic > CRITICAL_VALUE_OF_ANY
+        return self.convincing and more
 
 
 def gain(before: Floats, after: Floats) -> Reduction:

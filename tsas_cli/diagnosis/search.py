@@ -3,7 +3,7 @@
 Stepwise selection: one effect after the other is added while the best one is significant; after
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other. Where the nominal
-model leaves noise alone, a first effect has to take more of it.
+model leaves noise alone, a first effect has to take more of it, or be more significant.
 """
 
 from itertools import combinations
@@ -12,7 +12,6 @@ import numpy as np
 
 from tsas_cli.diagnosis.evidence import (
     LEAST_REDUCTION,
-    LEAST_REDUCTION_OF_NOISE,
     LEAST_REDUCTION_PER_COMPLEXITY,
     Reduction,
 )
@@ -105,16 +104,15 @@ def _better(fits: Fits, names: Names) -> list[Names]:
     """Return the extended sets: with the simplest effect, and with the best if it differs."""
     fitted = add(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
     of_noise = not names and is_quiet(fits, names)
-    least = LEAST_REDUCTION_OF_NOISE if of_noise else LEAST_REDUCTION
     singles = [
         (name, found)
         for name, found in fitted
-        if found.beyond(least) and matters(fits, names, frozenset({name}))
+        if _convinces(found, of_noise) and matters(fits, names, frozenset({name}))
     ]
     if singles:
         branches = dict.fromkeys((_simplest(fits, names, singles), singles[0][0]))
         return [names | {name} for name in branches]
-    pair = _best_pair(fits, names, least) if len(names) + 2 <= MOST_EFFECTS else None
+    pair = _best_pair(fits, names, of_noise) if len(names) + 2 <= MOST_EFFECTS else None
     return [] if pair is None else [names | pair]
 
 
@@ -130,8 +128,12 @@ def _simplest(fits: Fits, names: Names, singles: list[tuple[str, Reduction]]) ->
     return best
 
 
-def _best_pair(fits: Fits, names: Names, least: float) -> Names | None:
-    """Return two effects that only together reduce the squares by at least a share."""
+def _convinces(found: Reduction, of_noise: bool) -> bool:
+    return found.convincing_of_noise if of_noise else found.convincing
+
+
+def _best_pair(fits: Fits, names: Names, of_noise: bool) -> Names | None:
+    """Return two effects that are significant only together."""
     screened = fits.screen(names)
     part_of_both = _least_part(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
     parts = []
@@ -150,7 +152,8 @@ def _best_pair(fits: Fits, names: Names, least: float) -> Names | None:
         pair = frozenset({a.effect.name, b.effect.name})
         fits.step.ahead(fits.is_new(names | pair))
         fits.fit(names, names | pair, a.initial | b.initial)
-        if fits.gain(names, names | pair).beyond(least) and matters(fits, names, pair):
+        found = fits.gain(names, names | pair)
+        if _convinces(found, of_noise) and matters(fits, names, pair):
             return pair
     return None
 

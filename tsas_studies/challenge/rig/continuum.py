@@ -25,7 +25,6 @@ MAX_ITERATIONS = 100
 MAX_CUTS = 10
 SHORTEST_PART = 1e-4
 LEAST_RATIO = 0.01  # of T/F0, below which friction no longer depends on it
-MEMORY_S = 0.02  # within which friction forgets the speed before (frictional lag)
 
 
 class Tendon(NamedTuple):
@@ -169,7 +168,7 @@ def _advance(
 @compiled
 def keep(state: State, du: Floats, tendon: Tendon, h: float) -> None:
     """Add a solved displacement to the state."""
-    forgotten = 1.0 - np.exp(-h / MEMORY_S)
+    forgotten = 1.0 - np.exp(-h / tendon.friction.stribeck_memory_s)
     for j in range(du.size):
         state.phi[j] = _turned(du[j], j, state, tendon)
         state.u[j] += du[j]
@@ -186,7 +185,7 @@ def _rise(speed: float, tendon: Tendon) -> float:
     if excess == 0.0:
         return 1.0
     share = speed / tendon.friction.stribeck_velocity_mm_per_s
-    return float(1.0 + excess * np.exp(-(share**2)))
+    return float(1.0 + excess * np.exp(-(share**tendon.friction.stribeck_power)))
 
 
 @compiled

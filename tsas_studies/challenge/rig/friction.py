@@ -13,10 +13,12 @@ class Friction(NamedTuple):
 
     # Friction is μ (1 ± asymmetry) where the tendon slides towards (+) or from the drive (−).
     asymmetry: float = 0.0
-    # It is μ (1 + excess · exp(−(v/velocity)²)) where the tendon slides at v; each place has its
-    # own speed and forgets the one before within `continuum.MEMORY_S`.
+    # It is μ (1 + excess · exp(−(v/velocity)^power)) where the tendon slides at v; each place has
+    # its own speed and forgets the one before within the memory.
     stribeck_excess: float = 0.0
     stribeck_velocity_mm_per_s: float = 5.0
+    stribeck_power: float = 2.0
+    stribeck_memory_s: float = 0.02
     load_exponent: float = 0.0  # it is μ (T/F0)^exponent at each place
     # Force per speed of the tendon as a whole; each place has its own speed.
     viscous_N_s_per_mm: float = 0.0

@@ -31,7 +31,11 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
     "antagonist": places("antagonist", "preload_N", "friction_ratio", "f_in_share"),
     "direction_dependent_friction": places("friction", "asymmetry"),
     "stribeck_friction": places(
-        "friction", excess="stribeck_excess", velocity_mm_per_s="stribeck_velocity_mm_per_s"
+        "friction",
+        excess="stribeck_excess",
+        velocity_mm_per_s="stribeck_velocity_mm_per_s",
+        exponent="stribeck_power",
+        lag_s="stribeck_memory_s",
     ),
     "viscous_friction": places("friction", coefficient_N_s_per_mm="viscous_N_s_per_mm"),
     "sheath_drag": places("friction", force_N="drag_N"),

@@ -51,7 +51,7 @@ def _beside_one_step(values: Floats, step: float) -> tuple[float, float]:
         repeats, one, two = (float(np.mean(half == n)) / (1 + (n > 0)) for n in range(3))
         deviation = math.sqrt((repeats + 0.5 * one) / half.size)
         more = repeats > max(_ONE_STEP * one, one + _DEVIATIONS * deviation)
-        if not more or two < _TWO_STEPS * one:
+        if one == 0.0 or not more or two < _TWO_STEPS * one:
             return 0.0, 0.0
     return float(np.mean(steps == 0.0)), 0.5 * float(np.mean(steps == 1.0))
 
