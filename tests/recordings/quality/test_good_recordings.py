@@ -225,3 +225,13 @@ def test_a_rest_within_each_stroke_exchanges_no_tensions():
 def test_the_corners_of_a_triangle_are_no_outliers(rate_Hz):
     bench = Bench(shape="triangle", rate_Hz=rate_Hz, duration_s=40.0, noise_N=0.02, noise_mm=0.002)
     assert complaints(columns(bench)) == []
+
+
+def test_a_commanded_speed_may_jump_and_be_back_as_no_sensor_may():
+    measured = columns(Bench(rate_Hz=200.0, duration_s=10.0))
+    speed = np.gradient(measured["x_in_mm"], measured["time_s"])
+    speed[[500, 900]] += 20.0 * np.abs(speed).max()
+    measured["motor_speed_rpm"] = speed
+    assert complaints(measured) == []
+    measured["x_out_mm"][500] += np.ptp(measured["x_out_mm"])
+    assert complaints(measured) == ["outlier"]

@@ -20,6 +20,7 @@ _LONG = 2.5  # times the lower quartile of the intervals
 _FEWEST_BATCHES = 5  # batches
 _TOGETHER = 0.05  # share of long intervals in a row, beyond which the clock changes its pace
 _SLOPE_ROWS = 8  # on each side of a long interval, at most
+COMMANDED = "motor_speed_rpm"
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
 _STEPS, _ROUNDING = 2.0, 1e-5  # of a step, and of the span: the least noise of a sensor
@@ -101,10 +102,15 @@ class RunSignals:
 
     @cached_property
     def outlying(self) -> dict[str, Mask]:
-        """Which samples of each channel are outliers (`outlying`), shape (n,) each."""
+        """Which samples of each channel are outliers (`outlying`), shape (n,) each.
+
+        A commanded speed may jump for a sample or two: there only implausible values are.
+        """
         sizes = self.overall or {name: size_of(values) for name, values in self._recorded.items()}
         return {
-            name: outlying(self.time_s, values, sizes[name], most=largest(name))
+            name: np.abs(values) > largest(name)
+            if name == COMMANDED
+            else outlying(self.time_s, values, sizes[name], most=largest(name))
             for name, values in self._recorded.items()
         }
 
