@@ -129,6 +129,7 @@ def test_a_law_acts_beside_what_is_not_proven_where_that_predicts_better(tmp_pat
     unproven = bench.fit([effect])
     law = describe(bench, bench.fit(), bench_folds(bench), unproven=unproven)
     assert law.beside == beside
+    assert {record.beside for record in records_of(law)} == {beside}
     assert "load_law" in law.names
     assert law.after.rmse["x_out_mm"] < 1.3 * NOISE_MM
 

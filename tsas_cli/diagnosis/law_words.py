@@ -58,6 +58,7 @@ def _record(law: Law, name: str, tensions: tuple[float, float]) -> records.Descr
         sentence=sentence_of(name, value, tensions),
         parameters={p: Value.model_validate(e, from_attributes=True) for p, e in own.items()},
         rivals=law.rivals,
+        beside=law.beside,
         channel=channel,
         unit=BY_NAME[channel].unit,
         rmse_before=law.before.rmse[channel],

@@ -65,9 +65,10 @@ class NamedCause(Record):
 class DescribedLaw(Record):
     """A law of unnamed origin; the errors are its channel's on held-out data.
 
-    `rivals` are other laws that describe it as well. `after_reversal` is the change of `what` over
-    the travel since a reversal, from full slip and at the mean tension; `along_stroke` its curve at
-    the places; their margins are half of the 95 % intervals.
+    `rivals` are other laws that describe it as well, `beside` effects that gain without being
+    proven and that it acts beside. `after_reversal` is the change of `what` over the travel since a
+    reversal, from full slip and at the mean tension; `along_stroke` its curve at the places; their
+    margins are half of the 95 % intervals.
     """
 
     law: str
@@ -76,6 +77,7 @@ class DescribedLaw(Record):
     sentence: str
     parameters: dict[str, Value]
     rivals: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
     channel: str
     unit: str
     rmse_before: NotNegative
