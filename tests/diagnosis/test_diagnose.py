@@ -8,7 +8,7 @@ import pytest
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.diagnosis import diagnose as d
 from tsas_cli.diagnosis.diagnose import verdict_of
-from tsas_cli.diagnosis.nominal import nominal_fit
+from tsas_cli.diagnosis.nominal import nominal_fit, stiffer_than_stated
 from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.identification.model import data_sheet
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
@@ -27,6 +27,16 @@ def test_a_tendon_stays_near_its_data_sheet_where_the_length_is_known():
         else:
             stiffness = VirtualRig().axial_stiffness
             assert bounds == pytest.approx((0.85 * stiffness, stiffness / 0.85), rel=1e-3)
+
+
+@pytest.mark.parametrize(("at_bound", "mean_square"), [(True, 0.9), (True, 1.04), (False, 9.0)])
+def test_a_tendon_at_the_noise_or_within_its_bounds_is_not_called_stiffer(at_bound, mean_square):
+    """Nothing is fitted again then: there are no runs to fit."""
+    sheet = manifest(prepared(VirtualRig()))
+    tendon = SimpleNamespace(name="tendon_stiffness_N", value=1e9, at_bound=at_bound)
+    base = SimpleNamespace(model=SimpleNamespace(estimates=[tendon]))
+    nominal = SimpleNamespace(mean_square=mean_square)
+    assert stiffer_than_stated(sheet, data_sheet(sheet), base, nominal) is None
 
 
 def stated(*parts):

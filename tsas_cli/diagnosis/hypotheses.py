@@ -49,7 +49,7 @@ class Hypotheses:
 
     def best_alone(self, without: Names) -> tuple[str, Reduction] | None:
         """Return the effect that gains most alone, but for some; None where none was fitted."""
-        alone = {names for names, _ in self.trials if len(names) == 1 and not names & without}
+        alone = [names for names, _ in self.trials if len(names) == 1 and not names & without]
         found = [(name, self.gain(names)) for names in alone for name in names]
         return max(found, key=lambda pair: pair[1].part, default=None)
 

@@ -6,7 +6,7 @@ sheet is wrong. A softer one is as a sheath that yields (`sheath_compression`).
 
 from collections.abc import Sequence
 
-from tsas_cli.diagnosis.faults.search import LEAST, MOST
+from tsas_cli.diagnosis.faults.search import LEAST, LEAST_EXCESS, MOST
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.identification.against_data_sheet import SHEET, TENDON
 from tsas_cli.identification.base_fit import base_fit, slopes_of
@@ -49,15 +49,15 @@ def stiffer_than_stated(
     None where it is not, or explains less of what the `nominal` fit leaves beyond the noise than a
     fault of one run would have to.
     """
-    stiffness = data_sheet(manifest).value(TENDON)
+    stiffness, excess = data_sheet(manifest).value(TENDON), nominal.mean_square - 1.0
     bound = [e for e in base.model.estimates if e.name == TENDON and e.at_bound]
-    if stiffness is None or not any(e.value > stiffness for e in bound):
+    if stiffness is None or excess < LEAST_EXCESS or not any(e.value > stiffness for e in bound):
         return None
     free = solve_fit(nominal_fit(manifest, stated, base.problem.runs, bounded=False))
     if free.fitted is None or not free.fitted.converged:
         return None
     left = bench_of(free).fit([]).mean_square
-    share = (nominal.mean_square - left) / (nominal.mean_square - 1.0)
+    share = (nominal.mean_square - left) / excess
     if share <= (LEAST if left < 1.0 + EXCESS_OF_COMPLETE_MODEL else MOST):
         return None
     (found,) = (e for e in free.model.estimates if e.name == TENDON)
