@@ -16,9 +16,13 @@ Not validated: stick-slip.
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tsas_cli.effects.effect import Effect, Parameter, shape
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.elementary import exponential
+from tsas_cli.numerics.elementary import exponential, logarithm
+
+SMALLEST_SHARE = 1e-300  # of the velocity: a normal float, whose power is as that of 0
 
 
 class StribeckFriction(NamedTuple):
@@ -33,12 +37,11 @@ class StribeckFriction(NamedTuple):
 @kernel
 def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
     """Return the factor of friction at a sliding speed [mm/s], and its slope [s/mm]."""
-    relative = abs(speed) / law.velocity_mm_per_s
-    power = relative**law.exponent
-    left = law.excess * exponential(-power)
-    if relative == 0.0:
-        return 1.0 + left, 0.0
-    return 1.0 + left, -law.exponent * power / speed * left
+    per_mm_s = 1.0 / law.velocity_mm_per_s  # hoisted out of loops over nodes
+    log_share = logarithm(max(abs(speed) * per_mm_s, SMALLEST_SHARE))
+    left = law.excess * exponential(-exponential(law.exponent * log_share))
+    rise = law.exponent * exponential((law.exponent - 1.0) * log_share) * per_mm_s
+    return 1.0 + left, -np.sign(speed) * rise * left
 
 
 @kernel
