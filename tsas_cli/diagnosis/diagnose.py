@@ -6,13 +6,19 @@ from dataclasses import dataclass, field, replace
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
-from tsas_cli.diagnosis.faults.words import differing, reason_of_fault, record_of, wandering
+from tsas_cli.diagnosis.faults.words import (
+    STIFFER,
+    differing,
+    reason_of_fault,
+    record_of,
+    wandering,
+)
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.intervals import estimates_with_tolerances
 from tsas_cli.diagnosis.law import Law, describe
-from tsas_cli.diagnosis.nominal import STIFFER, nominal_fit, stiffer_than_stated
+from tsas_cli.diagnosis.nominal import nominal_fit, stiffer_than_stated
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.proven import Proven, proven_effects
 from tsas_cli.diagnosis.reason import reason_of

@@ -6,9 +6,9 @@ sheet is wrong. A softer one is as a sheath that yields (`sheath_compression`).
 
 from collections.abc import Sequence
 
-from tsas_cli.diagnosis.faults.search import LEAST, LEAST_EXCESS, MOST
-from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
-from tsas_cli.identification.against_data_sheet import SHEET, TENDON
+from tsas_cli.diagnosis.faults.search import LEAST_EXCESS, explains
+from tsas_cli.diagnosis.faults.words import stiffer_tendon
+from tsas_cli.identification.against_data_sheet import TENDON
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.extension import bench_of
 from tsas_cli.identification.fit_problem import FitProblem
@@ -18,11 +18,9 @@ from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import RecordingFault
 
 PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
-STIFFER = "tendon-stiffness"  # the code of the fault
 
 
 def nominal_fit(
@@ -58,9 +56,7 @@ def stiffer_than_stated(
         return None
     left = bench_of(free).fit([]).mean_square
     share = (nominal.mean_square - left) / excess
-    if share <= (LEAST if left < 1.0 + EXCESS_OF_COMPLETE_MODEL else MOST):
+    if not explains(share, excess, left):
         return None
     (found,) = (e for e in free.model.estimates if e.name == TENDON)
-    ratio = number_text(found.value / stiffness)
-    sentence = f"the tendon is {ratio} times as stiff as the manifest says, by {SHEET}"
-    return RecordingFault(code=STIFFER, sentence=sentence), share
+    return stiffer_tendon(found.value / stiffness), share

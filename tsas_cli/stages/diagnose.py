@@ -10,7 +10,6 @@ from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
 from tsas_cli.diagnosis.faults.words import CODES
 from tsas_cli.diagnosis.law_words import records_of
 from tsas_cli.diagnosis.next_experiment import next_experiment
-from tsas_cli.diagnosis.nominal import STIFFER
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.calibration import unknown_conditions
@@ -180,7 +179,7 @@ def diagnose(
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
-        checked = errors_and_warnings(data, despite, step, further=(*CODES, STIFFER))
+        checked = errors_and_warnings(data, despite, step, further=CODES)
         counted = without_duplicates(data)
         step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)

@@ -95,9 +95,17 @@ def _judged(found: Sequence[Candidate], squares: float, count: int) -> FoundFaul
 
 def _convinces(fault: FoundFault, count: int) -> bool:
     known = fault.found[0].code == OF_THE_CATALOGUE
-    only_noise = fault.rest < (1.0 + EXCESS_OF_COMPLETE_MODEL) * count
-    least = LEAST if only_noise else MOST
-    return not known and fault.excess > LEAST_EXCESS * count and fault.share > least
+    return not known and explains(fault.share, fault.excess / count, fault.rest / count)
+
+
+def explains(share: float, excess: float, left: float) -> bool:
+    """Return whether a fault is the reason of what the nominal model leaves.
+
+    `share` is that of the `excess` of the mean square over the noise's that it explains, `left` the
+    mean square with it.
+    """
+    least = LEAST if left < 1.0 + EXCESS_OF_COMPLETE_MODEL else MOST
+    return excess > LEAST_EXCESS and share > least
 
 
 def _closer(

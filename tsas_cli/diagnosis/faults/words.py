@@ -9,12 +9,15 @@ from tsas_cli.diagnosis.faults.beside import Candidate
 from tsas_cli.diagnosis.faults.candidates import MOST_SCATTER
 from tsas_cli.diagnosis.friction_scatter import SCATTER
 from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.identification.against_data_sheet import SHEET
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import RecordingFault
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import listed
 
 REMEDY = "Correct it{} and diagnose again"
+STIFFER = "tendon-stiffness"
 LEFT_OUT = ", or leave the run out with --runs,"
 
 
@@ -70,6 +73,12 @@ def differing(frictions: Floats, runs: Sequence[str]) -> RecordingFault | None:
         "or wear, or where the stated bends are wrong"
     )
     return RecordingFault(code="run-frictions", sentence=sentence)
+
+
+def stiffer_tendon(ratio: float) -> RecordingFault:
+    """Return that the tendon is stiffer than its data sheet by a ratio."""
+    said = f"the tendon is {number_text(ratio)} times as stiff as the manifest says, by {SHEET}"
+    return RecordingFault(code=STIFFER, sentence=said)
 
 
 def _sentence(c: Candidate, runs: Sequence[str]) -> str:
@@ -197,4 +206,4 @@ _SAID: Mapping[str, Callable[[Candidate], str]] = {
     "run-step": _step,
     "saturates": _saturates,
 }
-CODES = tuple(_SAID)
+CODES = (*_SAID, STIFFER)
