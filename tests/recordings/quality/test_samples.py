@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import trial
+from tsas_cli.recordings.quality.batches import batches_of
 from tsas_cli.recordings.quality.checks import pairs, rows
 from tsas_cli.recordings.quality.samples import (
     Size,
@@ -22,7 +23,6 @@ from tsas_cli.recordings.quality.samples import (
     span_of,
     step_of,
 )
-from tsas_cli.recordings.quality.trial import batches_of
 
 RNG = np.random.default_rng(8)
 WHITE = RNG.standard_normal(20_000)
