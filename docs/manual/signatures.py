@@ -159,6 +159,14 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             _one(slope=-1.6),
             Motion(kind="nested", amplitude_mm=6.0, speed_mm_per_s=6.0, periods=1),
         ),
+        "pulley_friction": Signature(
+            "The loop of f_in is wider by a share of the tension. From a pulley at the drive f_in "
+            "steps at once at a reversal; one at the load keeps f_out for longer.",
+            (
+                Variant({"drive_loss": 0.1}, "f_in_N", "at the drive"),
+                Variant({"load_loss": 0.1}, "f_in_N", "at the load"),
+            ),
+        ),
         "presliding": Signature(
             "Rounded corners: f_in leaves a reversal with a finite slope, over the same travel at "
             "every tension. Short strokes become thin loops.",

@@ -52,6 +52,29 @@ def test_the_wrap_follows_the_time_and_settles(name, direction):
     np.testing.assert_allclose(ratio, direction * wrap(settled), rtol=1e-8)
 
 
+@pytest.mark.parametrize("direction", [1, -1])
+def test_pulleys_add_their_losses_in_full_slip(direction):
+    answer = run({"pulley_friction.drive_loss": 0.05, "pulley_friction.load_loss": 0.08})
+    slip = in_slip(answer, direction)
+    ratio = np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
+    np.testing.assert_allclose(ratio, direction * (A + 0.13), rtol=1e-8)
+
+
+def test_a_pulley_steps_at_its_own_end_of_the_dead_band():
+    at_drive = run({"pulley_friction.drive_loss": 0.1})
+    at_load = run({"pulley_friction.load_loss": 0.1})
+    neither = run({})
+    turn = int(np.argmax(UP_AND_DOWN))
+    soon = turn + 3
+    before = np.array([r.f_in_N[turn] for r in (at_drive, at_load, neither)])
+    fell = np.log(before / [r.f_in_N[soon] for r in (at_drive, at_load, neither)])
+    assert fell[0] > 0.2  # twice the loss, at once
+    assert fell[1] == pytest.approx(fell[2], rel=0.1)
+    # Until slip reaches the load, its tension is that of the reversal.
+    rests = [np.sum(r.f_out_N[turn:] > r.f_out_N[turn] - 1e-6) for r in (at_load, neither)]
+    assert rests[0] > 1.3 * rests[1]
+
+
 def test_friction_is_nothing_where_its_law_would_be_negative():
     answer = run({"position_dependent_friction.slope_per_mm": -0.1})
     far = (answer.x_in_mm > 10.5) & (answer.x_in_mm < 13.0)

@@ -52,6 +52,7 @@ from tsas_cli.effects.position_sensor_ripple import POSITION_SENSOR_RIPPLE
 from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
 from tsas_cli.effects.presliding import PRESLIDING, Presliding
 from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
+from tsas_cli.effects.pulley_friction import PULLEY_FRICTION, PulleyFriction
 from tsas_cli.effects.sensor_lag import SENSOR_LAG, SensorLag
 from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompression
 from tsas_cli.effects.sheath_drag import SHEATH_DRAG, SheathDrag
@@ -78,6 +79,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     LOAD_DEPENDENT_FRICTION,
     POSITION_DEPENDENT_FRICTION,
     UNEVEN_FRICTION,
+    PULLEY_FRICTION,
     PRESLIDING,
     BEND_DRIFT,
     FRICTION_DRIFT,
@@ -130,6 +132,7 @@ class Effects(NamedTuple):
     load_dependent_friction: LoadDependentFriction = LoadDependentFriction()
     position_dependent_friction: PositionDependentFriction = PositionDependentFriction()
     uneven_friction: UnevenFriction = UnevenFriction()
+    pulley_friction: PulleyFriction = PulleyFriction()
     presliding: Presliding = Presliding()
     bend_drift: BendDrift = BendDrift()
     friction_drift: FrictionDrift = FrictionDrift()

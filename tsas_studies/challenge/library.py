@@ -85,6 +85,7 @@ def terms(run: Prepared) -> Iterator[Term]:
     yield Term("load_dependent_friction", "f_in θ sign(v) log f_in", rubbed(bend * level))
     yield Term("position_dependent_friction", "f_in θ sign(v) x", rubbed(bend * x))
     yield Term("uneven_friction", "f_in θ sign(v) (f_in − f_out)", rubbed(bend * (f_in - f_out)))
+    yield Term("pulley_friction", "f_in sign(v)", rubbed(np.ones_like(t)))
     turned = np.exp(-signals["travel_since_reversal_mm"] / TURN_MM)
     yield Term("presliding", "f_in θ sign(v) exp(−travel)", rubbed(-bend * turned))
     yield Term("bend_drift", "f_in sign(v) t", rubbed(t))

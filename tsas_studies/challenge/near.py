@@ -19,7 +19,7 @@ RESERVED = frozenset({
 # Several of these at once, each at this share of its full size, are one cause more.
 MIXED, MIXED_SIZE = "mixed", 0.6
 MIXABLE = (
-    "rational_stribeck", "breakaway_friction", "strand_roll", "friction_cycles", "pulley_friction",
+    "rational_stribeck", "breakaway_friction", "strand_roll", "friction_cycles",
     "thermal_offset", "amplifier_filter", "force_sensor_gain_drift", "encoder_play",
 )  # fmt: skip
 
@@ -79,7 +79,7 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
     "strand_roll": (sized(share=0.06, period_mm=(3.0, 8.0), phase_rad=PHASE),),
     "shifting_sheath": (sized(False, per_N=0.003),),
     "stiffening_tendon": (sized(per_N=0.02),),
-    "pulley_friction": (sized(share=0.03),),
+    "pulley_friction": (sized(drive_loss=0.1), sized(load_loss=0.1)),
     "slotted_clamp": (sized(play_mm=1.5, up_N=(38.0, 42.0), down_N=(32.0, 36.0)),),
     "force_sensor_creep": (sized(share=0.1, time_s=(1.0, 3.0)),),
     "thermal_offset": (sized(amplitude_N=0.8, frequency_Hz=(0.08, 0.2), phase_rad=PHASE),),

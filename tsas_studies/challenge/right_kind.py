@@ -23,7 +23,7 @@ RIGHT_KIND: Mapping[str, tuple[str, ...]] = {
     "wearing_friction": ("friction_drift",),
     "strand_roll": ("position_dependent_friction",),
     "shifting_sheath": ("load_dependent_friction",),
-    "pulley_friction": ("drive_friction",),
+    "pulley_friction": ("drive_friction", "load_friction"),
     "slotted_clamp": ("load_hysteresis",),
     "force_sensor_gain_drift": ("force_sensor_drift",),
     "force_sensor_tilt": ("force_sensor_curvature",),

@@ -44,6 +44,8 @@ EVERYTHING = {
     "drive_friction.friction_N": 1.5,
     "proximal_spring.stiffness_N_per_mm": 3.0,
     "uneven_friction.slope": 1.0,
+    "pulley_friction.drive_loss": 0.05,
+    "pulley_friction.load_loss": 0.08,
     "sheath_drag.force_N": 2.5,
     "drive_inertia.mass_kg": 0.4,
     "drive_damping.coefficient_N_s_per_mm": 0.7,
@@ -125,7 +127,7 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
         limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 25.0) ** 0.3
         limit *= 1.0 + math.exp(-((v[i] / 2.0) ** 2))
         limit *= 1.0 + (i - 0.5) / N - 0.5
-        limit += 2.5 / N
+        limit += 2.0 * math.tanh(0.5 * {1: 0.05, N: 0.08}.get(i, 0.0)) * mean + 2.5 / N
         f, z = bristle_by_hand(bent[i], v[i], limit, law.lump.bristle)
         inertia = 0.0025e-6 * LIVELY.sheath_length_mm / N * slowed[i] / GH
         left[i] = T_now[i - 1] - T_now[i] - f - inertia

@@ -57,6 +57,8 @@ def any_effects(rng, rig, x_in, x_out):
         "drive_inertia.mass_kg": rig.load_stiffness_N_per_mm * between(1e-2, 1e2),
         "position_dependent_friction.slope_per_mm": rng.uniform(-0.5, 0.5) / stroke,
         "uneven_friction.slope": rng.uniform(-1.9, 1.9),
+        "pulley_friction.drive_loss": between(1e-3, 0.5),
+        "pulley_friction.load_loss": between(1e-3, 0.5),
         "load_ripple.sine_mm": period * between(1e-3, 0.1),
         "load_ripple.period_mm": period,
         "load_damping.coefficient_N_s_per_mm": F0 / stroke * between(1e-3, 0.3),

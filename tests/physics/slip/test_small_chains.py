@@ -69,6 +69,13 @@ EFFECTS = {
     "drag": {"sheath_drag.force_N": 6.0},
     "drag and presliding": {"sheath_drag.force_N": 6.0, "presliding.length_mm": 0.02},
     "uneven presliding": {"presliding.length_mm": 0.02, "uneven_friction.slope": 1.2},
+    "pulleys": {"pulley_friction.drive_loss": 0.1, "pulley_friction.load_loss": 0.15},
+    "pulleys and presliding": {
+        "pulley_friction.drive_loss": 0.1,
+        "pulley_friction.load_loss": 0.15,
+        "presliding.length_mm": 0.02,
+        "uneven_friction.slope": 1.2,
+    },
     "friction falls with speed": FALLING,
     "presliding falls with speed": FALLING | {"presliding.length_mm": 0.02},
     "a damper": {"load_damping.coefficient_N_s_per_mm": 0.4},
@@ -139,18 +146,20 @@ class Nodes:
             taken = -math.expm1(-now.step_s / lag_s)
             self.speed[i] += taken * (abs(way) / now.step_s - self.speed[i])
         loss, sign = 0.5 * drag_N / N, math.copysign(1.0, mean)
+        pulleys = self.rig.effects.pulley_friction
+        at_end = {1: pulleys.drive_loss, N: pulleys.load_loss}.get(i, 0.0)
         length = self.rig.effects.presliding.length_mm
         if length > 0.0:
             limit = 1.0 if way > 0.0 else -1.0
             share = limit + (self.share[i] - limit) * math.exp(-abs(way) / length)
             self.share[i] = share
-            wrap = factor * share * (pulled if share > 0.0 else released) / N
+            wrap = share * (factor * (pulled if share > 0.0 else released) / N + at_end)
             assert behind + share * loss == pytest.approx(
                 math.exp(-sign * wrap) * (before - share * loss), abs=ROUNDING
             )
             return
-        least = math.exp(-sign * factor * pulled / N) * (before - loss) - loss
-        most = math.exp(sign * factor * released / N) * (before + loss) + loss
+        least = math.exp(-sign * (factor * pulled / N + at_end)) * (before - loss) - loss
+        most = math.exp(sign * (factor * released / N + at_end)) * (before + loss) + loss
         assert least - ROUNDING < behind < most + ROUNDING
         if way > ROUNDING:
             assert behind == pytest.approx(least, abs=ROUNDING)

@@ -81,13 +81,12 @@ def test_near_causes_have_the_rigs_parameters_and_their_own_chance():
     for cause, variants in (*NEAR_FULL.items(), *FAULTS.items()):
         known = {**HIDEABLE, **NEAR, **UNKNOWNS}[cause]
         assert all({*v.scaled, *v.drawn} <= set(known) for v in variants)
-    pulls = [
-        next(c for c in cases(seed) if c.name == "pulley_friction, size 0.4").hidden[0].parameters
+    rolls = [
+        next(c for c in cases(seed) if c.name == "strand_roll, size 0.4").hidden[0].parameters
         for seed in range(40)
     ]
-    shares = [
-        pull["share"] / (0.4 * NEAR_FULL["pulley_friction"][0].scaled["share"]) for pull in pulls
-    ]
+    full = NEAR_FULL["strand_roll"][0].scaled["share"]
+    shares = [roll["share"] / (0.4 * full) for roll in rolls]
     assert 0.8 <= min(shares) < 0.85
     assert 1.15 < max(shares) <= 1.2
 

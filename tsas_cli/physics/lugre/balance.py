@@ -7,6 +7,8 @@ mass: their forces balance. The residual depends on the speeds of a node and its
 Jacobian is tridiagonal.
 """
 
+import math
+
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.load_damping import load_damper_force
@@ -21,6 +23,7 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction, spring_law
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.lugre import state as at
+from tsas_cli.physics.lugre.input import lump_share
 from tsas_cli.physics.lugre.state import LugreLaws, Step
 from tsas_cli.support.arrays import Floats
 
@@ -86,8 +89,20 @@ def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
             s[at.LIMIT_BY_T + i] *= factor
     if laws.lump.stribeck.excess != 0.0:
         set_stribeck(s, step, laws)
+    add_pulley(s, 1, laws.pulleys.drive_loss)
+    add_pulley(s, laws.n, laws.pulleys.load_loss)
     for i in range(1, laws.n + 1):
         s[at.LIMIT + i] += laws.lump.drag_N
+
+
+@kernel
+def add_pulley(s: Floats, i: int, loss: float) -> None:
+    """Add the friction of a pulley to the limit of a lump."""
+    if loss == 0.0:
+        return
+    mean, factor = 0.5 * (s[at.TENSION + i - 1] + s[at.TENSION + i]), lump_share(loss, 1)
+    s[at.LIMIT + i] += factor * abs(mean)
+    s[at.LIMIT_BY_T + i] += math.copysign(factor, mean)
 
 
 @kernel

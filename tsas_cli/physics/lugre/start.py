@@ -46,13 +46,15 @@ def lugre_laws(rig: Rig, n: int, boundary: Boundary) -> LugreLaws:
     )
     end_bristle = Bristle(whole.stiffness, whole.damping, 0.0, 0.0)
     drive, load = drive_end(rig, boundary.drive), load_end(rig, boundary.load)
-    return LugreLaws(n, rig.preload_N, lump, end_bristle, drive, load)
+    return LugreLaws(n, rig.preload_N, lump, effects.pulley_friction, end_bristle, drive, load)
 
 
 @kernel
 def with_drive(laws: LugreLaws, drive: DriveEnd) -> LugreLaws:
     """Return the laws with another end at the drive."""
-    return LugreLaws(laws.n, laws.preload_N, laws.lump, laws.end_bristle, drive, laws.load)
+    return LugreLaws(
+        laws.n, laws.preload_N, laws.lump, laws.pulleys, laws.end_bristle, drive, laws.load
+    )
 
 
 @kernel

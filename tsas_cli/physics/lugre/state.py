@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from tsas_cli.effects.pulley_friction import PulleyFriction
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.boundary import DriveEnd, LoadEnd
 from tsas_cli.physics.bristles import Bristle
@@ -46,6 +47,7 @@ class LugreLaws(NamedTuple):
     n: int
     preload_N: float
     lump: Lump
+    pulleys: PulleyFriction
     end_bristle: Bristle  # of the drive's and of the load's friction
     drive: DriveEnd
     load: LoadEnd

@@ -26,7 +26,29 @@ SLIDING_SHARE = 0.99  # of its friction limit, from which a node with presliding
 
 @kernel
 def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
-    """Set each node's friction and its capstan ratios, Eq. (7) of Yang 2025 for its bend."""
+    """Set each node's friction and its capstan ratios, Eq. (7) of Yang 2025 for its bend.
+
+    The pulleys of the ends have theirs at the first and the last node.
+    """
+    set_sheath_friction(chain, now, laws)
+    add_pulley(chain, 1, laws.pulleys.drive_loss)
+    add_pulley(chain, laws.n, laws.pulleys.load_loss)
+
+
+@kernel
+def add_pulley(chain: Floats, i: int, loss: float) -> None:
+    """Add the friction of a pulley to that of a node."""
+    if loss == 0.0:
+        return
+    chain[at.WRAP_PULLED + i] += loss
+    chain[at.WRAP_RELEASED + i] += loss
+    chain[at.RATIO_PULLED + i] = math.exp(-chain[at.WRAP_PULLED + i])
+    chain[at.RATIO_RELEASED + i] = math.exp(-chain[at.WRAP_RELEASED + i])
+
+
+@kernel
+def set_sheath_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Set the friction of the sheath at each node."""
     n = laws.n
     pulled, released = now.losses.pulled / n, now.losses.released / n
     uniform = laws.friction_exponent == 0.0 and laws.friction_slope == 0.0

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.antagonist import Antagonist
+from tsas_cli.effects.pulley_friction import PulleyFriction
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import (
@@ -35,6 +36,7 @@ class SlipLaws(NamedTuple):
     scale_mm: float  # elongation of a node's segment at the preload
     friction_exponent: float
     friction_slope: float  # along the sheath, over the mean
+    pulleys: PulleyFriction
     presliding_mm: float
     stribeck: StribeckFriction
     drive: DriveEnd
@@ -123,6 +125,7 @@ def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
         rig.sheath_length_mm * preload_N / rig.tendon_stiffness_N / n + 1e-9,
         rig.effects.load_dependent_friction.exponent,
         rig.effects.uneven_friction.slope,
+        rig.effects.pulley_friction,
         rig.effects.presliding.length_mm,
         rig.effects.stribeck_friction,
         drive_end(rig, boundary.drive),
@@ -141,6 +144,7 @@ def with_drive(laws: SlipLaws, drive: DriveEnd) -> SlipLaws:
         laws.scale_mm,
         laws.friction_exponent,
         laws.friction_slope,
+        laws.pulleys,
         laws.presliding_mm,
         laws.stribeck,
         drive,
@@ -159,6 +163,7 @@ def laws_of_second(laws: SlipLaws) -> SlipLaws:
         laws.scale_mm,
         laws.friction_exponent,
         -laws.friction_slope,
+        PulleyFriction(laws.pulleys.load_loss, laws.pulleys.drive_loss),
         laws.presliding_mm,
         laws.stribeck,
         DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0, 0.0),

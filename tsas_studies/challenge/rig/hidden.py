@@ -71,6 +71,10 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
     },
     "position_dependent_friction": places("friction", "slope_per_mm"),
     "uneven_friction": places("friction", slope="slope_along"),
+    "pulley_friction": {
+        "drive_loss": ("drive_end", "pulley_share"),
+        "load_loss": ("load_pulley_loss",),
+    },
     "load_damping": places("restraint", coefficient_N_s_per_mm="damping_N_s_per_mm"),
     "load_hysteresis": places("restraint", force_N="hysteresis_N", travel_mm="hysteresis_mm"),
     "load_relaxation": places("restraint", share="relaxing_share", time_s="relaxing_s"),

@@ -45,8 +45,6 @@ NEAR: Mapping[str, Mapping[str, Place]] = {
     "shifting_sheath": places("friction", per_N="shift_per_N"),
     # A tendon that gets stiffer as it stretches.
     "stiffening_tendon": {"per_N": ("stiffening_per_N",)},
-    # Friction of a pulley at the drive, by the tension on it.
-    "pulley_friction": places("drive_end", share="pulley_share"),
     # An anchor of the load's spring that slides in a slot.
     "slotted_clamp": places(
         "restraint", play_mm="clamp_play_mm", up_N="clamp_up_N", down_N="clamp_down_N"

@@ -57,6 +57,7 @@ class Rig:
     friction: Friction = field(default_factory=Friction)
     surface: Surface = field(default_factory=Surface)
     load_end: LoadEnd = field(default_factory=LoadEnd)
+    load_pulley_loss: float = 0.0  # of a pulley at the load's end of the sheath, as μ times a wrap
     restraint: Restraint = field(default_factory=Restraint)
     give: Give = field(default_factory=Give)
     cells: int = 200
@@ -208,4 +209,6 @@ def _bend_per_node(rig: Rig, s: Floats) -> Floats:
     edges = _edges(s)
     bend = np.diff(np.interp(edges, fine, angle / angle[-1]))
     at = 0.5 * (edges[1:] + edges[:-1]) / rig.sheath_length_mm
-    return np.asarray(rig.total_bend_rad * bend * (1.0 + rig.friction.slope_along * (at - 0.5)))
+    bend = rig.total_bend_rad * bend * (1.0 + rig.friction.slope_along * (at - 0.5))
+    bend[-1] += rig.load_pulley_loss / rig.friction_coefficient
+    return np.asarray(bend)
