@@ -17,6 +17,7 @@ from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 from tsas_cli.diagnosis.tolerances import frictions_of
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.recordings.manifest import Run
 
 F, X, DRIVE = "f_out_N", "x_out_mm", "x_in_mm"
 N = 240
@@ -286,8 +287,29 @@ def test_frictions_that_differ_by_more_than_scatter_are_said(more, said):
     trial = trial_of(NOISE - more * JACOBIAN[:, 0] * RUN)
     frictions = frictions_of(trial, TOLERATED, RUN)
     assert frictions == pytest.approx([-0.5 * more, 0.5 * more], rel=0.02)
-    assert said in differing(frictions, ["a", "b"]).sentence
-    assert differing(0.55 * frictions, ["a", "b"]) is None
+    runs = [Run(id=name, file="a", sha256=64 * "0") for name in "ab"]
+    assert said in differing(frictions, runs).sentence
+    assert differing(0.55 * frictions, runs) is None
+
+
+@pytest.mark.parametrize(
+    ("bends_rad", "frictions", "falls"),
+    [
+        ((1.0, 2.0, 3.0, 4.0), (0.10, 0.01, -0.05, -0.06), True),
+        ((1.0, 2.0, 3.0, 4.0), (-0.10, -0.01, 0.05, 0.06), False),
+        ((1.0, 2.0, 3.0, 4.0), (0.06, -0.09, 0.07, -0.04), False),
+        ((3.0, 3.1, 3.2, 3.3), (0.10, 0.01, -0.05, -0.06), False),
+        ((1.0, 4.0), (0.10, -0.10), False),
+        ((None, None, None), (0.10, 0.0, -0.10), False),
+    ],
+)
+def test_friction_that_does_not_grow_with_the_bend_is_said(bends_rad, frictions, falls):
+    runs = [
+        Run(id=f"r{k}", file="a", sha256=64 * "0", total_bend_rad=bend)
+        for k, bend in enumerate(bends_rad)
+    ]
+    said = differing(np.array(frictions), runs).sentence
+    assert ("does not grow with the bend" in said) == falls
 
 
 def judged(monkeypatch, found, *, squares=200.0):

@@ -220,7 +220,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     fault = wandering(after) if verdict == "unexplained" else None
     if verdict == "sufficient":
         frictions = frictions_of(final, proven.tolerated, folds.run)
-        fault = differing(frictions, [errors.run.run.id for errors in bench.closed])
+        fault = differing(frictions, [errors.run.run for errors in bench.closed])
         verdict = verdict if fault is None else "unexplained"
     judged_ones = frozenset[str]() if proven.whole is None else proven.whole.judged.named
     nearest = proven.search.best_alone(judged_ones)

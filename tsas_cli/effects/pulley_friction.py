@@ -8,6 +8,7 @@ band.
 Equation: the capstan law of Yang 2025, Eq. (7), at a point: the tensions of both sides have the
 ratio e^loss. A bearing with friction μb, radius rb and wrap α on a pulley of radius r has
 loss = 2 μb (rb/r) sin(α/2), an edge with the wrap α has loss = μ α. The paper's pulleys have none.
+In the chain of n nodes it acts at the first or the last, half a segment (L/2n) inside the sheath.
 Mistaken for: a larger friction coefficient, with uneven_friction (both together have the same sum,
 over longer dead bands); drive_friction, load_friction (the same force at any tension);
 a bend of the sheath at its end (the same thing).

@@ -36,7 +36,7 @@ SESSION_S = 600.0
 APART = {
     "antagonist": 0.02,  # a reversal of a loop as wide as ten times that of other effects
     "drive_friction": 0.05,  # one sample, where the drive turns
-    "pulley_friction": 0.08,  # the same, and half a segment of tendon before the pulley
+    "pulley_friction": 0.15,  # the same: half a segment of tendon before the pulley
     "viscous_friction": 0.04,  # speeds of a sample before
     "stribeck_friction": 0.15,  # each place's own speed, with a memory
     "load_hysteresis": 0.15,  # Dahl's law, which bends where a slider has a corner

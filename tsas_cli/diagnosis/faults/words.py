@@ -11,6 +11,7 @@ from tsas_cli.diagnosis.friction_scatter import SCATTER
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.against_data_sheet import SHEET
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.manifest import Run
 from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import RecordingFault
 from tsas_cli.support.arrays import Floats
@@ -18,6 +19,12 @@ from tsas_cli.support.wording import listed
 
 REMEDY = "Correct it{} and diagnose again"
 STIFFER = "tendon-stiffness"
+PULLEYS = "a part that does not grow with the bend (pulley_friction), "
+LEAST_RUNS, LEAST_BENDS = (
+    3,
+    0.2,
+)  # by whose bends a friction is judged; their range over the largest
+IN_LINE = 0.1  # of the variance of the frictions, that a line over 1/bend leaves
 LEFT_OUT = ", or leave the run out with --runs,"
 
 
@@ -59,7 +66,7 @@ def wandering(left: Remainder) -> RecordingFault | None:
     return RecordingFault(code="wanders", column=name, sentence=sentence)
 
 
-def differing(frictions: Floats, runs: Sequence[str]) -> RecordingFault | None:
+def differing(frictions: Floats, runs: Sequence[Run]) -> RecordingFault | None:
     """Return that the frictions of the runs, shares over their mean, differ by more than scatter.
 
     Of many runs the extremes are said.
@@ -67,12 +74,23 @@ def differing(frictions: Floats, runs: Sequence[str]) -> RecordingFault | None:
     if not frictions.size or np.abs(frictions).max() <= MOST_SCATTER * SCATTER:
         return None
     order = np.argsort(frictions)
-    said = [f"{100.0 * frictions[k]:+.0f} % (run {runs[k]})" for k in (order[0], order[-1])]
+    said = [f"{100.0 * frictions[k]:+.0f} % (run {runs[k].id})" for k in (order[0], order[-1])]
+    bends_rad = np.array([run.total_bend_rad or 1.0 for run in runs])
     sentence = (
-        f"Friction differs from run to run by {' to '.join(said)}, as by humidity, lubrication "
-        "or wear, or where the stated bends are wrong"
+        f"Friction differs from run to run by {' to '.join(said)}, as by "
+        + (PULLEYS if _falls_with(bends_rad, frictions) else "humidity, lubrication or wear, ")
+        + "or where the stated bends are wrong"
     )
     return RecordingFault(code="run-frictions", sentence=sentence)
+
+
+def _falls_with(bends_rad: Floats, frictions: Floats) -> bool:
+    """Return whether friction per bend falls as where a part of it does not grow with the bend."""
+    if frictions.size < LEAST_RUNS or np.ptp(bends_rad) < LEAST_BENDS * bends_rad.max():
+        return False
+    slope, level = np.polyfit(1.0 / bends_rad, frictions, 1)
+    left = frictions - level - slope / bends_rad
+    return bool(slope > 0.0 and np.var(left) < IN_LINE * np.var(frictions))
 
 
 def stiffer_tendon(ratio: float) -> RecordingFault:
