@@ -43,6 +43,7 @@ APART = {
     "force_sensor_hysteresis": 0.4,  # the same
     "load_inertia": 0.6,  # how the load swings after it has set off
 }
+LEAST = {"pulley_friction": 5e-3}  # by how much it may differ in any case [N, 0.1 mm]; 1e-3 others
 VARIANTS = [(effect, parameters) for effect, variants in FULL.items() for parameters in variants]
 VARIANTS += [  # what the catalogue has got of the causes near to it
     (cause, {**size.scaled, **{name: sum(bounds) / 2.0 for name, bounds in size.drawn.items()}})
@@ -79,6 +80,6 @@ def test_a_hidden_value_does_the_same_in_the_model(effect, parameters, plain):
         rigs, models = hidden[channel] - columns[channel], fitted[channel] - model[channel]
         size = np.sqrt(np.mean(rigs**2))
         apart = np.sqrt(np.mean((rigs - models) ** 2))
-        assert apart <= APART.get(effect, 0.005) * size + 1e-3 * unit, channel
+        assert apart <= APART.get(effect, 0.005) * size + LEAST.get(effect, 1e-3) * unit, channel
         shows = max(shows, size / unit)
     assert shows > 0.3
