@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_studies.challenge.rig.compiled import compiled
-from tsas_studies.challenge.rig.continuum import Ends, State, Tendon, at_rest, keep, stretched
+from tsas_studies.challenge.rig.continuum import Ends, State, Tendon
 from tsas_studies.challenge.rig.load_end import AT_REST, Load, LoadState, extra_force, moved
+from tsas_studies.challenge.rig.marching import at_rest, keep, stretched
 from tsas_studies.challenge.rig.motions import Floats
 
 BALANCED_N = 1e-5

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tsas_studies.challenge.rig import continuum
+from tsas_studies.challenge.rig import continuum, marching
 from tsas_studies.challenge.rig.antagonist import Antagonist, Net, Tendons, run_pair
 from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
 from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
@@ -105,7 +105,7 @@ def simulate(
     position = tendon_end(rig.drive_end, x_in)
     if rig.antagonist.preload_N > 0.0:
         return _with_antagonist(rig, motion, position, mu)
-    t_in, t_out, u_end, guide, solved = continuum.run(tendon, Path(rig.give), t, position, mu, q)
+    t_in, t_out, u_end, guide, solved = marching.run(tendon, Path(rig.give), t, position, mu, q)
     _refuse_failed(t, t_in, solved)
     return CleanRun(
         {
