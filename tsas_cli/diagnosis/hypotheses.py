@@ -49,8 +49,12 @@ class Hypotheses:
 
     def best_alone(self, without: Names) -> tuple[str, Reduction] | None:
         """Return the effect that gains most alone, but for some; None where none was fitted."""
-        alone = [names for names, _ in self.trials if len(names) == 1 and not names & without]
-        found = [(name, self.gain(names)) for names in alone for name in names]
+        found = [
+            (name, gain(self.squares[frozenset(), mesh], squares))
+            for (names, mesh), squares in self.squares.items()
+            if len(names) == 1 and not names & without and (frozenset(), mesh) in self.squares
+            for name in names
+        ]
         return max(found, key=lambda pair: pair[1].part, default=None)
 
 
