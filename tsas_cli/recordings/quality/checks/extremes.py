@@ -13,6 +13,7 @@ from tsas_cli.recordings.quality.samples import (
     rows_between_changes,
 )
 from tsas_cli.recordings.quality.trial import RunSignals, Stroke
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
 
 _ZERO = 0.15  # of the channel's span: the mean of the second half
@@ -131,13 +132,17 @@ def _end_of_stroke(
     """Return a channel's level at the end of a stroke, how much it lacks there, and if it is flat.
 
     It lacks what a line through the part of the stroke before foretells; None for a stroke that is
-    short, or in which the channel does not follow.
+    short, that goes back on its second half, or in which the channel does not follow.
     """
     x, y = (trial.channels[n][stroke.rows] for n in ("x_in_mm", name))
     share = (x - x[0]) / (x[-1] - x[0])
     before, last = (share > _BEFORE[0]) & (share < _BEFORE[1]), share > _LAST
     long = abs(x[-1] - x[0]) > _LONG * trial.sizes["x_in_mm"].span
-    if not long or min(before.sum(), last.sum()) < _FEWEST_ROWS or not np.isfinite(y).all():
+    back_mm = np.maximum.accumulate(stroke.direction * x) - stroke.direction * x
+    returns = bool(np.any(back_mm[share > _BEFORE[0]] > trial.visible("x_in_mm")))
+    if not long or returns or min(before.sum(), last.sum()) < _FEWEST_ROWS:
+        return None
+    if not np.isfinite(y).all():
         return None
     slope, at_zero = np.polyfit(share[before], y[before], 1)
     if stroke.direction * slope < _FOLLOWS * trial.sizes[name].span:
@@ -149,7 +154,18 @@ def _end_of_stroke(
     lacks = stroke.direction * (at_zero + slope - level)
     flat = own[0] / slope < _FLAT and lacks > trial.visible(name) + 0.5 * (1.0 - _LAST) * abs(slope)
     straight = np.std(y[last] - np.polyval(own, share[last])) < _STRAIGHT * trial.visible(name)
+    if flat and straight:
+        speed = np.gradient(x, trial.time_s[stroke.rows])
+        flat = not _follows_speed(share, speed, y, _STRAIGHT * trial.visible(name))
     return level, float(lacks), bool(flat and straight)
+
+
+def _follows_speed(share: Floats, speed: Floats, y: Floats, noise: float) -> bool:
+    """Return whether a line over place and speed fits the second half of a stroke to its end."""
+    late = share > _BEFORE[0]
+    terms = np.column_stack((np.ones(late.sum()), share[late], speed[late]))
+    left = y[late] - terms @ np.linalg.lstsq(terms, y[late], rcond=None)[0]
+    return bool(np.sqrt(np.mean(left[share[late] > _LAST] ** 2)) < noise)
 
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
