@@ -344,3 +344,30 @@ def test_parts_within_the_interval_of_the_whole_do_not_differ(values, within):
     parts = tuple(zip(("low", "high"), values, strict=True))
     split = Split("backlash.play_mm", "speed", Reduction(0.1, 3.0), parts)
     assert p._within_interval(split, [CLEAR_PLAY]) == within
+
+
+@pytest.mark.parametrize(
+    ("period_mm", "gains", "refused"),
+    [
+        (2.345, 10.0, True),
+        (1.6, 10.0, True),
+        (3.4, 10.0, False),
+        (4.8, 10.0, False),
+        (2.1, 10.0, False),
+        (2.345, 40.0, False),
+    ],
+)
+def test_a_wave_of_half_the_period_of_a_larger_one_is_no_cause(period_mm, gains, refused):
+    """A gear whose ripple has a harmonic passes for a position sensor off its centre."""
+
+    def wave(effect, period, gain):
+        periods = (estimate(f"{effect}.period_mm", period, period - 0.1, period + 0.1, unit="mm"),)
+        return FoundCause(effect, (), periods, gain, (gain - 2.0, gain + 2.0))
+
+    drive = wave("drive_ripple", 4.82, 30.0)
+    cause = wave("position_sensor_ripple", period_mm, gains)
+    plain = FoundCause("backlash", (), (), 50.0, (40.0, 60.0))
+    failed = p._beside_a_wave(cause, (drive, cause, plain)).failed
+    assert failed == (
+        ("may be a harmonic of ripple of the drive's gear, or of its encoder",) * refused
+    )

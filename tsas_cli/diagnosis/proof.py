@@ -40,6 +40,8 @@ BOTH_SENSORS = {
     "force_sensor_tilt": "a force along the way of the tendon",
 }
 
+HARMONIC = 0.1  # relative, of the ratio of two periods
+
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
 
@@ -51,6 +53,14 @@ def may_be_of_the_law_of(effect: str, other: str) -> bool:
     ]
     wave = any(parameter.period for parameter in BY_NAME[effect].parameters)
     return places[0] == places[1] and (wave or BY_NAME[effect].acts_on == "sensor")
+
+
+def is_harmonic(period: float, of: float) -> bool:
+    """Return whether a wave's period is a half or a third of another one's, whose place may differ.
+
+    The load moves a little less than the drive, so that a period there is shorter.
+    """
+    return any(abs(of / period - n) < HARMONIC * n for n in (2, 3))
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from tsas_cli.diagnosis.proof import (
     BY_NAME,
     FoundCause,
     failures,
+    is_harmonic,
     may_be_of_the_law_of,
     may_be_zero,
     of_one_size,
@@ -127,6 +128,7 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     last = _LastFit(judged, found, held_out, at_residuals.signals, after.structure, tolerated)
     causes = tuple(_cause(last, name) for name in judged.rivals)
     causes = tuple(_beside_another_law(cause, causes) for cause in causes)
+    causes = tuple(_beside_a_wave(cause, causes) for cause in causes)
     start = after
     if named:
         start = remainder_of(bench, judged.trial(frozenset(), on_mesh=mesh), judged.folds)
@@ -202,6 +204,22 @@ def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> Foun
         if other.law_differs and alike and other.gain_percent > cause.gain_percent:
             title = BY_NAME[other.effect].title.lower()
             said = f"acts where {title} does, whose law differs from the catalogue's"
+            return replace(cause, failed=(*cause.failed, said))
+    return cause
+
+
+def _beside_a_wave(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
+    """Return a cause, refused where it may be a harmonic of a wave that gains more."""
+    for other in causes:
+        periods = [
+            estimate.value
+            for one in (cause, other)
+            for estimate in one.parameters
+            if estimate.name.endswith("period_mm")
+        ]
+        waves = len(periods) == 2 and other.gain_percent > cause.gain_percent
+        if waves and is_harmonic(*periods):
+            said = f"may be a harmonic of {BY_NAME[other.effect].title.lower()}"
             return replace(cause, failed=(*cause.failed, said))
     return cause
 
