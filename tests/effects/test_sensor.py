@@ -104,7 +104,7 @@ def test_a_reading_of_a_curved_scale_has_one_force(curvature):
 
 
 def test_a_wave_too_steep_has_no_position():
-    gentle, steep = Wave(0.2, -0.1, 4.0), Wave(0.0, 0.9, 2.0)
+    gentle, steep = Wave(0.2, -0.1, 4.0, 0.1, -0.2), Wave(0.0, 0.9, 2.0)
     assert without_ripple(rippled(3.3, gentle), gentle) == pytest.approx(3.3, abs=1e-10)
     assert any(np.isnan(without_ripple(x, steep)) for x in np.linspace(-3.0, 3.0, 200))
 

@@ -125,19 +125,18 @@ def drive_at(geared: Floats, ripple: Wave, step_s: float) -> Floats:
     """Return position and three rates of the drive for those of the gear's output, shape (4, m)."""
     if ripple.is_flat:
         return geared
-    rows = [unrippled(geared[0], ripple)]
+    rows = [unrippled(geared[0], ripple, ripple.reach_mm)]
     for _ in range(3):
         rows.append(np.gradient(rows[-1], step_s))
     return np.vstack(rows)
 
 
 @kernel
-def unrippled(geared: Floats, ripple: Wave) -> Floats:
+def unrippled(geared: Floats, ripple: Wave, reach_mm: float) -> Floats:
     """Return the drive's positions for those of the gear's output, by bisection."""
     drive = np.empty(geared.size)
-    reach = abs(ripple.sine_mm) + 2.0 * abs(ripple.cosine_mm)
     for i in range(geared.size):
-        low, high = geared[i] - reach, geared[i] + reach
+        low, high = geared[i] - reach_mm, geared[i] + reach_mm
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             if rippled(middle, ripple) < geared[i]:

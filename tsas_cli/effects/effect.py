@@ -85,6 +85,10 @@ def wave_parameters(
         Parameter("sine_mm", "mm", 0.0, amplitude_mm, -5.0, 5.0),
         Parameter("cosine_mm", "mm", 0.0, amplitude_mm, -5.0, 5.0),
         shape("period_mm", "mm", period_mm, **bounds, starts=starts, period=True),
+        *(
+            Parameter(name, "1", 0.0, 0.1, -1.0, 1.0, shape=True, starts=(0.0,))
+            for name in ("second_sine", "second_cosine")
+        ),
     )
 
 

@@ -3,12 +3,13 @@
 What one sees: a wave on x_out alone with a fixed period in x_out, the same one on pull and release,
 in every run and at any speed; f_in and f_out fit.
 Equation: the reading is x + s sin a + c (cos a − 1) with a = 2πx/period, the first harmonic of an
-encoder or a scale whose centre is not that of its shaft; on a drum of radius r the period is 2πr.
+encoder or a scale whose centre is not that of its shaft, and its second, of one that is oval; on a
+drum of radius r the period is 2πr.
 Not in the paper.
 Mistaken for: load_ripple (f_out over x_out has the wave because the spring has it: f_in and f_out
 follow in time); drive_ripple (f_in has it too, highest in dead bands, and so has the encoder of
 x_in, which moves all other channels); position_sensor_gain (a slope, not a wave).
-Not validated: higher harmonics; a wave so steep that the reading falls while x grows.
+Not validated: a third harmonic; a wave so steep that the reading falls while x grows.
 """
 
 import numpy as np
@@ -38,7 +39,7 @@ POSITION_SENSOR_RIPPLE = Effect(
     title="Position sensor off its centre",
     acts_on="sensor",
     closed_form=True,
-    equation="reading of x_out = x + s·sin(2πx/period) + c·(cos(2πx/period) − 1)",
+    equation="reading of x_out = x + s·sin a + c·(cos a − 1) + 2nd harmonic,  a = 2πx/period",
     doc=__doc__,
     parameters=wave_parameters(
         0.05, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 2.0, 24)

@@ -1,4 +1,4 @@
-"""A wave over a position, zero at the origin: the first harmonic of what turns off its centre."""
+"""A wave over a position, zero at the origin: two harmonics of what turns off its centre."""
 
 import math
 from typing import NamedTuple
@@ -10,26 +10,48 @@ from tsas_cli.support.arrays import Values
 
 
 class Wave(NamedTuple):
-    """Two amplitudes of the wave, and its period in travel [mm]."""
+    """Two amplitudes of the wave, its period in travel [mm], and its second harmonic.
+
+    The amplitudes of the second harmonic are shares of that of the first [1].
+    """
 
     sine_mm: float = 0.0
     cosine_mm: float = 0.0
     period_mm: float = 10.0
+    second_sine: float = 0.0
+    second_cosine: float = 0.0
 
     @property
     def is_flat(self) -> bool:
         """Whether both amplitudes are zero."""
         return self.sine_mm == self.cosine_mm == 0.0
 
+    @property
+    def reach_mm(self) -> float:
+        """What the wave adds to a position, at most [mm]."""
+        share = abs(self.second_sine) + 2.0 * abs(self.second_cosine)
+        first = abs(self.sine_mm) + 2.0 * abs(self.cosine_mm)
+        return first + share * math.hypot(self.sine_mm, self.cosine_mm)
+
 
 @kernel
 def wave_at(position: Values, wave: Wave) -> tuple[Values, Values]:
-    """Return sine·sin a + cosine·(cos a − 1) [mm] with a = 2π position/period, and its slope."""
+    """Return the wave [mm] and its slope.
+
+    It is s sin a + c (cos a − 1) + r (p sin 2a + q (cos 2a − 1)), with a = 2π position/period,
+    r² = s² + c².
+    """
     rate = 2.0 * math.pi / wave.period_mm
     angle = rate * position
     up, along = np.sin(angle), np.cos(angle)
     slope = rate * (wave.sine_mm * along - wave.cosine_mm * up)
-    return wave.sine_mm * up + wave.cosine_mm * (along - 1.0), slope
+    value = wave.sine_mm * up + wave.cosine_mm * (along - 1.0)
+    if wave.second_sine != 0.0 or wave.second_cosine != 0.0:
+        size = math.sqrt(wave.sine_mm**2 + wave.cosine_mm**2)
+        up, along = 2.0 * up * along, 1.0 - 2.0 * up * up
+        value += size * (wave.second_sine * up + wave.second_cosine * (along - 1.0))
+        slope += 2.0 * rate * size * (wave.second_sine * along - wave.second_cosine * up)
+    return value, slope
 
 
 @kernel

@@ -40,6 +40,8 @@ RIPPLE = {
     "drive_ripple.sine_mm": 0.06,
     "drive_ripple.cosine_mm": 0.02,
     "drive_ripple.period_mm": 0.9,
+    "drive_ripple.second_sine": 0.2,
+    "drive_ripple.second_cosine": -0.1,
 }
 PLAY = {"backlash.play_mm": 0.4}
 
@@ -54,9 +56,13 @@ def left_over(x, pull, *, table=TABLE, motor_mm=MOTOR_MM):
 
 def tangent(x):
     """Return value at zero and slope of the straight line that is the gear's output about x."""
-    w = 2.0 * math.pi / 0.9
+    w, size = 2.0 * math.pi / 0.9, math.hypot(0.06, 0.02)
     here, next_value = (
-        y + 0.06 * math.sin(w * y) + 0.02 * (math.cos(w * y) - 1.0) for y in (x, x + 1e-4)
+        y
+        + 0.06 * math.sin(w * y)
+        + 0.02 * (math.cos(w * y) - 1.0)
+        + size * (0.2 * math.sin(2.0 * w * y) - 0.1 * (math.cos(2.0 * w * y) - 1.0))
+        for y in (x, x + 1e-4)
     )
     slope = (next_value - here) / 1e-4
     return here - slope * x, slope

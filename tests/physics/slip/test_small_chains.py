@@ -81,7 +81,12 @@ EFFECTS = {
     "a damper": {"load_damping.coefficient_N_s_per_mm": 0.4},
     "a load that yields": {"load_hysteresis.force_N": 4.0, "load_hysteresis.travel_mm": 0.3},
     "a load that relaxes": {"load_relaxation.share": 0.5, "load_relaxation.time_s": 0.1},
-    "a load at a pulley": {"load_ripple.sine_mm": 0.1, "load_ripple.period_mm": 2.0},
+    "a load at a pulley": {
+        "load_ripple.sine_mm": 0.1,
+        "load_ripple.period_mm": 2.0,
+        "load_ripple.second_sine": 0.2,
+        "load_ripple.second_cosine": -0.1,
+    },
     "all at the load": {
         "load_damping.coefficient_N_s_per_mm": 0.2,
         "load_hysteresis.force_N": 2.0,
@@ -181,9 +186,11 @@ class BesideSpring:
         left = math.exp(-step_s / time_s)
         gained = (1.0 - left) * time_s / step_s * way if step_s < math.inf else 0.0
         self.stretch = self.stretch * left + gained
-        sine, cosine, period = effects.load_ripple
+        sine, cosine, period, up, across = effects.load_ripple
         angle = 2.0 * math.pi * x / period
         wave = sine * math.sin(angle) + cosine * (math.cos(angle) - 1.0)
+        second = up * math.sin(2.0 * angle) + across * (math.cos(2.0 * angle) - 1.0)
+        wave += math.hypot(sine, cosine) * second
         damped = effects.load_damping.coefficient_N_s_per_mm * way / step_s
         return damped + self.element + stiffness * (share * self.stretch + wave)
 
