@@ -129,11 +129,13 @@ def failures(
         if parameters[name].period and e.value > stroke_mm
     ]
     sensors = [e for name, e in sizes.items() if effect in BOTH_SENSORS and not e.at_bound]
-    alike = [e.value for e in sensors]
-    if len(alike) == 2 and abs(np.ptp(alike)) < ALIKE * abs(np.mean(alike)):
+    both = [e.value for e in sensors]
+    near = len(both) == 2 and abs(np.ptp(both)) < ALIKE * abs(np.mean(both))
+    unsure = len(both) == 2 and not zero and all(e.holds(*both) for e in sensors)
+    if near or unsure:
         out.append(
-            f"is the same for both sensors ({alike[0]:.3g} and {alike[1]:.3g} "
-            f"{sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
+            f"{'is' if near else 'may be'} the same for both sensors ({both[0]:.3g} and "
+            f"{both[1]:.3g} {sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
         )
     changes = {n: after**2 - without.normalised[n] ** 2 for n, after in with_it.normalised.items()}
     fall = -sum(min(change, 0.0) for change in changes.values())
