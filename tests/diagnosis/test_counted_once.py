@@ -35,17 +35,11 @@ def rows(columns, *between):
     return {name: values[slice(*between)] for name, values in columns.items()}
 
 
-def resampled(columns, rate_Hz):
-    time_s = np.arange(0.001, columns["time_s"][-1], 1.0 / rate_Hz)
-    return {n: np.interp(time_s, columns["time_s"], v) for n, v in columns.items()}
-
-
 COPIES = {
     "four times": ({"a": A, "b": A, "c": A, "d": A}, ["b", "c", "d"]),
     "later": ({"a": A, "b": A | {"time_s": A["time_s"] + 3.0}}, ["b"]),
     "cut out": ({"b": rows(A, 100, 600), "a": A}, ["b"]),
     "every second": ({"a": A, "b": rows(A, None, None, 2)}, ["b"]),
-    "another clock": ({"b": resampled(A, 37.3), "a": A}, ["b"]),
 }
 
 

@@ -74,13 +74,13 @@ def manifest_unit(manifest: Manifest) -> Findings:
 def copies(dataset: Dataset) -> Findings:
     """A run holds samples of another run of the dataset, which are no further evidence.
 
-    Two runs that repeat a motion have independent noise; a copy shares it. Each run is searched for
-    in every other one: the same samples, written again or at shifted times, a part of them, every
-    second or third of them, or samples interpolated linearly or by a cubic spline. Every channel
-    that changes has to agree to within a twentieth of its noise, for longer than a repeat of the
-    motion could; constant stretches are no evidence. Runs computed without noise agree wherever
-    their motion does, and are reported as copies. A filtered (averaged, decimated through a filter)
-    or scaled copy is not found. Fits count each sample once, and report it.
+    Two runs that repeat a motion have independent noise; a copy shares it. The rows of each run are
+    looked for in every other one, by the values of all channels, rounded to the coarser steps of
+    the two runs: the same samples, written again, with fewer digits or at shifted times, a part of
+    them, or every second or third. They have to agree for longer than a repeat of the motion could;
+    constant stretches are no evidence. Runs computed without noise agree wherever their motion
+    does, and are reported as copies. A copy that was filtered, scaled or interpolated between
+    samples is not found. Fits count each sample once, and report it.
     """
     found = find_copies(dataset, strict=False)
     for copy in found.copies:

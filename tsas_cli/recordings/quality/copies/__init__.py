@@ -1,7 +1,7 @@
 """Recordings that hold samples of other recordings: found, reported, and counted once.
 
-Two runs that repeat a motion have independent noise; copies share it. A stretch of one run is a
-copy of another if every sample of every channel agrees with the other's samples, or with their
-linear or cubic-spline interpolation, to within a twentieth of the noise, for longer than a repeat
-could.
+Two runs that repeat a motion have independent noise; copies share it. Every row has a hash of its
+channels' values, rounded to what both runs resolve. A stretch of one run is a copy of another if
+its hashes are those of the other's rows at one shift of the clock, for longer than a repeat's could
+be.
 """

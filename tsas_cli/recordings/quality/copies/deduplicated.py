@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
-from tsas_cli.recordings.quality.copies.agreement import WHOLE_SHARE, Copy
-from tsas_cli.recordings.quality.copies.search import find_copies
+from tsas_cli.recordings.quality.copies.search import WHOLE_SHARE, Copy, find_copies
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.support.errors import InputError
 

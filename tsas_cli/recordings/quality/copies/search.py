@@ -1,39 +1,81 @@
 """Search for the runs of a dataset that hold samples of others.
 
-Short stretches of every run are searched for in every other run, piece by piece; if one is found,
-the two runs are compared sample by sample. A run that is a whole copy is not searched further, so
-that many copies of one run cost little.
+Hashes that two runs have in common give the shift of their clocks, by the most frequent difference
+of the times. At this shift all rows are compared.
 """
 
 import math
-from collections import Counter
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
-from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.quality.copies.agreement import (
-    Copy,
-    RowSpan,
-    RunSamples,
-    agreement,
-    contradictions,
-    joined,
-    stretches,
-)
-from tsas_cli.recordings.quality.copies.fingerprint import (
-    Fineness,
-    Fingerprint,
-    Reader,
-    side_by_side,
-)
-from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
-from tsas_cli.support.arrays import Floats, Indices
+from tsas_cli.recordings.dataset import CONDITIONS, Dataset
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.quality.copies.rows import Reader, RowSpan, SearchedRun, common_grid
+from tsas_cli.support.arrays import Floats, Indices, Mask
+from tsas_cli.support.errors import InputError
 
-SHIFT_TOLERANCE = 0.1  # of a sample interval, within which two shifts are one
-MOST_SHIFTS = 8  # of a run on another that are compared
+WHOLE_SHARE = 0.98  # of a run's samples; the rest is its edges
+CONDITION_TOLERANCE = 1e-3  # relative: 3.14 rad is π
+ORDINALS = {1: "st", 2: "nd", 3: "rd"}
+LEAST_INFORMATION = 40.0  # nats: by chance at one of 10¹⁷ shifts
+LEAST_ROWS = 16  # that can tell as much
+VOTING_SHARE = 0.25  # of the rows that tell as much, for a shift to be tried
+MOST_SHIFTS = 4  # of a run on another that are tried
+EQUAL_SHARE = 0.6  # of a stretch's information; rounding to other digits may part rows in noise
+LONGEST_GAP = 16  # consecutive rows that it may part
+
+
+@dataclass(frozen=True)
+class Copy:
+    """A stretch of a run whose samples are those of another run."""
+
+    run: Run  # that holds the copy
+    other: Run  # the original
+    span: RowSpan
+    all_of_run: RowSpan
+    all_of_other: RowSpan
+    shift_s: float = 0.0  # of the samples to the other run's clock
+    every: int = 1  # k if it holds every k-th sample of the original
+    contradicts: tuple[str, ...] = ()  # conditions that differ between the two in the manifest
+
+    @property
+    def whole(self) -> bool:
+        """Whether the whole run is a copy."""
+        return self.span.rows >= WHOLE_SHARE * self.all_of_run.rows
+
+    @property
+    def sentence(self) -> str:
+        """Description of the copy, a predicate for the name of the run."""
+        samples = f"the samples of run {self.other.id}"
+        if self.every > 1:
+            ordinal = ORDINALS.get(self.every % 10 if self.every % 100 // 10 != 1 else 0, "th")
+            samples = f"every {self.every}{ordinal} sample of run {self.other.id}"
+        begin_s, end_s = self.span.begin_s, self.span.end_s
+        there = f"from {begin_s + self.shift_s:.6g} s to {end_s + self.shift_s:.6g} s"
+        if not self.whole:
+            return f"holds, from {begin_s:.6g} s to {end_s:.6g} s, {samples} {there}"
+        if self.span.duration_s < WHOLE_SHARE * self.all_of_other.duration_s:
+            return f"holds {samples} {there}"
+        if abs(self.shift_s) * self.all_of_run.rows > self.all_of_run.duration_s:
+            return f"holds {samples}, its time shifted by {-self.shift_s:.6g} s"
+        return f"holds {samples}"
+
+    @property
+    def contradiction(self) -> str:
+        """The differing conditions, as the end of a sentence; empty without any."""
+        differing = [
+            f"{name} = {_text(getattr(self.run, name))} here and "
+            f"{_text(getattr(self.other, name))} there"
+            for name in self.contradicts
+        ]
+        return f", but the manifest says {', '.join(differing)}" if differing else ""
+
+
+def _text(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.6g}"
 
 
 @dataclass(frozen=True)
@@ -48,6 +90,7 @@ class Found:
     short: tuple[str, ...] = ()
 
 
+@np.errstate(all="ignore")  # a stray 1e300 may overflow
 def find_copies(dataset: Dataset, *, strict: bool = True) -> Found:
     """Return the runs that hold samples of others.
 
@@ -55,186 +98,119 @@ def find_copies(dataset: Dataset, *, strict: bool = True) -> Found:
     """
     if len(dataset.runs) < 2:
         return Found()
-    with np.errstate(all="ignore"):  # a stray 1e300 may overflow
-        return _found(dataset, strict=strict)
-
-
-def _found(dataset: Dataset, *, strict: bool) -> Found:
     reader = Reader(dataset, strict=strict)
-    first: dict[str, Fingerprint] = {}
+    first: dict[str, SearchedRun] = {}
     copies: list[Copy] = []
-    for run in dataset.runs:
+    for number, run in enumerate(dataset.runs):
         digest = run.sha256.lower()
-        if digest in first:
-            known, same = first[digest], contradictions(run, first[digest].run)
-            copies.append(Copy(run, known.run, known.all, known.all, known.all, contradicts=same))
+        try:
+            known = first.get(digest) or reader.searched(run, number)
+        except InputError:
+            if strict:
+                raise
             continue
-        one = reader.fingerprint(run)
-        if one is not None:
-            first[digest] = one
-    searched = list(first.values())
-    order = {run.id: k for k, run in enumerate(dataset.runs)}
-    copies += _search(reader, [f for f in searched if f.increases], order)
+        if known.run is not run:
+            same = contradictions(run, known.run)
+            copies.append(Copy(run, known.run, known.all, known.all, known.all, contradicts=same))
+        first[digest] = known
+    ordered = [one for one in first.values() if one.increases]
+    searched = [one for one in ordered if one.channels and one.all.rows >= LEAST_ROWS]
+    copies += _search(reader, searched)
     if dataset.manifest.kind == "simulated":  # without noise, different rigs may have equal samples
-        quiet = {f.run.id for f in searched if not f.noisy}
+        quiet = {one.run.id for one in ordered if not any(c.noise for c in one.channels.values())}
         copies = [replace(c, contradicts=()) if c.other.id in quiet else c for c in copies]
+    order = {run.id: k for k, run in enumerate(dataset.runs)}
     return Found(
         tuple(sorted(copies, key=lambda c: (order[c.run.id], c.span.first))),
-        tuple(f.run.id for f in searched if not f.increases),
-        tuple(f.run.id for f in searched if f.increases and not f.stretches.size),
+        tuple(one.run.id for one in first.values() if not one.increases),
+        tuple(one.run.id for one in ordered if one not in searched),
     )
 
 
-def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int]) -> list[Copy]:
+def contradictions(run: Run, other: Run) -> tuple[str, ...]:
+    """Return the conditions that differ between two runs by more than rounding."""
+    stated = [(name, getattr(run, name), getattr(other, name)) for name in CONDITIONS]
+    different = [
+        name
+        for name, a, b in stated
+        if not (a is None or b is None or math.isclose(a, b, rel_tol=CONDITION_TOLERANCE))
+    ]
+    return (*different, "load") if run.load != other.load else tuple(different)
+
+
+def _search(reader: Reader, known: list[SearchedRun]) -> list[Copy]:
     """Return the copies among runs with different files."""
-    groups = _groups(known)
+    # What tells more is the original: more channels, more rows.
+    known = sorted(known, key=lambda one: (-len(one.channels), -one.all.rows, one.number))
     whole: dict[str, Copy] = {}
     parts: list[Copy] = []
-    # The contained run is the copy, whichever comes first.
-    for source in sorted(known, key=lambda f: (f.interpolated, -f.all.rows)):
-        if source.run.id in whole:
-            continue
-        for copy in _in_source(reader, source, groups, whole.keys() | {source.run.id}):
-            if copy.whole:
-                whole[copy.run.id] = copy
-            else:
-                parts.append(copy)
-    kept = {
-        (c.run.id, c.other.id, c.span): c
-        for c in parts
-        if not {c.run.id, c.other.id} & whole.keys()
-    }
-    # What two runs share is said once: of the later one, if it was found in both.
-    later = [c for c in kept.values() if order[c.run.id] >= order[c.other.id]]
-    pairs = {(c.other.id, c.run.id) for c in later}
-    earlier = [c for c in kept.values() if order[c.run.id] < order[c.other.id]]
-    alone = [c for c in earlier if (c.run.id, c.other.id) not in pairs]
-    return [*whole.values(), *later, *alone]
+    for source, other in combinations(known, 2):
+        if not {source.run.id, other.run.id} & whole.keys():
+            found = _shared(reader, source, other)
+            whole |= {copy.run.id: copy for copy in found if copy.whole}
+            parts += found
+    return [*whole.values(), *(c for c in parts if not {c.run.id, c.other.id} & whole.keys())]
 
 
-def _in_source(
-    reader: Reader, source: Fingerprint, groups: Sequence["_Group"], but: Set[str]
-) -> Iterator[Copy]:
-    """Yield the copies of a source in other runs, except those in `but`."""
-    places: dict[str, Counter[Shift]] = {}
-    others: dict[str, Fingerprint] = {}
-    for other, shift in _places(reader, source, groups, but):
-        others[other.run.id] = other
-        seen = places.setdefault(other.run.id, Counter())
-        near_s = SHIFT_TOLERANCE * source.interval_s
-        alike = (s for s in seen if s.spline == shift.spline)
-        same = (s for s in alike if abs(s.seconds - shift.seconds) < near_s)
-        seen[next(same, shift)] += 1
-    for run, seen in places.items():
-        spans: list[RowSpan] = []
-        for shift, _ in seen.most_common(MOST_SHIFTS):
-            for copy in _common_stretches(reader, source, others[run], shift):
-                if not any(s.first < copy.span.end and copy.span.first < s.end for s in spans):
-                    spans.append(copy.span)
-                    yield copy
-                    if not copy.whole:  # the source may be a part of it
-                        back = Shift(-shift.seconds, shift.spline)
-                        yield from _common_stretches(reader, others[run], source, back)
-            if sum(span.rows for span in spans) == others[run].all.rows:
-                break
-
-
-@dataclass(frozen=True, eq=False)
-class _Group:
-    """Runs with the same channels and similar quantisation steps, and all their stretches."""
-
-    members: Sequence[Fingerprint]
-    steps: dict[str, float]  # the coarsest ones
-    owner: Indices  # number of the run of each stretch
-    stretches_s: Floats
-    stretches: Floats
-
-
-def _groups(known: Sequence[Fingerprint]) -> list[_Group]:
-    """Return the runs in groups; runs without stretches are in none."""
-    groups: dict[tuple[object, ...], list[Fingerprint]] = {}
-    for one in known:
-        if one.stretches.size:
-            key = [(name, math.frexp(c.step)[1]) for name, c in one.channels.items()]
-            groups.setdefault((*key, one.dense, one.stretches_s.shape[1]), []).append(one)
-    return [
-        _Group(
-            members,
-            {n: max(m.channels[n].step for m in members) for n in members[0].channels},
-            np.repeat(np.arange(len(members)), [len(m.stretches) for m in members]),
-            np.concatenate([m.stretches_s for m in members]),
-            np.concatenate([m.stretches for m in members]),
-        )
-        for members in groups.values()
-    ]
-
-
-def _places(
-    reader: Reader, source: Fingerprint, groups: Sequence[_Group], but: Set[str]
-) -> Iterator[tuple[Fingerprint, Shift]]:
-    """Yield the run and the shift of each stretch found in a source."""
-    comparable = []
-    for group in groups:
-        one = group.members[0]
-        names = [n for n in one.dense if n in source.dense and n in source.channels]
-        if names and one.evidence <= source.channels.keys():
-            comparable.append((group, one, names))
-    for piece in reader.parts(source.run) if comparable else ():
-        for group, one, names in comparable:
-            searched = np.array([m.run.id not in but for m in group.members])[group.owner]
-            if not searched.any():
-                continue
-            values = np.column_stack([piece.columns[name] for name in names])
-            fine = [source.channels[name] for name in names]
-            lookup = Lookup(
-                RunSamples(piece.columns[TIME], values),
-                np.array([source.channels[n].tolerance(group.steps[n]) for n in names]),
-                # Coarse samples agree loosely with those of any repeat.
-                np.array([channel.noise if source.noisy else 0.0 for channel in fine]),
+def _shared(reader: Reader, source: SearchedRun, other: SearchedRun) -> list[Copy]:
+    """Return the stretches that two runs share; the source has more channels, or more rows."""
+    slow, fast = (source, other) if source.interval_s > 1.5 * other.interval_s else (other, source)
+    if slow.channels.keys() - fast.channels.keys():  # a channel of its own is evidence
+        return []
+    grid = common_grid(slow, fast)
+    rows, there = reader.hashed(slow, grid), reader.hashed(fast, grid)
+    marks = rows.hashes[rows.first], there.hashes[there.first]
+    _, ours, theirs = np.intersect1d(*marks, assume_unique=True, return_indices=True)
+    apart_s = there.time_s[there.first[theirs]] - rows.time_s[rows.first[ours]]
+    near_s = 0.5 * fast.interval_s
+    votes = VOTING_SHARE * LEAST_INFORMATION / max(float(rows.nats.max(initial=0.0)), 1e-9)
+    found: list[Copy] = []
+    for shift_s in _shifts(apart_s, near_s, votes):
+        at = np.searchsorted(0.5 * (there.time_s[1:] + there.time_s[:-1]), rows.time_s + shift_s)
+        equal = there.hashes[at] == rows.hashes
+        equal &= np.abs(there.time_s[at] - rows.time_s - shift_s) < near_s
+        for ends in stretches(equal, rows.nats, noisy=rows.noisy):
+            spans = {slow: rows.span(ends, slow.all), fast: there.span(at[ends], fast.all)}
+            every = round((spans[fast].rows - 1) / (spans[slow].rows - 1))
+            # The copy has fewer channels, or is in the other one as a whole, or comes later.
+            rank = [
+                (-len(one.channels), span.rows >= WHOLE_SHARE * one.all.rows, one.number)
+                for one, span in spans.items()
+            ]
+            copy = slow if every > 1 or rank[0] > rank[1] else fast
+            of, by_s = (fast, shift_s) if copy is slow else (slow, -shift_s)
+            against = contradictions(copy.run, of.run)
+            found.append(
+                Copy(copy.run, of.run, spans[copy], copy.all, of.all, by_s, every, against)
             )
-            columns = [one.dense.index(name) for name in names]
-            owner = group.owner[searched]
-            for number, shift in lookup.shifts(
-                group.stretches_s[searched], group.stretches[searched][:, :, columns]
-            ):
-                yield group.members[owner[number]], shift
+    return found
 
 
-def _common_stretches(
-    reader: Reader, source: Fingerprint, other: Fingerprint, shift: Shift
-) -> Iterator[Copy]:
-    """Yield the stretches of another run that are a source's samples at this shift."""
-    names = [name for name in other.channels if name in source.channels]
-    fine = [source.channels[name] for name in names]
-    tolerance = np.array(
-        [one.tolerance(other.channels[n].step) for n, one in zip(names, fine, strict=True)]
-    )
-    information = _information(fine, tolerance)
-    both = side_by_side(reader.parts(other.run), reader.parts(source.run), names, shift.seconds)
-    found = (
-        stretches(
-            row,
-            samples.moved(-shift.seconds),
-            agreement(around, samples, tolerance, spline=shift.spline),
-            information,
-        )
-        for row, samples, around in both
-    )
-    against = contradictions(other.run, source.run)
-    for span, every in joined(stretch for part in found for stretch in part):
-        yield Copy(
-            other.run, source.run, span, other.all, source.all, shift.seconds, every, against
-        )
+def _shifts(apart_s: Floats, near_s: float, least: float) -> Iterator[float]:
+    """Yield the most frequent differences between times [s], of at least so many rows."""
+    apart_s = np.sort(apart_s)
+    for _ in range(MOST_SHIFTS):
+        votes = np.searchsorted(apart_s, apart_s + near_s, side="right") - np.arange(apart_s.size)
+        if votes.max(initial=0) < least:
+            return
+        first = int(votes.argmax())
+        chosen = slice(first, first + int(votes[first]))
+        yield float(np.median(apart_s[chosen]))
+        apart_s = np.delete(apart_s, chosen)
 
 
-def _information(channels: Sequence[Fineness], tolerance: Floats) -> Floats:
-    """Return −ln of the probability that a repeat agrees with a sample of each channel [nats].
+def stretches(equal: Mask, nats: Floats, *, noisy: bool) -> list[Indices]:
+    """Return the first and the last row of each stretch of equal rows that no repeat has.
 
-    If some channels have noise, the others carry no information: they may be commanded, and equal
-    in every repeat. The same holds for computed channels beside coarse ones.
+    `nats` is what each row tells, shape (n,) as `equal`. Without noise every row has to be equal.
     """
-    noisy = np.array([channel.noisy for channel in channels])
-    coarse = np.array([channel.step > 0.0 for channel in channels])
-    informative = noisy if noisy.any() else coarse if coarse.any() else ~noisy
-    pairs = zip(channels, tolerance.tolist(), strict=True)
-    return np.where(informative, [channel.information(off) for channel, off in pairs], 0.0)
+    at = np.flatnonzero(equal)
+    apart = np.flatnonzero(np.diff(at) > (LONGEST_GAP if noisy else 0) + 1) + 1
+    edges = np.r_[0, apart, at.size]
+    found = []
+    for k in np.flatnonzero(np.diff(edges) >= LEAST_ROWS).tolist():
+        rows = at[edges[k] : edges[k + 1]]
+        evidence = float(nats[rows].sum())
+        if evidence >= max(LEAST_INFORMATION, EQUAL_SHARE * nats[rows[0] : rows[-1] + 1].sum()):
+            found.append(rows[[0, -1]])
+    return found
