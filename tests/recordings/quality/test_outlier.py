@@ -36,6 +36,12 @@ def test_a_sample_beside_which_all_others_look_alike_is_found():
     found(with_wild("f_in_N", 1234, -9e8), "outlier", "f_in_N")
 
 
+def test_zeros_that_a_drive_reads_now_and_then_are_found():
+    x_in = columns(Bench(rate_Hz=100.0))["x_in_mm"]
+    x_in[::97] = 0.0
+    found(columns(Bench(rate_Hz=100.0)) | {"x_in_mm": x_in}, "outlier", "x_in_mm")
+
+
 @pytest.mark.parametrize("rows", [[0], [N - 1], [7, 8, 9], [100, 101, 700, 1500]])
 def test_a_few_are_counted_wherever_they_are(rows):
     remark = found(with_wild("f_in_N", rows, 500.0), "outlier", "f_in_N")

@@ -171,13 +171,15 @@ def _jumps(trial: RunSignals, values: Floats, noise: float) -> Floats:
     """
     found = []
     x = trial.channels["x_in_mm"]
+    known = np.isfinite(x) & np.isfinite(values)
     for old, new in zip(trial.strokes, trial.strokes[1:], strict=False):
-        if old.stop != new.start or old.direction == new.direction:
+        if old.stop != new.start or old.direction == new.direction or not known[old.stop]:
             continue
         lasts = min(trial.time_s[s.stop] - trial.time_s[s.start] for s in (old, new))
         beside_s = min(_BESIDE_S, _OF_A_STROKE * lasts)
         t = (trial.time_s - trial.time_s[old.stop]) / beside_s
-        after, before = (t > _APART) & (t < 1.0 + _APART), (t < -_APART) & (t > -1.0 - _APART)
+        after = known & (t > _APART) & (t < 1.0 + _APART)
+        before = known & (t < -_APART) & (t > -1.0 - _APART)
         if min(after.sum(), before.sum()) < _FEWEST_ROWS:
             continue
         slope, level = _polynomial(t[after], values[after], 1)
