@@ -51,6 +51,12 @@ VARIANTS += [  # what the catalogue has got of the causes near to it
     if cause in CATALOGUE
     for size in sizes
 ]
+WAVE = {"cosine_mm": 0.03, "second_sine": 0.3, "second_cosine": -0.2}
+VARIANTS += [
+    ("drive_ripple", WAVE | {"sine_mm": 0.04, "period_mm": 2.0}),
+    ("load_ripple", WAVE | {"sine_mm": -0.4, "period_mm": 8.0}),
+    ("position_sensor_ripple", WAVE | {"sine_mm": 0.05, "period_mm": 5.0}),
+]
 
 
 def of_the_rig(rig, sensors):

@@ -11,6 +11,7 @@ import numpy as np
 
 from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl
+from tsas_studies.challenge.rig.eccentric import eccentric
 from tsas_studies.challenge.rig.motions import Floats
 
 PRESLIDING_MM = 1e-4
@@ -23,10 +24,13 @@ class DriveEnd:
 
     # Backlash between the position sensor and the tendon, which starts in its middle.
     play_mm: float = 0.0
-    # The gear turns unevenly: sine · sin(2πx/period) + cosine · (cos(2πx/period) − 1) is added.
+    # The gear turns unevenly: sine · sin(2πx/period) + cosine · (cos(2πx/period) − 1) is added, and
+    # the second harmonic, shares of the first.
     ripple_sine_mm: float = 0.0
     ripple_cosine_mm: float = 0.0
     ripple_period_mm: float = 0.7095
+    ripple_second_sine: float = 0.0
+    ripple_second_cosine: float = 0.0
     compliance_mm_per_N: float = 0.0  # between the force sensor and the free tendon, in series
     spring_N_per_mm: float = 0.0  # stiffness of a spring from the tendon's end to ground
     friction_N: float = 0.0  # of the drive, felt by the force sensor
@@ -42,8 +46,9 @@ class DriveEnd:
 
 def tendon_end(end: DriveEnd, x_in: Floats) -> Floats:
     """Return where the tendon's end is [mm] for each position of the drive, shape (m,)."""
-    turn = 2.0 * np.pi * x_in / end.ripple_period_mm
-    ripple = end.ripple_sine_mm * np.sin(turn) + end.ripple_cosine_mm * (np.cos(turn) - 1.0)
+    first = complex(end.ripple_cosine_mm, -end.ripple_sine_mm)
+    second = complex(end.ripple_second_cosine, -end.ripple_second_sine)
+    ripple, _ = eccentric(x_in, first, second, end.ripple_period_mm)
     return followed(x_in + ripple, end.play_mm)
 
 

@@ -13,7 +13,11 @@ from tsas_studies.challenge.rig.unknowns import UNKNOWNS, Place, places
 Parameters = Mapping[str, Any]
 Record = TypeVar("Record", Rig, Sensors)
 
+HARMONIC = ("second_sine", "second_cosine")
 RIPPLE = {f"{name}_mm": f"ripple_{name}_mm" for name in ("sine", "cosine", "period")}
+RIPPLE |= {name: f"ripple_{name}" for name in HARMONIC}
+WAVE = {"sine_mm": "wave", "cosine_mm": "wave_cosine", "period_mm": "wave_period"}
+WAVE |= {name: f"wave_{name}" for name in HARMONIC}
 
 # Every effect of the catalogue, with its parameters' names and units there. A place that begins
 # with a channel is an option of that sensor, any other one of the rig.
@@ -102,9 +106,7 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "f_in_of_f_out": ("f_in_of_f_out",),
         "f_out_of_f_in": ("f_out_of_f_in",),
     },
-    "position_sensor_ripple": places(
-        "x_out_mm", sine_mm="wave", cosine_mm="wave_cosine", period_mm="wave_period"
-    ),
+    "position_sensor_ripple": places("x_out_mm", **WAVE),
     "sensor_lag": {
         "f_in_lag_s": ("f_in_transducer", "lag_s"),
         "f_out_lag_s": ("f_out_transducer", "lag_s"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
+from tsas_studies.challenge.rig.eccentric import eccentric
 
 
 class Restraint(NamedTuple):
@@ -26,10 +27,12 @@ class Restraint(NamedTuple):
     relaxing_share: float = 0.0
     relaxing_s: float = 1.0
     # An eccentric pulley: the spring is stretched by x + sine · sin(2πx/period) + cosine ·
-    # (cos(2πx/period) − 1).
+    # (cos(2πx/period) − 1), and by a second harmonic, shares of the first.
     ripple_sine_mm: float = 0.0
     ripple_cosine_mm: float = 0.0
     ripple_period_mm: float = 10.0
+    ripple_second_sine: float = 0.0
+    ripple_second_cosine: float = 0.0
     # The spring's anchor sits in a slot of this length: it slides where the spring's force exceeds
     # clamp_up_N, and back where it falls below clamp_down_N.
     clamp_play_mm: float = 0.0
@@ -64,10 +67,11 @@ def restrained(
     relaxing, kept = of.relaxing_share * k, _kept(h, of.relaxing_s)
     force += relaxing * (before.relaxing * exp(-h / of.relaxing_s) + dy * kept)
     slope += relaxing * kept
-    turn = 2.0 * np.pi / of.ripple_period_mm
-    sine, cosine = of.ripple_sine_mm, of.ripple_cosine_mm
-    force += k * (sine * np.sin(turn * y) + cosine * (np.cos(turn * y) - 1.0))
-    slope += k * turn * (sine * np.cos(turn * y) - cosine * np.sin(turn * y))
+    first = complex(of.ripple_cosine_mm, -of.ripple_sine_mm)
+    second = complex(of.ripple_second_cosine, -of.ripple_second_sine)
+    wave, steeper = eccentric(y, first, second, of.ripple_period_mm)
+    force += k * wave
+    slope += k * steeper
     anchor = _anchor(of, spring, before.anchor, y)
     force -= k * anchor
     if anchor != before.anchor and 0.0 < anchor < of.clamp_play_mm:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from tsas_studies.challenge.rig.courses import settled
+from tsas_studies.challenge.rig.eccentric import eccentric
 from tsas_studies.challenge.rig.motions import Floats
 from tsas_studies.challenge.rig.tendon import CleanRun
 from tsas_studies.challenge.rig.transducers import Transducer, transduced
@@ -31,12 +32,14 @@ class Sensor:
     jumps: tuple[tuple[float, float], ...] = ()
     gain_rate_per_s: float = 0.0  # at which the gain grows
     curvature: float = 0.0  # a scale that is bent: curvature × value² is added
-    # An eccentric scale: wave × sin(2π value / period + phase) is added, and a cosine that is zero
-    # at the origin and has no phase.
+    # An eccentric scale: wave × sin(2π value / period + phase) is added, and without a phase a
+    # cosine that is zero at the origin, and a second harmonic, shares of the first.
     wave: float = 0.0
     wave_period: float = 5.0
     wave_phase_rad: float = 0.0
     wave_cosine: float = 0.0
+    wave_second_sine: float = 0.0
+    wave_second_cosine: float = 0.0
 
 
 _POSITION, _FORCE = Sensor(noise=0.005, step=0.002), Sensor(noise=0.08, step=0.01)
@@ -125,9 +128,11 @@ def _systematic(true: Floats, sensor: Sensor, instants: Floats) -> Floats:
     off = np.array([0.0, *(by for _, by in sensor.jumps)])
     lost = off[np.searchsorted(at, instants, side="right")]
     gain = sensor.gain + sensor.gain_rate_per_s * instants
-    turn = 2.0 * np.pi * true / sensor.wave_period
-    wave = sensor.wave * np.sin(turn + sensor.wave_phase_rad)
-    wave += sensor.wave_cosine * (np.cos(turn) - 1.0)
+    wave = sensor.wave * np.sin(2.0 * np.pi * true / sensor.wave_period + sensor.wave_phase_rad)
+    if sensor.wave_phase_rad == 0.0:
+        first = complex(sensor.wave_cosine, -sensor.wave)
+        second = complex(sensor.wave_second_cosine, -sensor.wave_second_sine)
+        wave, _ = eccentric(true, first, second, sensor.wave_period)
     bent = sensor.curvature * true**2 + wave
     return np.asarray(gain * true + sensor.offset + drift + hum + lost + bent)
 
