@@ -61,6 +61,8 @@ def test_a_plausible_scatter_is_left_out_of_the_residual_and_a_large_one_less(sc
         ((0.0, 0.01, 0.02, 0.03), (0.0, 900.0, 300.0, 600.0), False),
         ((0.01, -0.01, 0.02, -0.02), (0.0, 300.0, 600.0, 900.0), False),
         ((0.0, 0.01, 0.02, 0.03), (0.0, 0.0, 0.0, 0.0), False),
+        ((0.0, 0.0, 0.0, 0.04), (0.2, 0.2, 0.2, 0.4), False),  # one run alone
+        ((0.0, 0.0, 0.04, 0.04), (0.2, 0.2, 0.4, 0.4), True),
     ],
 )
 def test_frictions_that_change_with_the_session_are_no_scatter(frictions, starts_s, in_line):

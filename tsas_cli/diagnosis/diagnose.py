@@ -136,6 +136,8 @@ def diagnose_runs(
         found = _concluded(proven_effects(find_effects(fits), step), base, step)
     except Ended:
         return _ended(fits, model, cannot_tell)
+    if fault is not None and found.verdict == "sufficient":
+        return _of_a_fault(fault, base)  # by a friction of its own, which a tolerance takes
     if fault is not None and found.unexplained:
         by_fault = _of_a_fault(fault, base)
         named = frozenset(cause.effect for cause in found.causes)

@@ -73,8 +73,11 @@ class Fits:
         """Return whether the frictions of the runs beside a set of effects are mere scatter."""
         if (names, mesh) not in self.in_line:
             session_s = np.array([run.run.session_s for run in self.bench.closed])
+            bends_rad = np.array([rig.total_bend_rad for rig in self.bench.rigs])
             trial = self.trial(names, on_mesh=mesh)
-            self.in_line[names, mesh] = is_in_line(trial, self.folds.run, session_s)
+            self.in_line[names, mesh] = any(
+                is_in_line(trial, self.folds.run, over) for over in (session_s, 1.0 / bends_rad)
+            )
         return not self.in_line[names, mesh]
 
     def gain(self, before: Names, after: Names) -> Reduction:

@@ -10,6 +10,7 @@ FRICTION = "friction_coefficient"
 PLAUSIBLE = 2.0  # standard deviations of a tolerance
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
 OF_A_LINE = 2  # frictions, that a line goes through
+EQUAL = 1e-3  # relative difference, within which a quantity is the same in two runs
 COINCIDENCE = 1e-3  # probability below which frictions in line are no coincidence
 
 
@@ -30,17 +31,21 @@ def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
     return trial.with_columns(names, columns, PLAUSIBLE)
 
 
-def is_in_line(trial: HypothesisFit, run: Indices, session_s: Floats) -> bool:
-    """Return whether the frictions of the runs change with the session, and are no scatter.
+def is_in_line(trial: HypothesisFit, run: Indices, over: Floats) -> bool:
+    """Return whether the frictions of the runs follow a quantity, and are no scatter.
 
-    `session_s` is the start of each run in the session [s], shape (runs,). They are where their
-    scatter about a line is too small for a coincidence (F test).
+    `over` is the quantity, of each run, shape (runs,): its start in the session, or the inverse of
+    its bend, which a friction follows that does not grow with it. They do where their scatter
+    about a line is too small for a coincidence (F test), and the line does not stand on one run,
+    whose bend may be stated wrong.
     """
     columns = friction_of_runs(trial, run)
-    if columns.shape[1] <= OF_A_LINE or np.ptp(session_s) == 0.0:
+    if columns.shape[1] <= OF_A_LINE:
+        return False
+    if any(np.ptp(np.delete(over, k)) <= EQUAL * np.abs(over).max() for k in range(over.size)):
         return False
     frictions = _left_of_frictions(trial, columns)
-    line = np.column_stack((np.ones(session_s.size), session_s / np.ptp(session_s)))
+    line = np.column_stack((np.ones(over.size), over / np.ptp(over)))
     fitted = line @ np.linalg.lstsq(line, frictions, rcond=None)[0]
     return _by_chance(fitted, frictions - fitted) < COINCIDENCE
 
