@@ -29,7 +29,7 @@ class Bench:
 
     def __init__(self, mean_squares, mesh=()):
         self.mean_squares, self.mesh = mean_squares, mesh
-        self.fits, self.closed = [], ()
+        self.fits, self.closed, self.rigs = [], (), ()
 
     def on_mesh(self, effects):
         return bool(set(effects) & set(self.mesh))
