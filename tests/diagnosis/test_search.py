@@ -12,7 +12,7 @@ from tsas_cli.diagnosis import rivals as rivals_module
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.fits import Fits
-from tsas_cli.diagnosis.rivals import _is_part_of_a_wave, exchanged, rivals_of
+from tsas_cli.diagnosis.rivals import exchanged, rivals_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
 
@@ -48,15 +48,15 @@ class Bench:
 
 
 @pytest.mark.parametrize(("period_mm", "part"), [(19.9, False), (20.1, True)])
-def test_a_wave_longer_than_the_strokes_is_no_rival(period_mm, part):
+def test_a_wave_longer_than_the_strokes_is_part_of_one(period_mm, part):
     drive = SimpleNamespace(values=np.array([-5.0, 15.0, 3.0]))
     run = SimpleNamespace(run=SimpleNamespace(conditioned={"x_in_mm": drive}))
     bench = SimpleNamespace(closed=[run])
     trial = SimpleNamespace(values=lambda: {"load_ripple.period_mm": period_mm})
-    assert _is_part_of_a_wave(bench, trial, "load_ripple") == part
-    assert not _is_part_of_a_wave(bench, trial, "load_spring_nonlinearity")
+    assert s._is_part_of_a_wave(bench, trial, OF["load_ripple"]) == part
+    assert not s._is_part_of_a_wave(bench, trial, OF["load_spring_nonlinearity"])
     by_force = SimpleNamespace(closed=[SimpleNamespace(run=SimpleNamespace(conditioned={}))])
-    assert not _is_part_of_a_wave(by_force, trial, "load_ripple")
+    assert not s._is_part_of_a_wave(by_force, trial, OF["load_ripple"])
 
 
 def evenly(trial, folds):

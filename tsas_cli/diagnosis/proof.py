@@ -130,9 +130,9 @@ def failures(
     ]
     sensors = [e for name, e in sizes.items() if effect in BOTH_SENSORS and not e.at_bound]
     both = [e.value for e in sensors]
-    near = len(both) == 2 and abs(np.ptp(both)) < ALIKE * abs(np.mean(both))
-    unsure = len(both) == 2 and not zero and all(e.holds(*both) for e in sensors)
-    if near or unsure:
+    apart, size = (np.ptp(both), abs(np.mean(both))) if len(both) == 2 else (math.inf, 0.0)
+    near, unsure = apart < ALIKE * size, not zero and all(e.holds(*both) for e in sensors)
+    if near or (unsure and apart < 2.0 * ALIKE * size):
         out.append(
             f"{'is' if near else 'may be'} the same for both sensors ({both[0]:.3g} and "
             f"{both[1]:.3g} {sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"

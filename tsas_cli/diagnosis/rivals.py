@@ -1,18 +1,12 @@
 """The effects that a search finds, exchanged for better or simpler ones, with their rivals."""
 
-import math
 from dataclasses import replace
-
-import numpy as np
 
 from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
-from tsas_cli.diagnosis.proof import BY_NAME
 from tsas_cli.diagnosis.search import add, significant_effects
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import Bench
-from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 
 MODEL_ERROR = 0.1  # of the squares that a wrong model leaves, by which two effects differ by chance
@@ -67,7 +61,7 @@ def rivals_of(
         if other in named or not found.convincing:
             continue
         trial = fits.trial(instead)
-        if not trial.solution.converged or _is_part_of_a_wave(fits.bench, trial, other):
+        if not trial.solution.converged:
             continue
         fits_worse = trial.mean_square > fits.trial(named).mean_square
         costs = LEAST_DIFFERENCE if fits_worse else LEAST_REDUCTION_PER_COMPLEXITY
@@ -75,17 +69,6 @@ def rivals_of(
         if not worse or (of_forms > 0.0 and fits.gain(fewer, instead).part > alike):
             out.append(other)
     return tuple(out)
-
-
-def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, name: str) -> bool:
-    """Return whether an effect is a wave whose period is longer than the strokes: any curve is."""
-    strokes = [
-        float(np.ptp(run.run.conditioned["x_in_mm"].values))
-        for run in bench.closed
-        if "x_in_mm" in run.run.conditioned
-    ]
-    periods = (f"{name}.{p.name}" for p in BY_NAME[name].parameters if p.period)
-    return any(trial.values()[period] > max(strokes, default=math.inf) for period in periods)
 
 
 def _parameters(fits: Fits, names: Names, name: str) -> int:

@@ -6,6 +6,7 @@ pairs are screened together, because effects of opposite sign mask each other. W
 model leaves noise alone, a first effect has to take more of it, or be more significant.
 """
 
+import math
 from itertools import combinations
 
 import numpy as np
@@ -18,6 +19,9 @@ from tsas_cli.diagnosis.evidence import (
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Names
 from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder_of
+from tsas_cli.effects import Effect
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.screening import least_part
 
 MOST_EFFECTS = 4
@@ -86,7 +90,8 @@ def sufficient(fits: Fits, names: Names, mesh: bool) -> float:
 def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reduction]]:
     """Return each further effect that passes screening, fitted, with its gain, best first.
 
-    `least` is the reduction of the mean square that the effects have to make.
+    `least` is the reduction of the mean square that the effects have to make. A wave that is longer
+    than the strokes is left out, since no name could be proven.
     """
     screened = fits.screen(names)
     part = max(least_part(screened), _least_part(fits, names, least))
@@ -96,8 +101,20 @@ def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reducti
     for s in candidates:
         together = names | {s.effect.name}
         fits.fit(names, together, s.initial)
-        found.append((s.effect.name, fits.gain(names, together)))
+        if not _is_part_of_a_wave(fits.bench, fits.trial(together), s.effect):
+            found.append((s.effect.name, fits.gain(names, together)))
     return sorted(found, key=lambda f: -f[1].part)
+
+
+def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, effect: Effect) -> bool:
+    """Return whether an effect is a wave whose period is longer than the strokes: any curve is."""
+    strokes = [
+        float(np.ptp(run.run.conditioned["x_in_mm"].values))
+        for run in bench.closed
+        if "x_in_mm" in run.run.conditioned
+    ]
+    periods = (f"{effect.name}.{p.name}" for p in effect.parameters if p.period)
+    return any(trial.values()[period] > max(strokes, default=math.inf) for period in periods)
 
 
 def _better(fits: Fits, names: Names) -> list[Names]:
