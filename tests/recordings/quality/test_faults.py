@@ -25,6 +25,13 @@ def codes(measured):
     return {code for code, _ in remarks(measured)}
 
 
+def test_a_force_that_falls_with_the_speed_before_a_reversal_is_not_clipped():
+    quiet = columns(Bench(noise_mm=0.0))
+    speed = np.gradient(quiet["x_in_mm"], quiet["time_s"])
+    noisy = columns(Bench(noise_N=0.3))
+    assert codes(noisy | {"f_in_N": noisy["f_in_N"] + 0.4 * speed}) == set()
+
+
 def changed(**columns_by_name):
     return GOOD | columns_by_name
 

@@ -58,6 +58,7 @@ _BEFORE, _LAST = (0.5, 0.8), 0.93  # shares of such a stroke
 _FOLLOWS = 0.3  # of the channel's span, that it changes by over a stroke at least
 _FLAT = 0.25  # slope at the end over that before
 _NEAR, _FEWEST_STROKES, _MOST_OF_THEM = 2.0, 2, 0.7
+_DEGREE = 5  # of the path over time in the second half of a stroke
 _STRAIGHT = 1.0 / 3.0  # of what is visible: the RMS about a line, twice the noise
 _CLIPPED_REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
 
@@ -155,17 +156,21 @@ def _end_of_stroke(
     flat = own[0] / slope < _FLAT and lacks > trial.visible(name) + 0.5 * (1.0 - _LAST) * abs(slope)
     straight = np.std(y[last] - np.polyval(own, share[last])) < _STRAIGHT * trial.visible(name)
     if flat and straight:
-        speed = np.gradient(x, trial.time_s[stroke.rows])
-        flat = not _follows_speed(share, speed, y, _STRAIGHT * trial.visible(name))
+        late = share > _BEFORE[0]
+        t, noise = trial.time_s[stroke.rows][late], _STRAIGHT * trial.visible(name)
+        flat = not _follows_speed(t, share[late], y[late], noise)
     return level, float(lacks), bool(flat and straight)
 
 
-def _follows_speed(share: Floats, speed: Floats, y: Floats, noise: float) -> bool:
-    """Return whether a line over place and speed fits the second half of a stroke to its end."""
-    late = share > _BEFORE[0]
-    terms = np.column_stack((np.ones(late.sum()), share[late], speed[late]))
-    left = y[late] - terms @ np.linalg.lstsq(terms, y[late], rcond=None)[0]
-    return bool(np.sqrt(np.mean(left[share[late] > _LAST] ** 2)) < noise)
+def _follows_speed(t: Floats, share: Floats, y: Floats, noise: float) -> bool:
+    """Return whether a line over place and speed fits the second half of a stroke to its end.
+
+    The speed is that of a polynomial, since differences of samples have the encoder's noise.
+    """
+    speed = np.polynomial.Polynomial.fit(t, share, _DEGREE).deriv()(t)
+    terms = np.column_stack((np.ones(t.size), share, speed))
+    left = y - terms @ np.linalg.lstsq(terms, y, rcond=None)[0]
+    return bool(np.sqrt(np.mean(left[share > _LAST] ** 2)) < noise)
 
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
