@@ -29,6 +29,7 @@ MOST_APART = 2.0  # factor between its sizes in the parts of a split; of right n
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 MOST_PARTS = 4  # of a split that a sentence lists
+HARMONIC = 0.1  # relative, of the ratio of two periods
 ALIKE = 0.1  # relative difference of two sensors' errors within which they are alike
 
 # What adds to both forces alike is something else: a law of friction μ(T + c) is the capstan's with
@@ -40,8 +41,6 @@ BOTH_SENSORS = {
     "force_sensor_tilt": "a force along the way of the tendon",
 }
 
-HARMONIC = 0.1  # relative, of the ratio of two periods
-
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
 
@@ -51,7 +50,7 @@ def may_be_of_the_law_of(effect: str, other: str) -> bool:
         e.name.partition("_sensor_")[0] if e.acts_on == "sensor" else e.acts_on
         for e in (BY_NAME[effect], BY_NAME[other])
     ]
-    wave = any(parameter.period for parameter in BY_NAME[effect].parameters)
+    wave = BY_NAME[effect].period is not None
     return places[0] == places[1] and (wave or BY_NAME[effect].acts_on == "sensor")
 
 

@@ -215,7 +215,7 @@ def _beside_a_wave(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCaus
             estimate.value
             for one in (cause, other)
             for estimate in one.parameters
-            if estimate.name.endswith("period_mm")
+            if estimate.name == BY_NAME[one.effect].period
         ]
         waves = len(periods) == 2 and other.gain_percent > cause.gain_percent
         if waves and is_harmonic(*periods):

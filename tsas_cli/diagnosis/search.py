@@ -108,13 +108,14 @@ def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reducti
 
 def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, effect: Effect) -> bool:
     """Return whether an effect is a wave whose period is longer than the strokes: any curve is."""
+    if effect.period is None:
+        return False
     strokes = [
         float(np.ptp(run.run.conditioned["x_in_mm"].values))
         for run in bench.closed
         if "x_in_mm" in run.run.conditioned
     ]
-    periods = (f"{effect.name}.{p.name}" for p in effect.parameters if p.period)
-    return any(trial.values()[period] > max(strokes, default=math.inf) for period in periods)
+    return trial.values()[effect.period] > max(strokes, default=math.inf)
 
 
 def _better(fits: Fits, names: Names) -> list[Names]:

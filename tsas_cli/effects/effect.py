@@ -51,6 +51,11 @@ class Effect:
         """The first sentence of the text."""
         return self.doc.partition("\n")[0]
 
+    @property
+    def period(self) -> str | None:
+        """The full name of the parameter that is the period of its wave; None if it is none."""
+        return next((f"{self.name}.{p.name}" for p in self.parameters if p.period), None)
+
 
 def shape(
     name: str,
