@@ -45,9 +45,14 @@ def is_in_line(trial: HypothesisFit, run: Indices, over: Floats) -> bool:
     if any(np.ptp(np.delete(over, k)) <= EQUAL * np.abs(over).max() for k in range(over.size)):
         return False
     frictions = _left_of_frictions(trial, columns)
-    line = np.column_stack((np.ones(over.size), over / np.ptp(over)))
-    fitted = line @ np.linalg.lstsq(line, frictions, rcond=None)[0]
+    fitted = on_a_line(over, frictions)
     return _by_chance(fitted, frictions - fitted) < COINCIDENCE
+
+
+def on_a_line(over: Floats, frictions: Floats) -> Floats:
+    """Return the frictions on the line over a quantity that fits them best, shape (runs,)."""
+    line = np.column_stack((np.ones(over.size), over / np.ptp(over)))
+    return np.asarray(line @ np.linalg.lstsq(line, frictions, rcond=None)[0])
 
 
 def _left_of_frictions(trial: HypothesisFit, columns: Floats) -> Floats:

@@ -7,9 +7,10 @@ import numpy as np
 
 from tsas_cli.diagnosis.faults.beside import Candidate
 from tsas_cli.diagnosis.faults.candidates import MOST_SCATTER
-from tsas_cli.diagnosis.friction_scatter import SCATTER
+from tsas_cli.diagnosis.friction_scatter import OF_A_LINE, SCATTER, on_a_line
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.against_data_sheet import SHEET
+from tsas_cli.identification.model import UNKNOWN_BEND_RAD
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.records.base import number_text
@@ -20,10 +21,7 @@ from tsas_cli.support.wording import listed
 REMEDY = "Correct it{} and diagnose again"
 STIFFER = "tendon-stiffness"
 PULLEYS = "a part that does not grow with the bend (pulley_friction), "
-LEAST_RUNS, LEAST_BENDS = (
-    3,
-    0.2,
-)  # by whose bends a friction is judged; their range over the largest
+LEAST_BENDS = 0.2  # range of the bends over the largest, by which a friction is judged
 IN_LINE = 0.1  # of the variance of the frictions, that a line over 1/bend leaves
 LEFT_OUT = ", or leave the run out with --runs,"
 
@@ -75,7 +73,7 @@ def differing(frictions: Floats, runs: Sequence[Run]) -> RecordingFault | None:
         return None
     order = np.argsort(frictions)
     said = [f"{100.0 * frictions[k]:+.0f} % (run {runs[k].id})" for k in (order[0], order[-1])]
-    bends_rad = np.array([run.total_bend_rad or 1.0 for run in runs])
+    bends_rad = np.array([run.total_bend_rad or UNKNOWN_BEND_RAD for run in runs])
     sentence = (
         f"Friction differs from run to run by {' to '.join(said)}, as by "
         + (PULLEYS if _falls_with(bends_rad, frictions) else "humidity, lubrication or wear, ")
@@ -86,11 +84,11 @@ def differing(frictions: Floats, runs: Sequence[Run]) -> RecordingFault | None:
 
 def _falls_with(bends_rad: Floats, frictions: Floats) -> bool:
     """Return whether friction per bend falls as where a part of it does not grow with the bend."""
-    if frictions.size < LEAST_RUNS or np.ptp(bends_rad) < LEAST_BENDS * bends_rad.max():
+    if frictions.size <= OF_A_LINE or np.ptp(bends_rad) < LEAST_BENDS * bends_rad.max():
         return False
-    slope, level = np.polyfit(1.0 / bends_rad, frictions, 1)
-    left = frictions - level - slope / bends_rad
-    return bool(slope > 0.0 and np.var(left) < IN_LINE * np.var(frictions))
+    fitted = on_a_line(1.0 / bends_rad, frictions)
+    falls = fitted[np.argmin(bends_rad)] > fitted[np.argmax(bends_rad)]
+    return bool(falls and np.var(frictions - fitted) < IN_LINE * np.var(frictions))
 
 
 def stiffer_tendon(ratio: float) -> RecordingFault:
