@@ -46,9 +46,14 @@ class DriveEnd:
 
 def tendon_end(end: DriveEnd, x_in: Floats) -> Floats:
     """Return where the tendon's end is [mm] for each position of the drive, shape (m,)."""
-    first = complex(end.ripple_cosine_mm, -end.ripple_sine_mm)
-    second = complex(end.ripple_second_cosine, -end.ripple_second_sine)
-    ripple, _ = eccentric(x_in, first, second, end.ripple_period_mm)
+    ripple, _ = eccentric(
+        x_in,
+        end.ripple_sine_mm,
+        end.ripple_cosine_mm,
+        end.ripple_period_mm,
+        end.ripple_second_sine,
+        end.ripple_second_cosine,
+    )
     return followed(x_in + ripple, end.play_mm)
 
 

@@ -67,9 +67,14 @@ def restrained(
     relaxing, kept = of.relaxing_share * k, _kept(h, of.relaxing_s)
     force += relaxing * (before.relaxing * exp(-h / of.relaxing_s) + dy * kept)
     slope += relaxing * kept
-    first = complex(of.ripple_cosine_mm, -of.ripple_sine_mm)
-    second = complex(of.ripple_second_cosine, -of.ripple_second_sine)
-    wave, steeper = eccentric(y, first, second, of.ripple_period_mm)
+    wave, steeper = eccentric(
+        y,
+        of.ripple_sine_mm,
+        of.ripple_cosine_mm,
+        of.ripple_period_mm,
+        of.ripple_second_sine,
+        of.ripple_second_cosine,
+    )
     force += k * wave
     slope += k * steeper
     anchor = _anchor(of, spring, before.anchor, y)

@@ -128,11 +128,18 @@ def _systematic(true: Floats, sensor: Sensor, instants: Floats) -> Floats:
     off = np.array([0.0, *(by for _, by in sensor.jumps)])
     lost = off[np.searchsorted(at, instants, side="right")]
     gain = sensor.gain + sensor.gain_rate_per_s * instants
-    wave = sensor.wave * np.sin(2.0 * np.pi * true / sensor.wave_period + sensor.wave_phase_rad)
     if sensor.wave_phase_rad == 0.0:
-        first = complex(sensor.wave_cosine, -sensor.wave)
-        second = complex(sensor.wave_second_cosine, -sensor.wave_second_sine)
-        wave, _ = eccentric(true, first, second, sensor.wave_period)
+        wave, _ = eccentric(
+            true,
+            sensor.wave,
+            sensor.wave_cosine,
+            sensor.wave_period,
+            sensor.wave_second_sine,
+            sensor.wave_second_cosine,
+        )
+    else:
+        turn = 2.0 * np.pi * true / sensor.wave_period
+        wave = sensor.wave * np.sin(turn + sensor.wave_phase_rad)
     bent = sensor.curvature * true**2 + wave
     return np.asarray(gain * true + sensor.offset + drift + hum + lost + bent)
 
