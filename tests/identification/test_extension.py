@@ -1,5 +1,7 @@
 """Which numbers a hypothesis frees, and where it needs a mesh."""
 
+import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -107,6 +109,16 @@ def bench(monkeypatch):
         return e.bench_of(FittedModel(problem, values, (0, 2), errors, Model(()), None, ()))
 
     return make
+
+
+def test_the_longest_stroke_is_the_widest_motion_of_a_run_by_displacement(bench):
+    def run(column, *values):
+        conditioned = {column: SimpleNamespace(values=np.array(values))}
+        return SimpleNamespace(run=SimpleNamespace(conditioned=conditioned))
+
+    runs = run("x_in_mm", -5.0, 15.0, 3.0), run("x_in_mm", 40.0, 50.0), run("f_in_N", 0.0, 90.0)
+    assert replace(bench(), closed=runs).longest_stroke_mm == 20.0
+    assert replace(bench(), closed=runs[2:]).longest_stroke_mm == math.inf
 
 
 def test_an_uneven_sheath_is_bent_by_a_twentieth_more_here_than_there(bench):

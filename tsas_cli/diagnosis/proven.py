@@ -1,6 +1,5 @@
 """The effects of a search that prove to be causes: tested, dropped one by one, fitted again."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -161,11 +160,10 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, last.tolerated)
     again = gain(fewer.squares, all_of_them.squares)
     zero = may_be_zero(name, moved, found.correlation[np.ix_(at, at)])
-    stroke_mm = float(np.ptp(signals["x_in_mm"])) if "x_in_mm" in signals else math.inf
     failed = failures(
         *(name, own, again, fewer, all_of_them),
         tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
-        stroke_mm=stroke_mm,
+        stroke_mm=judged.bench.longest_stroke_mm,
         zero=zero,
     )
     failed = (*failed, *_of_another_law(last, name))

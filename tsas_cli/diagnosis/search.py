@@ -6,7 +6,6 @@ pairs are screened together, because effects of opposite sign mask each other. W
 model leaves noise alone, a first effect has to take more of it, or be more significant.
 """
 
-import math
 from itertools import combinations
 
 import numpy as np
@@ -110,12 +109,7 @@ def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, effect: Effect) -> bo
     """Return whether an effect is a wave whose period is longer than the strokes: any curve is."""
     if effect.period is None:
         return False
-    strokes = [
-        float(np.ptp(run.run.conditioned["x_in_mm"].values))
-        for run in bench.closed
-        if "x_in_mm" in run.run.conditioned
-    ]
-    return trial.values()[effect.period] > max(strokes, default=math.inf)
+    return trial.values()[effect.period] > bench.longest_stroke_mm
 
 
 def _better(fits: Fits, names: Names) -> list[Names]:

@@ -1,5 +1,6 @@
 """The calibrated runs with effects freed: every hypothesis is fitted in the same way."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -140,6 +141,16 @@ class Bench:
     def channels(self) -> list[str]:
         """The compared channels, in a fixed order."""
         return sorted({name for run in self.closed for name in run.samples})
+
+    @property
+    def longest_stroke_mm(self) -> float:
+        """The longest way of the drive in a run, infinite where no displacement drives one."""
+        strokes = [
+            float(np.ptp(run.run.conditioned["x_in_mm"].values))
+            for run in self.closed
+            if "x_in_mm" in run.run.conditioned
+        ]
+        return max(strokes, default=math.inf)
 
     def errors_for(self, trial: HypothesisFit) -> tuple[RunErrors, ...]:
         """Return the residual functions of the runs for a trial's solver."""
