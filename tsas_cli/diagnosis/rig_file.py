@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
+from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.recordings.manifest import RigSheet, RunId, parse, read_toml
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.plausible import (
@@ -25,7 +26,6 @@ from tsas_cli.support.strict_table import StrictTable
 
 MOST_SAMPLES = 1_000_000  # of a run
 _ForceNoise = Annotated[float, plausible(1e-9, 1e6, "N")]
-OUTPUTS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
 class Sensors(StrictTable):
@@ -40,13 +40,13 @@ class Sensors(StrictTable):
     @model_validator(mode="after")
     def _measures(self) -> "Sensors":
         if not self.outputs:
-            raise ValueError(f"one of {', '.join(OUTPUTS)} is needed besides x_in_mm")
+            raise ValueError(f"one of {', '.join(CHANNELS)} is needed besides x_in_mm")
         return self
 
     @property
     def outputs(self) -> dict[str, float]:
         """The noise level of each recorded channel except the drive."""
-        noise = {name: getattr(self, name) for name in OUTPUTS}
+        noise = {name: getattr(self, name) for name in CHANNELS}
         return {name: sd for name, sd in noise.items() if sd is not None}
 
 
