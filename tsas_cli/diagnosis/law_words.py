@@ -7,6 +7,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.law import Law
 from tsas_cli.diagnosis.law_bench import CHANGES
+from tsas_cli.diagnosis.simple_forms import exponential, power, straight_line
 from tsas_cli.effects import LAWS
 from tsas_cli.effects.laws.drive_law import DriveLaw
 from tsas_cli.effects.laws.tendon_law import STARTS
@@ -143,13 +144,15 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         else:
             parts.append(f"friction changes f_in by {_two(high)} N after each reversal")
         parts[-1] += f", within {_two(within)} mm"
+        parts[-1] += exponential(travel, change)
         gap = _gap(name, value, float(np.mean(tensions)))
         parts[-1] += f", hardly over a gap of {_two(gap)} mm in its middle" if gap > 0.0 else ""
         parts += _over_speed(value, SPEED) if name == "drive_law" else []
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
-        parts.append(f"{subject} {_along(heights)} {unit} along the stroke")
+        form = straight_line(np.arange(KNOTS), heights)
+        parts.append(f"{subject} {_along(heights)} {unit} along the stroke{form}")
     yields = value.get("compliance_mm_per_N", 0.0)
     if yields * (tensions[1] - tensions[0]) > LEAST * max(high, span):
         parts.append(f"x_out yields by {_two(yields)} mm per N of f_out")
@@ -166,9 +169,11 @@ def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
         over = float(travel[np.flatnonzero(np.abs(share) > (1.0 - BUILT_UP) * largest)[-1]])
         parts.append(
             f"friction differs by {_two(size)} % after each reversal, over {_two(over)} mm"
+            + exponential(travel, share)
         )
     if np.ptp(heights) > LEAST * largest:
-        parts.append(f"friction changes {_along(100.0 * heights)} % along the stroke")
+        form = straight_line(np.arange(KNOTS), heights)
+        parts.append(f"friction changes {_along(100.0 * heights)} % along the stroke{form}")
     return parts
 
 
@@ -178,7 +183,9 @@ def _over_speed(value: Mapping[str, float], least: float) -> list[str]:
     if np.ptp(shares) <= least:
         return []
     ends = f"{_two(value['slow_mm_per_s'])} to {_two(value['fast_mm_per_s'])} mm/s"
-    return [f"friction changes {_along(100.0 * shares)} % from {ends}"]
+    speeds = np.geomspace(value["slow_mm_per_s"], value["fast_mm_per_s"], 3)
+    form = power(speeds, 1.0 + shares)
+    return [f"friction changes {_along(100.0 * shares)} % from {ends}{form}"]
 
 
 def _two(value: float) -> str:
