@@ -199,6 +199,33 @@ def test_a_smooth_motion_is_not_filtered_where_it_is_alike_in_all_parts_of_a_run
     assert "filtered" not in complaints({"time_s": time, **positions, **forces})
 
 
+def test_a_stroke_that_hardly_leaves_the_dead_band_is_not_clipped():
+    """The tension rises no further once the whole tendon slips against a soft load."""
+    time = np.arange(1200) / 100.0
+    x = 5.0 - 5.0 * np.cos(np.pi * time)
+    slipped = np.zeros(x.size)
+    for i in range(1, x.size):
+        slipped[i] = np.clip(slipped[i - 1], x[i] - 9.0, x[i])
+    noise = np.random.default_rng(3).standard_normal((2, x.size))
+    f_in = 20.0 + 3.0 * (x - slipped) + 0.02 * slipped + 0.05 * noise[0]
+    measured = {"time_s": time, "x_in_mm": x, "f_in_N": f_in}
+    moves = {"x_out_mm": 0.3 * slipped + 0.005 * noise[1]}
+    assert "clipped" not in complaints(measured | moves)
+    assert "clipped" in complaints(measured | {"x_out_mm": 0.3 * x + 0.005 * noise[1]})
+
+
+@pytest.mark.parametrize(("drops_for", "found"), [(0.03, False), (0.6, True)])
+def test_a_tension_that_falls_before_the_encoder_counts_does_not_hang_it(drops_for, found):
+    """At the end of a rest the drive moves within a count first; a sensor that hangs misses more."""
+    time = np.arange(800) / 100.0
+    noise = np.random.default_rng(4).standard_normal((2, time.size))
+    x = np.interp(time, [0.0, 3.0, 5.0, 6.0, 8.0], [0.0, 10.0, 10.0, 6.0, 14.0]) + 0.01 * noise[0]
+    x[300:500] = 10.0
+    f_in = np.interp(time, [0.0, 3.0, 5.0 - drops_for, 5.1, 8.0], [20.0, 60.0, 60.0, 40.0, 20.0])
+    measured = {"time_s": time, "x_in_mm": x, "f_in_N": f_in + 0.1 * noise[1]}
+    assert ("stuck" in complaints(measured)) is found
+
+
 def test_a_drive_that_hunts_within_a_count_is_not_stuck():
     """The tension follows what the encoder does not resolve."""
     time, x = by_steps(100.0, 1.5, [20.0, 8.0, 14.0, 0.0], damping=0.99)

@@ -58,6 +58,7 @@ _BEFORE, _LAST = (0.5, 0.8), 0.93  # shares of such a stroke
 _FOLLOWS = 0.3  # of the channel's span, that it changes by over a stroke at least
 _FLAT = 0.25  # slope at the end over that before
 _NEAR, _FEWEST_STROKES, _MOST_OF_THEM = 2.0, 2, 0.7
+_MOVES_LATE = 3.0  # times as far as before it moves what the drive sets into motion at last
 _DEGREE = 5  # of the path over time in the second half of a stroke
 _STRAIGHT = 1.0 / 3.0  # of what is visible: the RMS about a line, twice the noise
 _CLIPPED_REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
@@ -158,7 +159,10 @@ def _end_of_stroke(
     if flat and straight:
         late = share > _BEFORE[0]
         t, noise = trial.time_s[stroke.rows][late], _STRAIGHT * trial.visible(name)
-        flat = not _follows_speed(t, share[late], y[late], noise)
+        flat = not (
+            _follows_speed(t, share[late], y[late], noise)
+            or (name == "f_in_N" and _slips_last(trial, stroke.rows, share))
+        )
     return level, float(lacks), bool(flat and straight)
 
 
@@ -171,6 +175,21 @@ def _follows_speed(t: Floats, share: Floats, y: Floats, noise: float) -> bool:
     terms = np.column_stack((np.ones(t.size), share, speed))
     left = y - terms @ np.linalg.lstsq(terms, y, rcond=None)[0]
     return bool(np.sqrt(np.mean(left[share > _LAST] ** 2)) < noise)
+
+
+def _slips_last(trial: RunSignals, rows: slice, share: Floats) -> bool:
+    """Return whether the distal end moves at the end of a stroke alone.
+
+    The tendon slips there as a whole, so that the tension at the drive rises no further.
+    """
+    for name in ("x_out_mm", "f_out_N"):
+        if name in trial.channels and name != trial.prescribed:
+            y = trial.channels[name][rows]
+            ends = [float(np.nanmean(y[share > s][:_FEWEST_ROWS])) for s in _BEFORE]
+            before, late = abs(ends[1] - ends[0]), abs(float(y[-_FEWEST_ROWS:].mean()) - ends[1])
+            if late > max(trial.visible(name), _MOVES_LATE * before):
+                return True
+    return False
 
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
@@ -192,6 +211,7 @@ def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> b
 
 
 _FEWEST_UPDATES = 20
+_MARGIN = 0.1  # of the rows of a plateau, at either end
 _LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel
 
 
@@ -232,10 +252,14 @@ def _unchanging(severity: Severity, trial: RunSignals, name: str, rows: slice) -
 
 
 def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
-    values = trial.channels[name]
+    """Return whether another channel moves while this one does not change.
+
+    The ends of the time are left out: within a step of x_in the tension may have begun to move.
+    """
+    values, margin = trial.channels[name], int(_MARGIN * (rows.stop - rows.start))
     interior = trial.sizes[name].lowest < values[rows.start] < trial.sizes[name].highest
     for other in trial.references(name):
-        motion = trial.channels[other][rows]
+        motion = trial.channels[other][rows.start + margin : rows.stop - margin]
         motion = motion[np.isfinite(motion)]
         if motion.size < 2:
             continue
