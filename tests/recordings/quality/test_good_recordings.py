@@ -216,7 +216,7 @@ def test_a_stroke_that_hardly_leaves_the_dead_band_is_not_clipped():
 
 @pytest.mark.parametrize(("drops_for", "found"), [(0.03, False), (0.6, True)])
 def test_a_tension_that_falls_before_the_encoder_counts_does_not_hang_it(drops_for, found):
-    """At the end of a rest the drive moves within a count first; a sensor that hangs misses more."""
+    """A drive moves within a count at the end of a rest; a sensor that hangs misses more."""
     time = np.arange(800) / 100.0
     noise = np.random.default_rng(4).standard_normal((2, time.size))
     x = np.interp(time, [0.0, 3.0, 5.0, 6.0, 8.0], [0.0, 10.0, 10.0, 6.0, 14.0]) + 0.01 * noise[0]
