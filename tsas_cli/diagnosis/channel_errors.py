@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.extension import Bench
 
+FAR_OFF = 5.0  # of the noise floor; complete models of distal channels reach 2.2
 REVERSALS = 0.4  # error of the position of a reversal, in standard deviations of one sample
 
 
@@ -46,6 +47,14 @@ def channel_errors(
         least = min(max(min(attainable), noise), after[name])
         out[name] = HeldOutErrors(before[name], after[name], floor, least)
     return out
+
+
+def is_far_off(name: str, errors: HeldOutErrors) -> bool:
+    """Return whether a channel is further from the model than its noise floor explains.
+
+    A drive that hunts, or reverses within a count, moves f_in beyond it, and no distal channel.
+    """
+    return name != "f_in_N" and errors.rmse_after > FAR_OFF * errors.noise_floor
 
 
 def noise_floor(bench: Bench, name: str, slow: float) -> float:

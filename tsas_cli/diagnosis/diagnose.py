@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, is_far_off
 from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
 from tsas_cli.diagnosis.faults.words import (
@@ -204,9 +204,12 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     nominal = list(proven.estimates)
     if named:
         nominal = estimates_with_tolerances(judged, before, tolerances(bench, before)).estimates
-    complete = after.complete and not any(cause.law_differs for cause in causes)
+    errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
+    by_causes = channel_errors(bench, *errors, start, after)
+    only_noise = after.complete and not any(map(is_far_off, by_causes, by_causes.values()))
+    complete = only_noise and not any(cause.law_differs for cause in causes)
     law, whole = None, proven.whole if stand_ins else None
-    if not after.complete:
+    if not only_noise:
         unproven = None if whole is None else whole.judged.trial(whole.judged.named)
         law = describe(bench, final, predicted_folds(final, folds), step, unproven)
     if law is not None:  # one number of one name: before the law is after the causes
@@ -217,8 +220,6 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         complete=complete,
         described=law is not None,
     )
-    errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
-    by_causes = channel_errors(bench, *errors, start, after)
     fault = wandering(after) if verdict == "unexplained" else None
     if verdict == "sufficient":
         frictions = frictions_of(final, proven.tolerated, folds.run)

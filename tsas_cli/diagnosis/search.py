@@ -3,7 +3,8 @@
 Stepwise selection: one effect after the other is added while the best one is significant; after
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other. Where the nominal
-model leaves noise alone, a first effect has to take more of it, or be more significant.
+model leaves noise alone, a first effect has to take more of it, or be more significant; where it
+leaves less than is known of the noise, there is none.
 """
 
 from itertools import combinations
@@ -56,13 +57,18 @@ def _grown(fits: Fits, named: Names, before: frozenset[Names]) -> Names:
     return best if fits.gain(simple, best).beyond(LEAST_REDUCTION_PER_COMPLEXITY) else simple
 
 
+def held_out_mean_square(fits: Fits, names: Names) -> float:
+    """Return the mean square of the residuals with these effects on held-out data."""
+    squares = fits.held_out(names, scatter=fits.scatters(names, fits.bench.on_mesh(names)))
+    return float(squares.sum()) / fits.folds.block.size
+
+
 def is_quiet(fits: Fits, names: Names) -> bool:
     """Return whether noise alone, white or slow, is left with these effects."""
-    squares = fits.held_out(names, scatter=fits.scatters(names, fits.bench.on_mesh(names)))
-    mean_square = squares.sum() / fits.folds.block.size
+    mean_square = held_out_mean_square(fits, names)
     if mean_square < 1.0 + EXCESS_OF_COMPLETE_MODEL:
         return True
-    return bool(mean_square < 1.0 + MOST_SLOW and is_complete(fits, names))
+    return mean_square < 1.0 + MOST_SLOW and is_complete(fits, names)
 
 
 def is_complete(fits: Fits, names: Names) -> bool:
@@ -114,6 +120,8 @@ def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, effect: Effect) -> bo
 
 def _better(fits: Fits, names: Names) -> list[Names]:
     """Return the extended sets: with the simplest effect, and with the best if it differs."""
+    if not names and held_out_mean_square(fits, names) < 1.0:
+        return []
     fitted = add(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
     of_noise = not names and is_quiet(fits, names)
     singles = [
