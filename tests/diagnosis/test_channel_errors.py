@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.channel_errors import channel_errors, noise_floor
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, is_far_off, noise_floor
 from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 
 ROWS = 1000
@@ -33,6 +33,19 @@ def test_the_floor_has_white_noise_slow_noise_and_what_the_drive_does():
     drive = 0.1 * (0.4 * 2.0) ** 2  # of one sample in ten, by 0.4 standard deviations of it
     both = noise_floor(bench(run(2.0), run()), "f_in_N", 0.0)
     assert both == pytest.approx(math.sqrt(0.01 + 0.5 * drive))
+
+
+@pytest.mark.parametrize(
+    ("channel", "left", "far"),
+    [
+        ("f_out_N", 0.49, False),
+        ("f_out_N", 0.51, True),
+        ("x_out_mm", 0.51, True),
+        ("f_in_N", 9.0, False),
+    ],
+)
+def test_a_distal_channel_is_far_off_beyond_five_times_its_noise_floor(channel, left, far):
+    assert is_far_off(channel, HeldOutErrors(10.0, left, noise_floor=0.1, attainable=0.1)) is far
 
 
 def found(before, after, start, rest, slow=None):
