@@ -246,7 +246,7 @@ def test_what_its_parameters_cost_is_no_reason_against_a_rival(
 def test_of_noise_alone_a_first_effect_has_to_take_more(
     made, nothing, part, statistic, found, monkeypatch
 ):
-    """A tenth, or be more significant, and nothing below the noise; a fortieth where more is left."""
+    """A tenth, or be more significant; nothing below the noise; a fortieth where more is left."""
     fits = made({names(): nothing, names(A): nothing * (1.0 - part)})
     monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
     monkeypatch.setattr(s, "add", lambda *_: [(A, Reduction(part, statistic))])
