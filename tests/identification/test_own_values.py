@@ -61,3 +61,11 @@ def test_a_run_far_from_where_a_law_holds_is_brought_back_to_it(columns):
     own = own_values(law, columns, f_in_N=curve, x_in_mm=-100.0, x_out_mm=-100.0)
     assert own["x_in_zero_mm"] == pytest.approx(-100.0, abs=0.1)
     assert own["preload_N"] == pytest.approx(27.0, abs=0.3)
+
+
+def test_a_run_that_ends_before_its_first_full_slip_keeps_the_models_values(columns):
+    """Nothing of it enters a fit, from wherever that starts."""
+    short = {name: values[:25] for name, values in columns.items()}
+    law = model(**HEIGHTS | {"drive_law.low_mm": 0.0, "drive_law.high_mm": 20.0})
+    own = own_values(law, short)
+    assert {name: own[name] for name in VALUES} == VALUES

@@ -231,9 +231,10 @@ def with_own_values(model: Model, run: Prepared) -> Model:
         )
         for start in ((own, aligned.over(own)) if aligned.estimates else (own,))
     ]
-    if len(fits) == 1:
-        return fits[0].model
-    return min(fits, key=lambda fit: float(np.mean(residuals_with(fit, {}) ** 2))).model
+    with_samples = [fit for fit in fits if fit.problem.runs]
+    if len(with_samples) < 2:
+        return (with_samples or fits)[0].model
+    return min(with_samples, key=lambda fit: float(np.mean(residuals_with(fit, {}) ** 2))).model
 
 
 def _zeros_by_laws(model: Model, run: Prepared) -> Model:
