@@ -168,7 +168,7 @@ def test_everything_that_is_printed_is_in_the_json(changed, on_second):
         content = record_of(it)
         assert content.format == 1
         assert content.stage == "compare"
-        printed = {title: rows for title, _, rows in tables(it)}
+        printed = {title: rows for title, _, rows in tables(content)}
         assert len(printed["parameters"]) == len(content.parameters)
         assert len(printed["errors"]) == len(content.errors)
         friction = next(p for p in content.parameters if p.name == "friction_coefficient")

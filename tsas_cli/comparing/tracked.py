@@ -139,9 +139,9 @@ def _notes(
         yield "With one seed of noise nothing says how far the scores scatter: take `--seeds 10`."
 
 
-def tables(it: Tracks) -> list[Table]:
+def tables(record: TrackedComparison) -> list[Table]:
     """Return what the stage prints."""
-    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in it.record.settings]
+    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in record.settings]
     scores = [
         (
             one.controller,
@@ -152,7 +152,7 @@ def tables(it: Tracks) -> list[Table]:
             number_text(one.ratio),
             one.unit,
         )
-        for one in it.record.scores
+        for one in record.scores
     ]
     every: list[Table] = [
         ("what differs in the call", ("setting", "A", "B"), asked),
