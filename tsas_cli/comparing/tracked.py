@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tsas_cli.comparing.predictions import ratio_of
 from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import ComparedSide, ScorePair, Setting, TrackedComparison
@@ -109,7 +110,7 @@ def _score(a: TrackedResult, b: TrackedResult, score: str, unit: str) -> ScorePa
         unit=unit,
         a=first,
         b=second,
-        ratio=second.mean / first.mean if first.mean and second.mean is not None else None,
+        ratio=ratio_of(second.mean, first.mean),
     )
 
 
