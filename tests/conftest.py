@@ -174,3 +174,18 @@ def dataset(tmp_path: Path, manifest: Manifest, columns: dict[str, np.ndarray]) 
     folder.mkdir()
     write_dataset(folder, manifest, {"a": pa.table(columns)})
     return folder
+
+
+@pytest.fixture(scope="session")
+def calibrations(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two datasets with calibrations: 1 of the nominal rig, 2 of one with friction 0.15.
+
+    Beside them `again`, other recordings of the nominal rig. No test changes any of it.
+    """
+    from tests.comparing.made import NOMINAL, ROUGH, calibrated, recorded
+
+    root = tmp_path_factory.mktemp("calibrations")
+    calibrated(root, NOMINAL, seed=1)
+    calibrated(root, ROUGH, seed=2)
+    recorded(root / "again", NOMINAL, seed=3)
+    return root

@@ -1,4 +1,5 @@
 import json
+import os
 
 import pytest
 
@@ -39,3 +40,10 @@ def test_errors_are_one_line(refused_here, home, monkeypatch):
     said = refused_here("runs", "bend > 3")
     assert said.startswith("tsas: the query, character 1, at 'bend > 3': there is no column")
     refused_here("runs", "--paths", "--json")
+
+
+def test_without_duckdb_the_line_says_what_to_install(tsas, tmp_path):
+    (tmp_path / "duckdb.py").write_text("raise ImportError('hidden')")
+    found = tsas("runs", env=os.environ | {"PYTHONPATH": str(tmp_path)})
+    assert (found.returncode, found.stderr.count("\n")) == (2, 1)
+    assert "queries need the package duckdb; install tsas[catalogue]" in found.stderr

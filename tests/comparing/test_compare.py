@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import tomlkit
 
-from tests.comparing.made import NOMINAL, ROUGH, calibrated
+from tests.comparing.made import NOMINAL, calibrated
 from tsas_cli.comparing.compare import compare
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.stage import record_of, tables
@@ -19,12 +19,8 @@ CHANNELS = ["f_in_N", "f_out_N", "x_out_mm"]
 
 
 @pytest.fixture(scope="module")
-def root(tmp_path_factory):
-    """Two datasets, calibrated: seed 1 on the nominal rig, seed 2 with friction 0.15."""
-    root = tmp_path_factory.mktemp("compare")
-    calibrated(root, NOMINAL, seed=1)
-    calibrated(root, ROUGH, seed=2)
-    return root
+def root(calibrations):
+    return calibrations
 
 
 @pytest.fixture(scope="module")
@@ -172,7 +168,7 @@ def test_everything_that_is_printed_is_in_the_json(changed, on_second):
         content = record_of(it)
         assert content.format == 1
         assert content.stage == "compare"
-        printed = {title: rows for title, _, rows in tables(it)}
+        printed = {title: rows for title, _, rows in tables(content)}
         assert len(printed["parameters"]) == len(content.parameters)
         assert len(printed["errors"]) == len(content.errors)
         friction = next(p for p in content.parameters if p.name == "friction_coefficient")

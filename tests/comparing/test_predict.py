@@ -9,7 +9,7 @@ import pytest
 import tomlkit
 
 import tsas_cli as tsas
-from tests.comparing.made import NOMINAL, ROUGH, calibrated, recorded
+from tests.comparing.made import NOMINAL, ROUGH, recorded
 from tests.counted import Counted
 from tsas_cli.recordings.writing import columns_of
 
@@ -17,15 +17,11 @@ CHANNELS = ["f_in_N", "f_out_N", "x_out_mm"]
 
 
 @pytest.fixture(scope="module")
-def root(tmp_path_factory):
-    """Two calibrations, of the nominal rig and of one with friction 0.15; recordings of others."""
-    root = tmp_path_factory.mktemp("predict")
-    calibrated(root, NOMINAL, seed=1)
-    calibrated(root, ROUGH, seed=2)
-    recorded(root / "again", NOMINAL, seed=3)
-    recorded(root / "rough", ROUGH, seed=4)
-    recorded(root / "bent", replace(NOMINAL, total_bend_rad=1.5), seed=5)
-    return root
+def root(calibrations):
+    """Beside them recordings of other rigs."""
+    recorded(calibrations / "rough", ROUGH, seed=4)
+    recorded(calibrations / "bent", replace(NOMINAL, total_bend_rad=1.5), seed=5)
+    return calibrations
 
 
 @pytest.fixture(scope="module")

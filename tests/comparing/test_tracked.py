@@ -87,7 +87,7 @@ def test_another_plant_is_another_task(root, tmp_path):
 def test_everything_that_is_printed_is_in_the_json_whose_keys_are_documented(it):
     content = it.record
     assert set(content.content()) <= documented("compare.json")
-    printed = {title: rows for title, _, rows in tables(it)}
+    printed = {title: rows for title, _, rows in tables(content)}
     assert len(printed["scores"]) == len(content.scores) == 4
     assert len(printed["what differs in the call"]) == len(content.settings)
     assert content.scores[0].score == "rmse_N"

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from tests.drive.verdicts import manifest
 from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of, total_lag_s
 from tsas_cli.drive.fit import DriveTrial, quantities_of
 from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.recordings.manifest import Manifest
 
 VALUES = DriveValues(
     0.02, motor_lag_s=0.013, delay_s=0.02, natural_frequency_Hz=11.0, damping_ratio=0.3
@@ -66,19 +66,6 @@ def test_what_the_data_sheet_says_follows_from_it():
         assert (sheet.kinematic_gain is None) == (missing in (0, 1))
         assert (sheet.mass is None) == (missing in (0, 2))
         assert (sheet.stated_frequency is None) == (missing in (0, 2, 3))
-
-
-def manifest(bends=(3.0, 3.0), **rig):
-    sheet = {"load_stiffness_N_per_mm": 1.579, "friction_coefficient": 0.125} | rig
-    runs = [
-        {"id": f"r{k}", "file": f"runs/r{k}.parquet", "sha256": "0" * 64}
-        | ({} if bend is None else {"total_bend_rad": bend})
-        for k, bend in enumerate(bends)
-    ]
-    rig = {name: value for name, value in sheet.items() if value is not None}
-    return Manifest.model_validate(
-        {"format": 1, "name": "n", "kind": "measured", "rig": rig, "run": runs}
-    )
 
 
 def test_the_tendon_pulls_back_with_its_stiffness_in_contraction():

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from tests.drive.verdicts import manifest
 from tsas_cli.drive.estimates import DataSheet, drive_sheet
 from tsas_cli.drive.sentences import lead_notes
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.errors import InputError
 
 SHEET = DataSheet(27.1, 120.0, 0.1296, 2.3384)
@@ -70,17 +70,7 @@ def test_a_drive_that_yields_as_the_data_sheet_says_explains_its_lead():
     assert len(lead_notes(lead(1.2), DataSheet(27.1, 120.0, 0.13, None), pull_back(2.3))) == 1
 
 
-def manifest(**rig):
-    run = {"id": "a", "file": "a.parquet", "sha256": "0" * 64, "total_bend_rad": 3.14}
-    sheet = {
-        "turntable_radius_mm": 27.1,
-        "inertia_N_mm_s2": 0.13,
-        "load_stiffness_N_per_mm": 1.58,
-        "friction_coefficient": 0.125,
-    }
-    return Manifest.model_validate(
-        {"format": 1, "name": "d", "kind": "measured", "rig": sheet | rig, "run": [run]}
-    )
+SOUND = {"turntable_radius_mm": 27.1, "inertia_N_mm_s2": 0.13}
 
 
 @pytest.mark.parametrize(
@@ -99,8 +89,10 @@ def manifest(**rig):
 )
 def test_a_data_sheet_of_no_drive_is_refused(wrong, said):
     """Before, an overflow, a division by zero, and residuals of nan × the noise level."""
-    assert drive_sheet(manifest()).stated_frequency == pytest.approx(18.26, rel=1e-2)
+    assert drive_sheet(manifest((3.14,), **SOUND)).stated_frequency == pytest.approx(
+        18.26, rel=1e-2
+    )
     with pytest.raises(InputError) as stopped:
-        drive_sheet(manifest(**wrong))
+        drive_sheet(manifest((3.14,), **SOUND | wrong))
     assert said in stopped.value.line()
     assert "dataset.toml, rig" in stopped.value.line()

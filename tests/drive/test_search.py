@@ -19,11 +19,14 @@ BLOCKS = 20
 
 
 class MadeUp:
-    """A search whose mean squares are given by set of terms; it is its own fits."""
+    """A search whose mean squares are given by set of terms; it notes what is fitted and folded."""
 
     def __init__(self, squares, default=10.0, *, failed=()):
         self.given, self.default, self.failed = squares, default, failed
-        self.fits, self.fitted, self.bench = self, [], SimpleNamespace(runs="runs")
+        self.fitted, self.folded = [], []
+
+    def fold(self, best):
+        self.folded.append(best.terms)
 
     def held_out(self, names):
         return np.full(BLOCKS, float(self.given.get(names, self.default)))
@@ -69,21 +72,12 @@ def test_a_fit_that_did_not_converge_is_not_taken_where_another_did():
     assert ds.chosen(none, NOTHING) == terms("lag")
 
 
-@pytest.fixture
-def folded(monkeypatch):
-    """Let searches compare by the squares of made-up fits; note what gave the folds."""
-    by = []
-    monkeypatch.setattr(ds, "folds_by", lambda best, runs: by.append(best.terms))
-    monkeypatch.setattr(ds, "DriveSearch", lambda fits, folds: fits)
-    return by
-
-
-def test_with_the_gear_the_structure_is_chosen_again(folded):
+def test_with_the_gear_the_structure_is_chosen_again():
     """A lag imitates play: with play it is not needed, and the blocks are made anew."""
     squares = {terms("lag"): 4.0, terms("lag", "play"): 1.0, terms("play"): 1.001}
-    named, _ = ds.find_terms(MadeUp(squares))
-    assert named == terms("play")
-    assert folded == [NOTHING, terms("lag", "play")]
+    search = MadeUp(squares)
+    assert ds.find_terms(search) == terms("play")
+    assert search.folded == [NOTHING, terms("lag", "play")]
 
 
 def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():

@@ -1,9 +1,10 @@
-"""Verdicts on a drive that are made up, as several tests need them."""
+"""Verdicts on a drive and data sheets that are made up, as several tests need them."""
 
 from tsas_cli.drive.file import UNITS
 from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.records.base import Value
 from tsas_cli.records.diagnosis import HeldOut, RemainingResidual
 from tsas_cli.records.drive import DriveCause, DriveDiagnosis
@@ -48,4 +49,17 @@ def verdict(name, *causes, stated=False, unexplained=False, depends=()):
         remainder=RemainingResidual(
             unexplained=unexplained, depends_on=depends, share_percent=5.0, mean_square=1.44
         ),
+    )
+
+
+def manifest(bends=(3.0, 3.0), **rig):
+    sheet = {"load_stiffness_N_per_mm": 1.579, "friction_coefficient": 0.125} | rig
+    runs = [
+        {"id": f"r{k}", "file": f"runs/r{k}.parquet", "sha256": "0" * 64}
+        | ({} if bend is None else {"total_bend_rad": bend})
+        for k, bend in enumerate(bends)
+    ]
+    rig = {name: value for name, value in sheet.items() if value is not None}
+    return Manifest.model_validate(
+        {"format": 1, "name": "n", "kind": "measured", "rig": rig, "run": runs}
     )

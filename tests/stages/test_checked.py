@@ -50,12 +50,17 @@ def test_a_code_that_no_check_has_is_refused(pounds):
         tsas.calibrate(pounds, despite="unti")
 
 
+def held(columns, rows):
+    """Return a recording whose x_out is held for so many rows."""
+    x_out = columns["x_out_mm"]
+    return columns | {"x_out_mm": x_out[np.arange(x_out.size) // rows * rows]}
+
+
 def test_a_warning_is_an_error_where_most_runs_have_it(tmp_path):
     """A channel that is held for 20 rows: in one of two runs it may be the motion's."""
     good = recorded(RIG, 200.0)
-    held = good | {"x_out_mm": good["x_out_mm"][np.arange(good["x_out_mm"].size) // 20 * 20]}
-    for name, other, severity in (("one", good, "warning"), ("both", held, "error")):
-        folder = dataset_of(RIG, tmp_path / name, a=held, b=other)
+    for name, other, severity in (("one", good, "warning"), ("both", held(good, 20), "error")):
+        folder = dataset_of(RIG, tmp_path / name, a=held(good, 20), b=other)
         found = [one for one in tsas.check(folder).findings if one.code == "slow-channel"]
         assert {one.severity for one in found} == {severity}
         assert len(found) == (2 if name == "both" else 1)
@@ -72,22 +77,17 @@ def test_what_the_checks_warn_of_stands_in_the_result(tmp_path):
         assert [s.partition(":")[0] for s in said] == ["- The checks warn of run b"] * len(warned)
 
 
-def test_an_error_that_runs_share_is_said_once(tmp_path):
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (20, "Despite an error in run a and run b: x_out_mm changes only every 20"),
+        (40, "Despite an error in run a and run b (the first): x_out_mm changes only every 20"),
+    ],
+)
+def test_errors_of_one_kind_are_said_once(tmp_path, rows, said):
     good = recorded(RIG, 200.0)
-    held = good | {"x_out_mm": good["x_out_mm"][np.arange(good["x_out_mm"].size) // 20 * 20]}
-    folder = dataset_of(RIG, tmp_path / "data", a=held, b=held | {"f_in_N": held["f_in_N"] + 0.01})
-    said = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
-    (shared,) = (sentence for sentence in said if sentence.endswith("(`slow-channel`)."))
-    assert shared.startswith("Despite an error in run a and run b: x_out_mm changes only every 20")
-
-
-def test_errors_of_one_kind_are_said_once_with_the_first(tmp_path):
-    good = recorded(RIG, 200.0)
-    held = {
-        name: good | {"x_out_mm": good["x_out_mm"][np.arange(good["x_out_mm"].size) // k * k]}
-        for name, k in (("a", 20), ("b", 40))
-    }
-    folder = dataset_of(RIG, tmp_path / "data", **held)
-    said = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
-    (both,) = (sentence for sentence in said if sentence.endswith("(`slow-channel`)."))
-    assert "in run a and run b (the first): x_out_mm changes only every 20" in both
+    other = held(good, rows) | {"f_in_N": good["f_in_N"] + 0.01}
+    folder = dataset_of(RIG, tmp_path / "data", a=held(good, 20), b=other)
+    found = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
+    (both,) = (sentence for sentence in found if sentence.endswith("(`slow-channel`)."))
+    assert both.startswith(said)

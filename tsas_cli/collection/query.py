@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tsas_cli.collection.index import Index
 from tsas_cli.support.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:
     from duckdb import DuckDBPyConnection
+
+    from tsas_cli.collection.index import Index
 
 Result = TypeVar("Result")
 
@@ -123,7 +124,7 @@ def connected() -> "DuckDBPyConnection":
 
 def run_query(
     connection: "DuckDBPyConnection",
-    index: Index,
+    index: "Index",
     query: str,
     *,
     columns: Sequence[str],
@@ -188,7 +189,7 @@ def _not_too_long(connection: "DuckDBPyConnection", work: Callable[[], Result]) 
                 connection.interrupt()
 
 
-def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
+def _opened(connection: "DuckDBPyConnection", index: "Index") -> list[str]:
     """Create the table of all runs; return the problems of files.
 
     Afterwards the connection can read nothing else, neither files nor the index.
@@ -196,13 +197,9 @@ def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
     places = [(k, printable(root.as_posix())) for k, root in enumerate(index.roots)]
     connection.execute("CREATE TEMP TABLE places (root INTEGER, shown VARCHAR)")
     connection.executemany("INSERT INTO places VALUES (?, ?)", places)
-    if index.file is None:
-        connection.register("in_memory", index.table)
-        connection.execute("CREATE TEMP TABLE entries AS SELECT * FROM in_memory")
-        connection.unregister("in_memory")
-    else:
-        read = "CREATE TEMP TABLE entries AS SELECT * FROM read_parquet(?)"
-        connection.execute(read, [str(index.file)])
+    connection.register("index", index.table)
+    connection.execute("CREATE TEMP TABLE entries AS SELECT * FROM index")
+    connection.unregister("index")
     connection.execute(RUNS)
     problems = connection.execute(
         "SELECT folder, file, unnest(problems) FROM entries ORDER BY ALL"

@@ -15,7 +15,7 @@ import typer
 from tsas_cli.commands.completion import run_ids
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-from tsas_cli.support.stopping import asked_first
+from tsas_cli.support.stopping import EXIT_CODE, asked_first
 from tsas_cli.support.text_table import table_text
 
 if TYPE_CHECKING:
@@ -120,18 +120,27 @@ class Bar(Steps, logging.Handler):
 
 
 def run(
-    stage: Callable[..., Any], *, rrd: bool = False, quiet: bool, as_json: bool, **given: Any
+    stage: Callable[..., Any],
+    *,
+    rrd: bool = False,
+    endable: bool = False,
+    quiet: bool,
+    as_json: bool,
+    **given: Any,
 ) -> Any:
     """Return the result of a stage, called under a progress bar, after printing it.
 
     `given` are its arguments, by name as the command has them; those that are None were not asked
-    for. With `rrd` the stage also writes `stream.rrd`.
+    for. With `rrd` the stage also writes `stream.rrd`. A search, `endable`, that was ended before
+    it could decide has the exit code of a command that was stopped.
     """
     asked = {name: value for name, value in given.items() if value is not None}
     label = stage.__name__.replace("_", "-")
-    with progress(label, quiet=quiet) as step, with_stream(rrd, step):
+    with progress(label, quiet=quiet, endable=endable) as step, with_stream(rrd, step):
         result = stage(**asked, step=step)
     present(result, quiet=quiet, as_json=as_json)
+    if step.ended and result.verdict == "undecided":
+        raise typer.Exit(EXIT_CODE)
     return result
 
 

@@ -9,7 +9,6 @@ import typer
 import tsas_cli as tsas
 from tsas_cli.commands import common
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.stopping import EXIT_CODE
 
 
 def calibrate(
@@ -98,16 +97,7 @@ def diagnose(
     as_json: common.Json = False,
 ) -> None:
     """Locate the residuals of the simulation, name their cause, and fit the extended model."""
-    with (
-        common.progress("diagnose", quiet=quiet, endable=True) as step,
-        common.with_stream(rrd, step),
-    ):
-        result = tsas.diagnose(
-            dataset, out=out, model=model, runs=runs, despite=despite or (), force=force, step=step
-        )
-    common.present(result, quiet=quiet, as_json=as_json)
-    if step.ended and result.verdict == "undecided":
-        raise typer.Exit(EXIT_CODE)
+    common.run(tsas.diagnose, endable=True, **locals())
 
 
 def predict(

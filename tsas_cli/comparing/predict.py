@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from tsas_cli.comparing.predictions import ComparedRun, Predictions
+from tsas_cli.comparing.predictions import ComparedRun, Predictions, ratio_of
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.identification.fitted_to import FittedTo, departures, fitted_to, not_stated
 from tsas_cli.identification.model import Model
@@ -121,17 +121,13 @@ def _channels(
                 model=name,
                 unit=BY_NAME[channel].unit,
                 rmse=rmse,
-                share_percent=_ratio(rmse, span / 100.0),
-                normalised_residual=_ratio(rmse, noise),
-                ratio=_ratio(rmse, base),
+                share_percent=ratio_of(rmse, span / 100.0),
+                normalised_residual=ratio_of(rmse, noise),
+                ratio=ratio_of(rmse, base),
                 noise=noise,
                 repeatability=repeated.get(channel),
                 seen=models[name].has_seen(run.run.sha256.lower()),
             )
-
-
-def _ratio(value: float | None, of: float | None) -> float | None:
-    return value / of if value is not None and of else None
 
 
 def _range(run: str, model: str, here: FittedTo, fitted: FittedTo | None) -> RangeOfRun:

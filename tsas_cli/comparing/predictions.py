@@ -133,10 +133,15 @@ def error_rows(a: Side, b: Side, recordings: list[Both]) -> list[ErrorRow]:
                 noise=None if compared is None else compared.noise(name),
                 fitted_a=a.has_seen(both.digest),
                 fitted_b=b.has_seen(both.digest),
-                ratio=rmse_b / rmse_a if rmse_a and rmse_b is not None else None,
+                ratio=ratio_of(rmse_b, rmse_a),
             )
             rows.append(row)
     return rows
+
+
+def ratio_of(value: float | None, over: float | None) -> float | None:
+    """Return a ratio, None where one of both is not known, or nothing is below."""
+    return value / over if value is not None and over else None
 
 
 def channels(both: Both) -> list[str]:

@@ -90,33 +90,32 @@ def held_out(it: Comparison) -> list[HeldOutPair]:
     ]
 
 
-def tables(it: Comparison) -> list[Table]:
+def tables(record: ModelComparison) -> list[Table]:
     """Return what the stage prints."""
     sides = []
-    for name, side in it.sides.items():
-        source, read = side.source, side.recordings
-        known = "unknown" if source is None or read is None else f"{len(read)} of {source.name}"
-        verdict = side.diagnosis.verdict if side.diagnosis else ""
-        sides.append((name, side.kind, str(side.path), known, verdict))
+    for name, side in (("A", record.a), ("B", record.b)):
+        of = side.dataset
+        known = f"{len(of.recordings)} of {of.name}" if of and of.recordings is not None else ""
+        sides.append((name, side.kind, side.path, known or "unknown", side.verdict or ""))
     every: list[Table] = [
         ("sides", ("", "kind", "path", "recordings", "verdict"), sides),
         (
             "parameters",
             ("name", "run", "A [95 %]", "B [95 %]", "B − A [95 %]", "differs", "unit"),
-            [_row(pair) for pair in it.pairs],
+            [_row(pair) for pair in record.parameters],
         ),
-        ("effects", ("effect", "A", "B"), [(row.effect, row.a, row.b) for row in effects(it)]),
+        ("effects", ("effect", "A", "B"), [(row.effect, row.a, row.b) for row in record.effects]),
         (
             "errors",
             ("run", "channel", "RMSE A", "RMSE B", "B / A", "noise", "unit", "fitted to it"),
-            _errors(it),
+            _errors(record),
         ),
         (
             "error on held-out data",
             ("channel", "unit", "RMSE A", "RMSE B", "noise A", "noise B"),
             [
                 (pair.channel, pair.unit, *(number_text(value, ".4g") for value in values))
-                for pair in held_out(it)
+                for pair in record.held_out
                 for values in [(pair.rmse_a, pair.rmse_b, pair.noise_a, pair.noise_b)]
             ],
         ),
@@ -150,7 +149,7 @@ def differs(pair: ParameterPair) -> str:
     return "" if claim is None else "yes" if claim else "no"
 
 
-def _errors(it: Comparison) -> list[tuple[str, ...]]:
+def _errors(record: ModelComparison) -> list[tuple[str, ...]]:
     return [
         (
             shared_name(row.run_a, row.run_b),
@@ -162,5 +161,5 @@ def _errors(it: Comparison) -> list[tuple[str, ...]]:
             row.unit,
             ", ".join(name for name, seen in (("A", row.fitted_a), ("B", row.fitted_b)) if seen),
         )
-        for row in it.errors
+        for row in record.errors
     ]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tsas_cli.comparing.predictions import ratio_of
 from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import ComparedSide, ScorePair, Setting, TrackedComparison
@@ -109,7 +110,7 @@ def _score(a: TrackedResult, b: TrackedResult, score: str, unit: str) -> ScorePa
         unit=unit,
         a=first,
         b=second,
-        ratio=second.mean / first.mean if first.mean and second.mean is not None else None,
+        ratio=ratio_of(second.mean, first.mean),
     )
 
 
@@ -139,9 +140,9 @@ def _notes(
         yield "With one seed of noise nothing says how far the scores scatter: take `--seeds 10`."
 
 
-def tables(it: Tracks) -> list[Table]:
+def tables(record: TrackedComparison) -> list[Table]:
     """Return what the stage prints."""
-    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in it.record.settings]
+    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in record.settings]
     scores = [
         (
             one.controller,
@@ -152,7 +153,7 @@ def tables(it: Tracks) -> list[Table]:
             number_text(one.ratio),
             one.unit,
         )
-        for one in it.record.scores
+        for one in record.scores
     ]
     every: list[Table] = [
         ("what differs in the call", ("setting", "A", "B"), asked),

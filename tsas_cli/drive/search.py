@@ -39,17 +39,20 @@ ROUNDS = 3
 NOTHING: Terms = frozenset()
 
 
-@dataclass
-class DriveFits:
-    """The sets of terms that were fitted to one dataset so far, each once.
+@dataclass(eq=False)
+class DriveSearch:
+    """The sets of terms fitted to one dataset so far, each once, compared on held-out data.
 
-    A fit begins with those of the simpler sets that are there when it is first asked for.
+    A fit begins with those of the simpler sets that are there when it is first asked for. `squares`
+    caches the held-out ones by set, block by block of the folds.
     """
 
     bench: DriveBench
     step: Steps = NO_PROGRESS
     trials: dict[Terms, DriveTrial] = field(default_factory=dict)
     ahead: set[Terms] = field(default_factory=set)  # sets of terms that are known to be fitted
+    squares: dict[Terms, Floats] = field(default_factory=dict)
+    folds: Folds = field(init=False)
 
     def trial(self, terms: Terms) -> DriveTrial:
         """Return the fit of a set of terms, no worse than that of any simpler one known."""
@@ -72,23 +75,12 @@ class DriveFits:
         self.step.ahead(len(new))
         self.ahead |= new
 
-
-@dataclass(frozen=True, eq=False)
-class DriveSearch:
-    """Sets of terms compared on held-out data; `squares` caches theirs, block by block."""
-
-    fits: DriveFits
-    folds: Folds
-    squares: dict[Terms, Floats] = field(default_factory=dict)
-
-    @property
-    def bench(self) -> DriveBench:
-        """The runs that the terms are fitted to."""
-        return self.fits.bench
-
-    def trial(self, terms: Terms) -> DriveTrial:
-        """Return the fit of a set of terms."""
-        return self.fits.trial(terms)
+    def fold(self, best: DriveTrial) -> None:
+        """Hold out in blocks that outlast the memory of what a fit leaves, from now on."""
+        runs = self.bench.runs
+        ends = np.cumsum([int(run.counts.sum()) for run in runs])[:-1]
+        self.folds = drive_folds(runs, np.split(best.solution.residual, ends))
+        self.squares.clear()
 
     def held_out(self, terms: Terms) -> Floats:
         """Return the held-out squares of a set of terms, block by block."""
@@ -105,19 +97,17 @@ class DriveSearch:
         return float(self.held_out(terms).sum()) / self.folds.block.size
 
 
-def find_terms(fits: DriveFits) -> tuple[Terms, DriveSearch]:
-    """Return the terms that the recordings show, and the comparison that they were chosen in."""
-    best = min(fits.trials_of(structures()), key=lambda t: t.mean_square)
-    search = DriveSearch(fits, folds_by(best, fits.bench.runs))
+def find_terms(search: DriveSearch) -> Terms:
+    """Return the terms that the recordings show; the folds stay those that they were chosen by."""
+    search.fold(min(search.trials_of(structures()), key=lambda t: t.mean_square))
     named = chosen(search, NOTHING)
     for _ in range(ROUNDS):
         more = _with_gear(search, named)
         if more == named:
             break
-        # What is left now has a shorter memory: more blocks speak.
-        search = DriveSearch(fits, folds_by(fits.trial(more), fits.bench.runs))
+        search.fold(search.trial(more))  # what is left has a shorter memory: more blocks speak
         named = _without_idle_gear(search, chosen(search, more & frozenset(GEAR)))
-    return named, search
+    return named
 
 
 def structures(gear: Terms = NOTHING) -> list[Terms]:
@@ -129,7 +119,7 @@ def structures(gear: Terms = NOTHING) -> list[Terms]:
 def chosen(search: DriveSearch, gear: Terms) -> Terms:
     """Return the simplest structure that the best one does not surely beat."""
     every = structures(gear)
-    search.fits.trials_of(every)
+    search.trials_of(every)
     ended = [t for t in every if search.trial(t).solution.converged] or every
     best = min(ended, key=lambda t: float(search.held_out(t).sum()))
     return next(
@@ -159,7 +149,7 @@ def _with_gear(search: DriveSearch, named: Terms) -> Terms:
     if not left or search.mean_square(named) < 1.0 + EXCESS_OF_COMPLETE_MODEL:
         return named
     sets = [frozenset({g}) for g in left] + ([frozenset(left)] if len(left) > 1 else [])
-    search.fits.trials_of([named | s for s in sets])
+    search.trials_of([named | s for s in sets])
     found = [(s, search.gain(named, named | s)) for s in sets]
     good = [(s, g) for s, g in found if g.convincing]
     if not good:
@@ -176,12 +166,6 @@ def _without_idle_gear(search: DriveSearch, named: Terms) -> Terms:
         if not search.gain(named - {g}, named).convincing:
             return chosen(search, named & frozenset(GEAR) - {g})
     return named
-
-
-def folds_by(best: DriveTrial, runs: Sequence[DriveRun]) -> Folds:
-    """Return what is held out together; the blocks outlast the memory of what a fit leaves."""
-    sizes = [int(run.counts.sum()) for run in runs]
-    return drive_folds(runs, np.split(best.solution.residual, np.cumsum(sizes)[:-1]))
 
 
 def drive_folds(runs: Sequence[DriveRun], residuals: Sequence[Floats]) -> Folds:

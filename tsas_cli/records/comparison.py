@@ -128,6 +128,8 @@ class ComparisonFile(StageFile):
     stage: Literal["compare"] = "compare"
     findings: tuple[str, ...]
     notes: tuple[str, ...]
+    a: ComparedSide
+    b: ComparedSide
 
 
 class ModelComparison(ComparisonFile):
@@ -167,7 +169,5 @@ class ScorePair(Record):
 class TrackedComparison(ComparisonFile):
     """The content of `compare.json` of two folders of tracked runs."""
 
-    a: ComparedSide
-    b: ComparedSide
     settings: tuple[Setting, ...]
     scores: tuple[ScorePair, ...]

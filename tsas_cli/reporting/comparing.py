@@ -4,7 +4,7 @@ It is of two models, or of two folders of tracked runs.
 """
 
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -13,11 +13,10 @@ import numpy as np
 from tsas_cli.comparing import tracked
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.predictions import Both, channels
-from tsas_cli.comparing.sentences import findings, notes
-from tsas_cli.comparing.stage import differs, tables
+from tsas_cli.comparing.stage import differs, record_of, tables
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.writing import columns_of, result_file
-from tsas_cli.records.comparison import ParameterPair, shared_name
+from tsas_cli.records.comparison import ComparisonFile, ModelComparison, ParameterPair, shared_name
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, rendered, table_of
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
@@ -36,31 +35,32 @@ _VALUES = (
 
 def comparison_page(it: Comparison, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each section."""
+    record = record_of(it)
     return rendered(
         name="A and B, side by side",
         about=f"{it.a.path} and {it.b.path}",
-        summary=" ".join(findings(it)[:_SAID]) or "There is nothing that both sides hold.",
-        sections=_sections(it),
+        summary=" ".join(record.findings[:_SAID]) or "There is nothing that both sides hold.",
+        sections=_sections(it, record),
         advance=advance,
     )
 
 
-def _sections(it: Comparison) -> Iterator[Section]:
-    printed = {table[0]: table_of(*table) for table in tables(it)}
-    points = (*findings(it)[_SAID:], *notes(it))
+def _sections(it: Comparison, record: ModelComparison) -> Iterator[Section]:
+    printed = {table[0]: table_of(*table) for table in tables(record)}
+    points = (*record.findings[_SAID:], *record.notes)
     yield Section("sides", "What is compared", points=points, tables=(printed["sides"],))
     if "parameters" in printed:
         shown = tuple(_value_pictures(it))
         how = (_VALUES,) if it.tested else ()
         yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
     if "effects" in printed:
-        found = {name: side.diagnosis for name, side in it.sides.items()}
-        said = tuple(f"{name}: {one.reason}" for name, one in found.items() if one and one.reason)
+        reasons = {"A": record.a.reason, "B": record.b.reason}
+        said = tuple(f"{name}: {reason}" for name, reason in reasons.items() if reason)
         yield Section("effects", "Effects", said, tables=(printed["effects"],))
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
         held = "Each side is held to the recordings that it has read."
-        if it.on is not None:
-            held = f"Both models are simulated on the recordings of {it.on.manifest.name}."
+        if record.on is not None:
+            held = f"Both models are simulated on the recordings of {record.on.name}."
         ratio = "A ratio below 1 means that B is nearer to the measurement than A."
         yield Section(
             "errors", "Errors per run", (held, ratio)[: 1 + bool(it.shared)], tables=errors
@@ -69,33 +69,28 @@ def _sections(it: Comparison) -> Iterator[Section]:
         yield _maps(it)
     if it.shared:
         yield _residuals(it)
-    yield _repeat(it)
-
-
-def _repeat(it: Comparison) -> Section:
-    command = ["tsas", "compare", str(it.a.path), str(it.b.path)]
+    options: list[str] = []
     if it.on is not None:
-        command += ["--on", str(it.on.folder)]
+        options = ["--on", str(it.on.folder)]
         if it.on.chosen is not None:
-            command += ["--runs", ",".join(it.on.chosen)]
-    files = tuple(
-        (name, file, digest)
-        for name, side in it.sides.items()
-        for file, digest in side.files.items()
-    )
-    if it.on is not None:
-        files += tuple(("", file, digest) for file, digest in it.on.hashes().items())
-    return _repeated(command, files)
+            options += ["--runs", ",".join(it.on.chosen)]
+    yield _repeat(record, {} if record.on is None else record.on.hashes, options)
 
 
-def _repeated(command: Sequence[str], files: tuple[tuple[str, str, str], ...]) -> Section:
+def _repeat(
+    record: ComparisonFile, on: Mapping[str, str] = {}, options: Sequence[str] = ()
+) -> Section:
     """Return the command that makes the page, and the checksums of what both sides read."""
+    sides = {"A": record.a, "B": record.b}
+    files = [(name, *read) for name, side in sides.items() for read in side.files.items()]
+    files += [("", *read) for read in on.items()]
+    command = ["tsas", "compare", record.a.path, record.b.path, *options, "--out", "compared"]
     return Section(
         "repeat",
         "How to repeat it",
         ("This command makes the same page from the same files.",),
         tables=(table_of("Files read", ("side", "file", "SHA-256"), files),),
-        commands=(shlex.join([*command, "--out", "compared"]),),
+        commands=(shlex.join(command),),
     )
 
 
@@ -231,14 +226,12 @@ def tracked_page(it: tracked.Tracks, advance: Callable[[], None] = lambda: None)
 
 def _tracked_sections(it: tracked.Tracks) -> Iterator[Section]:
     sides = table_of("Folders", ("", "path"), [(n, str(p)) for n, p in it.paths.items()])
-    printed = [table_of(*table) for table in tracked.tables(it)]
+    printed = [table_of(*table) for table in tracked.tables(it.record)]
     yield Section("sides", "What is compared", points=it.record.notes, tables=(sides, *printed))
     if pictures := tuple(_error_pictures(it)):
         what = "Wanted less true force at the load, with the first seed of noise."
         yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
-    sides_read = {"A": it.record.a, "B": it.record.b}
-    files = tuple((n, *read) for n, side in sides_read.items() for read in side.files.items())
-    yield _repeated(["tsas", "compare", *map(str, it.paths.values())], files)
+    yield _repeat(it.record)
 
 
 def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:

@@ -49,9 +49,7 @@ def section(inputs: Inputs) -> Section | None:
         "Predicted, not fitted",
         (" ".join(prediction.notes[:1]),),
         points=(*prediction.findings, *prediction.notes[1:]),
-        tables=tuple(
-            table_of(caption, header, rows) for caption, header, rows in tables(prediction)
-        ),
+        tables=tuple(table_of(*table) for table in tables(prediction)),
         groups=groups,
         closing=(f"{left} more runs are in the table.",) if left > 0 else (),
     )

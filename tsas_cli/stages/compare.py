@@ -10,7 +10,7 @@ from tsas_cli.comparing.compare import compare as compare_sides
 from tsas_cli.comparing.tracked import Tracks, are_tracked, compare_tracked
 from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.records.comparison import ComparisonFile
+from tsas_cli.records.comparison import ModelComparison, TrackedComparison
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, file_of, path_of
 from tsas_cli.support.errors import InputError
@@ -22,14 +22,13 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 class CompareResult(Result):
     """What differs between A and B, and whether that is more than the uncertainty."""
 
-    record: ComparisonFile  # what `compare.json` holds
-    both: Comparison | Tracks  # models, or folders of tracked runs
+    record: ModelComparison | TrackedComparison  # what `compare.json` holds
 
     def tables(self) -> list[Table]:
         """Return the values, effects and errors of both sides."""
-        if isinstance(self.both, Tracks):
-            return tracked.tables(self.both)
-        return stage.tables(self.both)
+        if isinstance(self.record, TrackedComparison):
+            return tracked.tables(self.record)
+        return stage.tables(self.record)
 
     def sentences(self) -> list[str]:
         """Return what was found, and what limits it."""
@@ -90,11 +89,11 @@ def compare(
     path = path_of(out)
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
-        record: ComparisonFile = both.record if isinstance(both, Tracks) else stage.record_of(both)
+        record = both.record if isinstance(both, Tracks) else stage.record_of(both)
         if folder is not None:
             record.write(folder)
             (folder / "report.html").write_text(_page(both, step), encoding="utf-8")
-    return CompareResult(record.content(), path, record, both)
+    return CompareResult(record.content(), path, record)
 
 
 def _page(both: Comparison | Tracks, step: Steps) -> str:

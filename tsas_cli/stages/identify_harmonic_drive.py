@@ -5,8 +5,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from tsas_cli.drive import json as drive_json
 from tsas_cli.drive.diagnosis import diagnose_drive
 from tsas_cli.drive.estimates import drive_sheet, estimates_of
@@ -14,7 +12,7 @@ from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
 from tsas_cli.drive.json import tables
 from tsas_cli.drive.runs import drive_runs, frequency_response
-from tsas_cli.drive.search import DriveFits, DriveSearch, find_terms
+from tsas_cli.drive.search import DriveSearch, find_terms
 from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
@@ -125,12 +123,11 @@ def identify_harmonic_drive(
         prepared = drive_runs(counted.dataset, hold, counted.copied)
         step()
         seen, sheet = frequency_response(prepared), drive_sheet(data.manifest)
-        bench = DriveBench(prepared, seen, sheet.stated_frequency)
-        final, search = find_terms(DriveFits(bench, step))
+        search = DriveSearch(DriveBench(prepared, seen, sheet.stated_frequency), step)
+        final = find_terms(search)
         trial, folds = search.trial(final), search.folds
-        blocks = [folds.block[folds.run == k] for k in range(len(prepared))]
-        numbered = [np.unique(block, return_inverse=True)[1] for block in blocks]
-        fitted = estimates_of(trial, numbered, sheet, by_run=folds.by_run)
+        blocks = folds.blocks_of_runs(len(prepared))
+        fitted = estimates_of(trial, blocks, sheet, by_run=folds.by_run)
         nominal, found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, nominal)
         known = dict(fitted)

@@ -6,7 +6,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tsas_cli.collection.index import index_of
 from tsas_cli.collection.query import QueryResult, connected, run_query
 from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import at_least, listed, of_kind, paths_of
@@ -119,6 +118,8 @@ def runs(
         at_least(0, limit, "limit")
     shown, order = tuple(listed(columns)), tuple(listed(sort))
     with connected() as connection:
+        from tsas_cli.collection.index import index_of
+
         index = index_of([Path(folder) for folder in named], connection, step)
         found = run_query(connection, index, condition, columns=shown, sort=order, limit=limit)
     summary = heading("runs") | {

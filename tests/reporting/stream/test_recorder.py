@@ -15,7 +15,7 @@ from tsas_cli.support.errors import InputError
 
 TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912347])
 NS = [0, 1_000_000, 300_000_000, 1_234_567_891_235]
-LINE = ("run", "a", "f_in_N")
+LINE = "/run/a/f_in_N"
 
 
 def written(folder, times, values=(0.0, 1.0, 2.0, 3.0)):
@@ -65,7 +65,13 @@ def test_names_from_files_are_one_part_of_a_path_each(tmp_path):
     odd = ["<script>", "a/b", "a b ", "__x", "é+*", "tab\there", "+ /**"]
     with to_file(tmp_path / "s.rrd", "x") as recorder:
         for name in odd:
-            recorder.series(("run", name, "f"), times_of(TIME_S), np.arange(4.0), "f", 0x112233FF)
+            recorder.series(
+                rr.new_entity_path(["run", name, "f"]),
+                times_of(TIME_S),
+                np.arange(4.0),
+                "f",
+                0x112233FF,
+            )
     found = [path for path in read(tmp_path / "s.rrd") if path.startswith("/run/")]
     assert len(found) == len(odd)
     assert all(path.replace("\\/", "").count("/") == 3 for path in found)
@@ -88,7 +94,7 @@ def test_every_layout_is_an_application_of_its_own(tmp_path):
     for number, layout in enumerate(map(layout_with, ("one", "one", "two", "three"))):
         path = tmp_path / f"{number}.rrd"
         with to_file(path, "Prüfstand <1>", layout) as recorder:
-            recorder.static(("a",), rr.TextDocument("hi"))
+            recorder.static("a", rr.TextDocument("hi"))
         reader = RrdReader(path)
         (recording,), (blueprint,) = reader.recordings(), reader.blueprints()
         assert blueprint.application_id == recording.application_id

@@ -28,7 +28,7 @@ from tsas_cli.reporting.names import (
     role_of_phase,
 )
 from tsas_cli.reporting.numbers import as_printed
-from tsas_cli.reporting.stream.recorder import Entity, Recorder, path_of
+from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, X_IN, Channel, SeenRun
 from tsas_cli.reporting.tracking import runs as tracked
 from tsas_cli.support.arrays import Floats, Indices
@@ -77,7 +77,7 @@ class LoopPlane:
 
     recorder: Recorder
     run: SeenRun
-    entity: Entity
+    entity: str
     x: Axis
     y: Axis
     kept: Indices
@@ -111,8 +111,8 @@ class LoopPlane:
         shades = [dark(role_of_phase(p)) if p in PHASES else colour for p, _ in found]
         strips = [strip for _, strip in found]
         look = rr.LineStrips2D(strips, colors=shades, radii=-2.0 / order, draw_order=order)
-        self.recorder.static((*self.entity, key), look)
-        now = (*self.entity, key, "now")
+        self.recorder.static(f"{self.entity}/{key}", look)
+        now = f"{self.entity}/{key}/now"
         style = rr.Points2D.from_fields(
             colors=colour, radii=-6.0 / order**0.5, draw_order=order + 9.0
         )
@@ -132,17 +132,17 @@ class LoopPlane:
         lines += [[[at, 0.0], [at, TICK]] for at in at_x]
         lines += [[[-TICK, at], [0.0, at]] for at in at_y]
         look = rr.LineStrips2D(lines, colors=dark("muted"), radii=-0.6, draw_order=-1.0)
-        self.recorder.static((*self.entity, "axes"), look)
+        self.recorder.static(f"{self.entity}/axes", look)
         places = [*((at, 0.02) for at in at_x), *((-0.1, at - 0.04) for at in at_y)]
         places += [(0.5 * WIDTH, 0.14), (0.35 * WIDTH, -HEIGHT - 0.06)]
         labels = [*map(as_printed, (*across, *up)), x_label, y_label]
         names = rr.Points2D(places, labels=labels, colors=dark("ink"), radii=0.0, show_labels=True)
-        self.recorder.static((*self.entity, "names"), names)
+        self.recorder.static(f"{self.entity}/names", names)
 
 
-def series_of(run: SeenRun) -> dict[str, list[Entity]]:
+def series_of(run: SeenRun) -> dict[str, list[str]]:
     """Return the entities of all series, by the column that they are shown with."""
-    found: dict[str, list[Entity]] = {}
+    found: dict[str, list[str]] = {}
     for channel in run.channels:
         keys = (channel.key, *(source.key for source in channel.sources))
         found.setdefault(channel.quantity, []).extend(
@@ -153,7 +153,7 @@ def series_of(run: SeenRun) -> dict[str, list[Entity]]:
     return found
 
 
-def residuals_of(run: SeenRun) -> dict[str, list[Entity]]:
+def residuals_of(run: SeenRun) -> dict[str, list[str]]:
     """Return the entities of the residuals by column."""
     found = {
         channel.column: [
@@ -255,7 +255,7 @@ def view_of(run: SeenRun, channel: Channel, titled: str = "") -> rrb.View:
     name = f"{in_words(channel.column)} over displacement"
     return rrb.Spatial2DView(
         name=f"{titled}: {name}" if titled else name,
-        contents=f"+ {path_of(run.entity(channel.column, 'loop'))}/**",
+        contents=f"+ {run.entity(channel.column, 'loop')}/**",
         visual_bounds=_SEEN,
     )
 

@@ -16,13 +16,13 @@ from tsas_cli.reporting.stream.channels import (
     series_of,
     view_of,
 )
-from tsas_cli.reporting.stream.recorder import Entity, T, path_of
+from tsas_cli.reporting.stream.recorder import T
 from tsas_cli.reporting.stream.seen import MEASURED, WANTED, X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon import view_of_tendon
 
 Part = Container | View
 
-OVERVIEW = ("about", "overview")
+OVERVIEW = "/about/overview"
 ALL_RUNS = 12  # beyond which their loops are too small to be seen beside each other
 _ACROSS = 4
 _ORDER = ("f_in_N", "f_out_N", X_IN, "x_out_mm")  # what is looked at first
@@ -32,7 +32,7 @@ _LINKED = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)  # all show th
 
 def layout_of(runs: Sequence[SeenRun]) -> Blueprint:
     """Return the tabs; what was tracked opens on it, all else on the overview."""
-    words = rrb.TextDocumentView(name="Overview", contents=f"+ {path_of(OVERVIEW)}")
+    words = rrb.TextDocumentView(name="Overview", contents=f"+ {OVERVIEW}")
     beside = _by_run(runs, _run, last=_all_runs(runs))
     made = {
         "Overview": Horizontal(words, beside, column_shares=(1.0, 3.0)) if beside else words,
@@ -58,11 +58,11 @@ def layout_of(runs: Sequence[SeenRun]) -> Blueprint:
     )
 
 
-def series(name: str, entities: Sequence[Entity]) -> View:
+def series(name: str, entities: Sequence[str]) -> View:
     """Return series over time."""
     return rrb.TimeSeriesView(
         name=name,
-        contents=[f"+ {path_of(entity)}" for entity in entities],
+        contents=[f"+ {entity}" for entity in entities],
         axis_x=_LINKED,
         plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop),
     )
@@ -76,26 +76,28 @@ def _by_run(
     """Return a tab for each run that has something to show."""
     made = ((run.id, make(run)) for run in runs)
     parts: list[Part] = [Vertical(part, name=f"run {name}") for name, part in made if part]
-    parts += [] if last is None else [last]
-    if len(parts) == 1:
-        return parts[0]
-    return Tabs(*parts, active_tab=0) if parts else None
+    return _tabs(parts if last is None else [*parts, last])
+
+
+def _tabs(parts: Sequence[Part]) -> Part | None:
+    """Return parts as tabs, a single one as it is."""
+    if len(parts) > 1:
+        return Tabs(*parts, active_tab=0)
+    return parts[0] if parts else None
 
 
 def _run(run: SeenRun) -> Part | None:
     rows = _over_phases(run, series_of(run))
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
     if faults_of(run):
-        faults = f"+ {path_of(run.entity('faults'))}"
+        faults = f"+ {run.entity('faults')}"
         beside.append(rrb.TextLogView(name="faults", contents=faults))
     if rows is None or not beside:
         return rows
     return Horizontal(rows, Vertical(*beside), column_shares=(3.0, 2.0))
 
 
-def _over_phases(
-    run: SeenRun, shown: Mapping[str, Sequence[Entity]], what: str = ""
-) -> Part | None:
+def _over_phases(run: SeenRun, shown: Mapping[str, Sequence[str]], what: str = "") -> Part | None:
     """Return series under each other, and the phases below, where they are known."""
     columns = sorted(shown, key=lambda name: _ORDER.index(name) if name in _ORDER else 9)
     parts: list[Part] = [series(what + at_axis(column), shown[column]) for column in columns]
@@ -103,7 +105,7 @@ def _over_phases(
         return None
     shares = [_TALL] + [1.0] * (len(parts) - 1)
     if run.segments:
-        phases = f"+ {path_of(run.entity('phase'))}"
+        phases = f"+ {run.entity('phase')}"
         parts.append(rrb.StateTimelineView(name="phases", contents=phases, time_view=_LINKED))
         shares.append(_LANE)
     return Vertical(*parts, row_shares=shares)
@@ -126,10 +128,7 @@ def _tracking(runs: Sequence[SeenRun]) -> Part | None:
     for run in runs:
         if run.tracked is not None:
             conditions.setdefault(run.tracked.condition, []).append(run)
-    parts = [_condition(name, found) for name, found in conditions.items()]
-    if len(parts) <= 1:
-        return parts[0] if parts else None
-    return Tabs(*parts, active_tab=0)
+    return _tabs([_condition(name, found) for name, found in conditions.items()])
 
 
 def _condition(name: str, runs: Sequence[SeenRun]) -> Part:

@@ -1,14 +1,14 @@
 """What is recorded: components of entities that hold at all times, or that are others at each.
 
-An entity is named by its parts, `("run", "a", "f_in_N")`; names from files need no escaping. Rerun
-is strict here: columns of different lengths raise `ValueError`, else they would only be dropped.
-A recording goes into a file, or to a viewer while it is made.
+An entity is named by its path, in which names from files are escaped: `rr.new_entity_path`. Rerun
+is strict here: columns of different lengths raise `ValueError`, else they would only be dropped. A
+recording goes into a file, or to a viewer while it is made.
 """
 
 import atexit
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -27,7 +27,6 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 
 PATIENCE_S = 10.0  # in which a file grows, or is whole
-Entity = Sequence[str]
 T, SESSION = "t", "session"  # time within the run, and time of day
 SLOWEST_S = 10.0  # that a viewer or a disk may take for what it was sent
 ROWS = 8192  # of a series that are sent at a time
@@ -69,11 +68,6 @@ def times_of(time_s: Floats, started: datetime | None = None) -> Times:
     return Times(within, np.datetime64(started, "ns") + within)
 
 
-def path_of(entity: Entity) -> str:
-    """Return the path of an entity; what a part holds that is no plain letter is escaped."""
-    return rr.new_entity_path(list(entity))
-
-
 @dataclass(frozen=True)
 class Recorder:
     """Writes entities to one stream, which `to_file` or `to_viewer` opens."""
@@ -99,17 +93,17 @@ class Recorder:
                 remedy="is the disk full, or the viewer gone?",
             ) from error
 
-    def static(self, entity: Entity, look: rr.AsComponents) -> None:
+    def static(self, entity: str, look: rr.AsComponents) -> None:
         """Set components that hold at all times."""
-        self.stream.log(path_of(entity), look, static=True, strict=True)
+        self.stream.log(entity, look, static=True, strict=True)
 
-    def columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
+    def columns(self, entity: str, times: Times, columns: rr.ComponentColumnList) -> None:
         """Add components that are others at each time."""
-        self.stream.send_columns(path_of(entity), times.columns, columns, strict=True)
+        self.stream.send_columns(entity, times.columns, columns, strict=True)
 
     def series(
         self,
-        entity: Entity,
+        entity: str,
         times: Times,
         values: Floats,
         name: str,

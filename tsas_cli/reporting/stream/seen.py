@@ -4,6 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import rerun as rr
+
 from tsas_cli.recordings.columns import BY_NAME, TIME, nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
@@ -16,7 +18,7 @@ from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs, series_of, written_in
-from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
+from tsas_cli.reporting.stream.recorder import Times, times_of
 from tsas_cli.support.arrays import Floats
 
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
@@ -113,9 +115,9 @@ class SeenRun:
         """Return moments of the run [s] on the timelines."""
         return times_of(time_s, self.file.run.started)
 
-    def entity(self, *parts: str) -> Entity:
-        """Return the name of something that belongs to the run."""
-        return ("run", self.id, *parts)
+    def entity(self, *parts: str) -> str:
+        """Return the path of something that belongs to the run."""
+        return rr.new_entity_path(["run", self.id, *parts])
 
     def measured(self, column: str) -> Floats:
         """Return a column of the recording, shape (n,), NaN for gaps."""

@@ -27,7 +27,7 @@ from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisF
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import written_in
-from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times, path_of
+from tsas_cli.reporting.stream.recorder import Recorder, Times
 from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, TENSIONS, SeenRun, Source
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -110,7 +110,7 @@ def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
 
 def record_tendons(
     recorder: Recorder,
-    entity: Entity,
+    entity: str,
     times: Times,
     tendons: Mapping[Source, tuple[Rig, Frames]],
 ) -> None:
@@ -121,17 +121,17 @@ def record_tendons(
     low, high = float(np.nanmin(every)), float(np.nanmax(every))
     size = _size([rig for rig, _ in tendons.values()])
     for number, (source, (rig, frames)) in enumerate(tendons.items()):
-        mine, colour = (*entity, source.key), dark(source.role)
+        mine, colour = f"{entity}/{source.key}", dark(source.role)
         line = sheath_of(rig.sheath_length_mm, rig.total_bend_rad, frames.slip.shape[1])
         line[:, 1] += APART * size * number
         tension = np.nan_to_num(frames.tension_N)
         raised = np.broadcast_to(line, (*tension.shape, 3)).astype(np.float32)
         raised[..., 2] += TALL * size / high * tension
-        recorder.static((*mine, "tension"), rr.LineStrips3D.from_fields(colors=colour, radii=-1.5))
-        recorder.columns((*mine, "tension"), times, rr.LineStrips3D.columns(strips=raised))
+        recorder.static(f"{mine}/tension", rr.LineStrips3D.from_fields(colors=colour, radii=-1.5))
+        recorder.columns(f"{mine}/tension", times, rr.LineStrips3D.columns(strips=raised))
         text = f"{source.label}, {low:.3g} to {high:.3g} N"
         name = rr.Points3D([line[0]], labels=[text], colors=colour, radii=0.0, show_labels=True)
-        recorder.static((*mine, "name"), name)
+        recorder.static(f"{mine}/name", name)
         # A map that is even to the eye and never lost on black; colours as 0xRRGGBBAA.
         middles = 0.5 * (tension[:, 1:] + tension[:, :-1])
         share = 0.18 + 0.79 * (middles - low) / ((high - low) or 1.0)
@@ -139,11 +139,11 @@ def record_tendons(
         shades = packed[..., 0].astype(np.uint32)
         # The tendon in pieces, thick where they slip.
         pieces = np.stack((line[:-1], line[1:]), axis=1).astype(np.float32)
-        recorder.static((*mine, "tendon"), rr.LineStrips3D(pieces))
+        recorder.static(f"{mine}/tendon", rr.LineStrips3D(pieces))
         radii = size * np.where(np.isin(frames.slip, (1, -1)), THICK, THIN)
         columns = rr.LineStrips3D.columns(colors=shades.ravel(), radii=radii.ravel())
         counts = np.full(len(radii), len(pieces))
-        recorder.columns((*mine, "tendon"), times, columns.partition(counts))
+        recorder.columns(f"{mine}/tendon", times, columns.partition(counts))
         # The front where it runs, as a point on the tension.
         runs = (frames.front > 0.0) & (frames.front < 1.0)
         places = [
@@ -151,9 +151,9 @@ def record_tendons(
             for front, now in zip(frames.front[runs], raised[runs], strict=True)
         ]
         look = rr.Points3D.from_fields(colors=dark("ink"), radii=-6.0)
-        recorder.static((*mine, "front"), look)
+        recorder.static(f"{mine}/front", look)
         points = rr.Points3D.columns(positions=np.array(places).reshape(-1, 3))
-        recorder.columns((*mine, "front"), times, points.partition(runs.astype(np.int64)))
+        recorder.columns(f"{mine}/front", times, points.partition(runs.astype(np.int64)))
 
 
 def view_of_tendon(run: SeenRun) -> rrb.View | None:
@@ -169,7 +169,7 @@ def view_of_tendon(run: SeenRun) -> rrb.View | None:
     )
     return rrb.Spatial3DView(
         name="Tendon, and the tension along it",
-        contents=f"+ {path_of(run.entity('tendon'))}/**",
+        contents=f"+ {run.entity('tendon')}/**",
         eye_controls=eye,
         line_grid=False,
     )
