@@ -1,5 +1,6 @@
 """What the sensors read changes nothing of what the rig does: one solution serves them all."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -31,10 +32,31 @@ def test_the_solution_of_perfect_sensors_read_by_wrong_ones_is_the_prediction(no
 
 
 @pytest.mark.parametrize(
+    ("load", "own"),
+    [
+        ("force", r".*\.(f_out|settling|span).*"),
+        ("displacement", r"x_out.*|.*\.x_out.*|position_sensor_ripple.*"),
+    ],
+)
+def test_a_load_that_is_prescribed_needs_the_sensor_that_reads_it_and_no_other(load, own):
+    """f_in never, as long as the drive is given by its displacement."""
+    load_values = 20.0 + X_IN if load == "force" else 0.8 * X_IN
+    drive = replace(RUN, load=load, load_values=load_values)
+    rig, laws = with_values(GROUP_A, WRONG), {"drive_law.friction_1_N": 2.0}
+    kept = {n: v for n, v in WRONG.items() if re.fullmatch(own, n)}
+    mechanics = mechanics_of(with_values(rig, laws), drive)
+    assert mechanics == with_values(GROUP_A, kept)
+    again, whole = read(rig, drive, solve(mechanics, drive)), simulate(rig, drive)
+    for name in CHANNELS:
+        np.testing.assert_array_equal(getattr(again, name), getattr(whole, name))
+    wrong, perfect = (solve(each, drive).output for each in (rig, GROUP_A))
+    assert np.abs(wrong.f_in - perfect.f_in).max() > 1e-3
+
+
+@pytest.mark.parametrize(
     "drive",
     [
         replace(RUN, values=25.0 + X_IN, kind="force"),
-        replace(RUN, load="displacement", load_values=0.8 * X_IN),
         replace(RUN, values=6.0 + X_IN, start_f_in_N=36.0),
     ],
 )
