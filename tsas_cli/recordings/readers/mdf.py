@@ -1,10 +1,6 @@
 """ASAM MDF measurement files."""
 
-import gc
-import logging
 import struct
-import sys
-import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache, partial
@@ -43,7 +39,6 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     InputError: asammdf is not installed, or the file's blocks or samples exceed a limit.
     """
     asammdf = optional("asammdf", extra="mdf")
-    logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # our error repeats its log
     check_blocks(path)
     claimed = Expanded.of(path)
 
@@ -61,28 +56,21 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
         invalid = np.asarray(found.invalidation_bits, dtype=bool)
         return np.where(invalid, np.nan, floats(found.samples, name, path))
 
-    try:
-        with asammdf.MDF(path) as file:
-            columns = [
-                Column(
-                    channel.name,
-                    partial(values, channel.name, group, index),
-                    file.get_channel_unit(group=group, index=index),
-                    partial(lambda *at: signal(*at).timestamps, channel.name, group, index),
-                    _clock(file, group),
-                )
-                for group, content in enumerate(file.groups)
-                for index, channel in enumerate(content.channels)
-                if index != file.masters_db.get(group)
-            ]
-            header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
-            yield Offered(columns, header)
-    except Exception as error:  # the clean-up of half-made objects prints errors to stderr
-        hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
-        traceback.clear_frames(error.__traceback__)
-        gc.collect()
-        sys.unraisablehook = hook
-        raise
+    with asammdf.MDF(path) as file:
+        columns = [
+            Column(
+                channel.name,
+                partial(values, channel.name, group, index),
+                file.get_channel_unit(group=group, index=index),
+                partial(lambda *at: signal(*at).timestamps, channel.name, group, index),
+                _clock(file, group),
+            )
+            for group, content in enumerate(file.groups)
+            for index, channel in enumerate(content.channels)
+            if index != file.masters_db.get(group)
+        ]
+        header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
+        yield Offered(columns, header)
 
 
 def _clock(file: Any, group: int) -> str:
