@@ -91,19 +91,15 @@ def check_unpacked(path: Path) -> None:
     The declared size of a variable may be false, so a file that could be large is first unpacked in
     parts to count its bytes.
     """
-    claimed, expanded = Expanded.of(path), Expanded.of(path)
+    expanded = Expanded.of(path)
     if expanded.of_file * _MOST_PACKED <= limits.HARMLESS:
         return
     with path.open("rb") as stream:
         order = _ORDERS.get(stream.read(_HEADER)[-2:], "")
         for kind, size in _elements(stream, order):
-            declared = (
-                _declared_size(stream.read(min(size, _PART)), order) if kind == _PACKED else size
-            )
-            claimed.add(declared, what="unpacked")
-        claimed.fits()
-        for kind, size in _elements(stream, order):
-            for part in _parts(stream, size) if kind == _PACKED else (size,):
+            is_packed = kind == _PACKED
+            expanded.add(0 if is_packed else size, what="unpacked")
+            for part in _parts(stream, size) if is_packed else ():
                 expanded.grow(part, what="unpacked")
     expanded.fits()
 
@@ -117,15 +113,6 @@ def _elements(stream: BinaryIO, order: str) -> Iterator[tuple[int, int]]:
         end += _TAG + size
         yield kind, size
         stream.seek(end)
-
-
-def _declared_size(packed: bytes, order: str) -> int:
-    """Return the declared size of a packed variable [bytes]; 0 if it cannot be unpacked."""
-    try:
-        tag = zlib.decompressobj().decompress(packed, _TAG)
-    except zlib.error:
-        return 0
-    return int(struct.unpack(f"{order}II", tag)[1]) if len(tag) == _TAG else 0
 
 
 def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
