@@ -36,7 +36,7 @@ _FORMATS = (  # suffixes, reader, and what they are if its library crashes on da
     ((".csv", ".tsv", ".txt", ".dat", ".asc"), "delimited", ""),
     ((".mat",), "matlab", "a MATLAB file"),
     ((".mf4", ".mdf"), "mdf", "MDF"),
-    ((".json",), "json_table", ""),
+    ((".json", ".jsonl", ".ndjson"), "json_table", ""),
     ((".parquet",), "parquet", ""),
     ((".feather", ".arrow"), "feather", "Feather"),
     ((".npy", ".npz"), "numpy_file", "a NumPy file"),
@@ -50,7 +50,6 @@ _FORMATS = (  # suffixes, reader, and what they are if its library crashes on da
 _SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _CONVERTED = (  # the same, of files that are converted to one of the above
     (converted.PACKED, "converted", ""),
-    ((".jsonl", ".ndjson"), "json_table", ""),
     ((".lvm",), "labview", ""),
     (_SHEETS, "spreadsheet", "a spreadsheet"),
 )
