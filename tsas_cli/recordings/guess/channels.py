@@ -68,9 +68,7 @@ def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
     measured = [c for c in columns if not c.words.is_reference] or columns
     if len(measured) > 1:
         shown = ", ".join(c.shown for c in columns)
-        questions = {"source": f"which one: {shown}?"}
-        why, sources = ("several columns match",), tuple(c.source for c in columns)
-        return Proposed(name, {"source": QUESTION}, "open", why, questions, candidates=sources)
+        return _open(name, ("several columns match",), f"which one: {shown}?", columns)
     column = measured[0]
     entry, questions = with_unit(column, name)
     others = tuple(c.shown for c in columns if c is not column)

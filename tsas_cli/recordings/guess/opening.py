@@ -53,17 +53,13 @@ def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, s
         if (encoding := encoding_of(text)) in _ENCODINGS:
             required["encoding"] = (encoding, _ENCODINGS[encoding])
         required |= _preamble(path, required)
-    options = options_of(required)
-    listed = names(path, options)
+    listed = names(path, options_of(required))
     sources: dict[ColumnSource, str] = {  # by number where the name is empty or not unique
         name if name.strip("? ") and listed.count(name) == 1 else number: name
         for number, name in enumerate(listed, start=1)
     }
-    table, left_out = _all_or_each(path, options, list(sources))
-    if table is None:
-        required["resample"] = (True, "the channels have clocks of their own")
-        table, left_out = _all_or_each(path, options_of(required), list(sources), each=True)
-    if table is None or not table.columns:
+    table, left_out = _all_or_each(path, required, list(sources))
+    if not table.columns:
         why = "".join(f" ({reason})" for reason in list(left_out.values())[:1])
         raise InputError(f"holds no column of numbers{why}", where=path)
     rows = max(values.size for values in table.columns.values())
@@ -133,12 +129,13 @@ def _tried(reader: Callable[..., T], *arguments: Any) -> T | None:
 
 
 def _all_or_each(
-    path: Path, options: ReadOptions, sources: list[ColumnSource], *, each: bool = False
-) -> tuple[ColumnTable | None, dict[str, str]]:
+    path: Path, required: dict[str, tuple[Any, str]], sources: list[ColumnSource]
+) -> tuple[ColumnTable, dict[str, str]]:
     """Return all columns; or the readable ones, and the reason for each of the others.
 
-    None if every column is readable by itself but not all of them together.
+    Columns that are readable by themselves but not together require `resample`.
     """
+    options = options_of(required)
     if (every := _tried(read, path, options, sources)) is not None:
         return every, {}
     readable: set[ColumnSource] = set()
@@ -159,10 +156,9 @@ def _all_or_each(
         except InputError as error:
             if source != "time":
                 left_out[str(source)] = error.what
+    together = [s for s in sources if s in readable or (s == "time" and readable)]
     try:
-        together = [s for s in sources if s in readable or (s == "time" and readable)]
         return read(path, options, together), left_out
     except InputError:
-        if each:
-            raise
-        return None, {}
+        required["resample"] = (True, "the channels have clocks of their own")
+        return read(path, options_of(required), together), left_out
