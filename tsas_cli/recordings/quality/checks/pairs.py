@@ -9,24 +9,21 @@ from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
 
-# Each ratio, if a channel were in that unit.
-_TRAVEL = {
-    1 / 10: "x_out_mm looks like centimetre",
-    1 / 25.4: "x_out_mm looks like inch",
-    1 / 1000: "x_out_mm looks like metre",
-    10.0: "x_in_mm looks like centimetre",
-    25.4: "x_in_mm looks like inch",
-    1000.0: "x_in_mm looks like metre",
-    2.0: "x_in_mm looks like taken with the radius of a wheel for its diameter",
+_LENGTHS = {10.0: "centimetre", 25.4: "inch", 1000.0: "metre"}  # in mm
+_FORCES = {4.448: "pound-force", 9.807: "kilogram-force", 1000.0: "kilonewton"}  # in N
+
+
+def _ratios(lower: str, upper: str, units: Mapping[float, str]) -> dict[float, str]:
+    """Return what the ratio of two channels is if one of them is in another unit."""
+    return {1.0 / size: f"{upper} looks like {unit}" for size, unit in units.items()} | {
+        size: f"{lower} looks like {unit}" for size, unit in units.items()
+    }
+
+
+_TRAVEL = _ratios("x_in_mm", "x_out_mm", _LENGTHS) | {
+    2.0: "x_in_mm looks like taken with the radius of a wheel for its diameter"
 }
-_TENSION = {
-    1 / 4.448: "f_out_N looks like pound-force",
-    1 / 9.807: "f_out_N looks like kilogram-force",
-    1 / 1000: "f_out_N looks like kilonewton",
-    4.448: "f_in_N looks like pound-force",
-    9.807: "f_in_N looks like kilogram-force",
-    1000.0: "f_in_N looks like kilonewton",
-}
+_TENSION = _ratios("f_in_N", "f_out_N", _FORCES)
 _STIFFNESS = {
     1 / 4.448: "f_out_N looks like pound-force",
     1 / 5.710: "load_stiffness_N_per_mm looks like pound-force per inch",
@@ -36,9 +33,7 @@ _STIFFNESS = {
     "load's springs are stated",
     2.0: "x_out_mm looks like taken with the radius of a wheel for its diameter, or one of two "
     "springs is stated",
-    10.0: "x_out_mm looks like centimetre",
-    25.4: "x_out_mm looks like inch",
-    1000.0: "x_out_mm looks like metre",
+    **{size: f"x_out_mm looks like {unit}" for size, unit in _LENGTHS.items()},
 }
 _TWICE = 1.2  # factor within which x_in is taken for twice what it is
 _STRETCH = 10.0  # times what the whole tendon stretches by at the largest change of the tension
