@@ -141,7 +141,7 @@ def _key(key: str, value: Any, why: str) -> Iterator[str]:
 
 
 def _toml(value: Any) -> str:
-    return tomlkit.item(value).as_string()
+    return str(tomlkit.item(value).as_string())
 
 
 def _comment(text: str, *, indent: str = "") -> list[str]:

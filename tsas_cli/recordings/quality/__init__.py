@@ -107,9 +107,7 @@ def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     InputError: no run can be read.
     """
     of_runs = check_runs(dataset, step)
-    of_all = [
-        replace(one, code=check.code) for check in DATASET_CHECKS for one in check.find(dataset)
-    ]
+    of_all = [one for check in DATASET_CHECKS for one in check.results(dataset)]
     return Report.of((*of_runs.findings, *of_runs.not_checked, *of_all))
 
 
@@ -120,11 +118,7 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
 
     InputError: no run can be read.
     """
-    results: Results = [
-        replace(one, code=check.code)
-        for check in MANIFEST_CHECKS
-        for one in check.find(dataset.manifest)
-    ]
+    results = [one for check in MANIFEST_CHECKS for one in check.results(dataset.manifest)]
     failures = []
     step.doing("checks the recordings")
     step.ahead(len(dataset.runs))
@@ -135,8 +129,8 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
             else:
                 recording = read_recording(dataset.folder, run, strict=False)
                 trial = RunSignals(recording, dataset.manifest.rig)
-                found = {check.code: look(check, trial) for check in RUN_CHECKS}
-            results += [replace(o, code=code, run=run.id) for code, of in found.items() for o in of]
+                found = [one for check in RUN_CHECKS for one in look(check, trial)]
+            results += [replace(one, run=run.id) for one in found]
         except InputError as error:
             failures.append(error)
             said = error.line(), "restore the file or ingest again"
@@ -177,17 +171,17 @@ def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         missing = [name for name in check.needs if name not in trial.channels]
         if missing:
-            return [NotChecked(f"{' and '.join(missing)} not recorded")]
+            return [NotChecked(f"{' and '.join(missing)} not recorded", code=check.code)]
         for name in check.given:
             if not getattr(trial, name):
-                return [NotChecked(GIVEN[name])]
-        return list(check.find(trial))
+                return [NotChecked(GIVEN[name], code=check.code)]
+        return list(check.results(trial))
 
 
 def look_by_stretches(
     checks: Sequence[QualityCheck[RunSignals]], run: RunColumns, rig: RigSheet
-) -> dict[str, Results]:
-    """Return the results of the checks on a long run, by code."""
+) -> Results:
+    """Return the results of the checks on a long run."""
     overall, decimated = _overview(run)
     whole = RunSignals(Recording(run.run, decimated), rig, overall)
     # A decimated stroke has to have more rows than a stretch has strokes.
@@ -203,10 +197,11 @@ def look_by_stretches(
         for check in checks:
             if check.code in results:
                 results[check.code].append((there, look(check, trial)))
-    return {
-        check.code: _merged(results[check.code]) if check.code in results else look(check, whole)
+    found = [
+        _merged(results[check.code]) if check.code in results else look(check, whole)
         for check in checks
-    }
+    ]
+    return [one for of_check in found for one in of_check]
 
 
 def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:

@@ -1,7 +1,7 @@
 """Results of a check: what it found in a recording, or the reason why it does not apply."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Generic, Literal, TypeVar
 
 Severity = Literal["error", "warning", "note"]
@@ -56,3 +56,7 @@ class QualityCheck(Generic[Subject]):
     def code(self) -> str:
         """The name of the function, with hyphens."""
         return self.find.__name__.replace("_", "-")
+
+    def results(self, subject: Subject) -> Findings:
+        """Yield what it finds, under its code."""
+        return (replace(one, code=self.code) for one in self.find(subject))
