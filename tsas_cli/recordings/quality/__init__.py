@@ -20,7 +20,7 @@ from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, RigSheet
-from tsas_cli.recordings.pieces import known_columns, long_run, pieces
+from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.quality.checks import (
     clock,
     extremes,
@@ -191,7 +191,7 @@ def look_by_stretches(
         check.code: [] for check in checks if check.of_long not in decimatable
     }
     overlap = reading.MOST_ROWS // OVERLAP
-    for piece in pieces(run, known_columns(run), overlap=overlap, strict=False):
+    for piece in pieces(run, run.known, overlap=overlap, strict=False):
         trial = RunSignals(Recording(run.run, piece.columns), rig, overall, piece.start)
         there = f"rows {piece.start} to {piece.stop - 1}"
         for check in checks:
@@ -232,7 +232,7 @@ def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
 
 def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:
     """Return the properties of the whole run, and its columns decimated to the rows of a piece."""
-    names = known_columns(run)
+    names = run.known
     every = -(-run.rows // reading.MOST_ROWS)
     decimated: dict[str, list[Floats]] = {name: [] for name in names}
     valid: dict[str, list[Floats]] = {name: [] for name in names}
