@@ -123,7 +123,7 @@ def open_run(folder: Location, run: Run) -> RunColumns:
     path = folder / run.file
     opened = RunColumns(**vars(_opened(checked_file(folder, run), path)), run=run)
     _check_columns(opened.known, opened.file.schema_arrow.names, path)
-    if opened.rows < 2:
+    if 0 <= opened.rows < 2:  # a negative number is damage, which reading reports
         raise InputError(f"{opened.rows} rows", where=path, expected="at least two samples")
     return opened
 
