@@ -46,8 +46,15 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
         if name not in structs:
             raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
         content = content[name]
-    capture = find_capture(content, path)
-    if capture is not None:
+    found = {"": content} if _is_capture(content) else captures(content)
+    if len(found) > 1:
+        raise InputError(
+            f"holds {len(found)} captures: {', '.join(found)}",
+            where=path,
+            expected="one",
+            remedy='name it in the map: table = "…" under [read]',
+        )
+    for capture in found.values():
         yield channels_of(capture, path)
         return
     columns = list({column.name: column for column in _columns(content)}.values())
@@ -126,21 +133,6 @@ def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
             except zlib.error:  # the reader reports it
                 return
             content = packed.unconsumed_tail
-
-
-def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
-    """Return the struct that holds X and Y with data, or None; InputError: there are several."""
-    if _is_capture(content):
-        return content
-    found = captures(content)
-    if len(found) > 1:
-        raise InputError(
-            f"holds {len(found)} captures: {', '.join(found)}",
-            where=path,
-            expected="one",
-            remedy='name it in the map: table = "…" under [read]',
-        )
-    return next(iter(found.values()), None)
 
 
 def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:

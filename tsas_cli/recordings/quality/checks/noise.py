@@ -8,7 +8,6 @@ from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.support.arrays import Mask
 from tsas_cli.support.wording import count_of
 
 _ASIDE = 3  # neighbours on each side
@@ -220,15 +219,11 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
         return None
     stands_out = spectrum.power > _FALLS * top
     highest = float(spectrum.power[stands_out & spectrum.is_noise].max(initial=0.0))
-    noisy = stands_out & _up_from_here(spectrum.is_noise | ~stands_out)
+    or_below = spectrum.is_noise | ~stands_out
+    noisy = stands_out & np.logical_and.accumulate(or_below[::-1])[::-1]  # and in all bands above
     even = np.count_nonzero(noisy & (spectrum.power > highest / _EVEN))
     computed = rounding == 0.0 or top < _FLOOR * rounding
     if even < _FEWEST_BANDS[computed]:
         return None  # what is left of a smooth motion
     level = float(np.median(spectrum.power[noisy]))
     return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())
-
-
-def _up_from_here(of_bands: Mask) -> Mask:
-    """Return in which bands, and in all above, something holds, shape (bands,)."""
-    return np.logical_and.accumulate(of_bands[::-1])[::-1]
