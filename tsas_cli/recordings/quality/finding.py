@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Generic, Literal, TypeVar
 
 Severity = Literal["error", "warning", "note"]
@@ -24,6 +25,9 @@ class Finding:
     sentence: str
     remedy: str
     first_s: float | None = None
+
+
+error, warning = partial(Finding, "error"), partial(Finding, "warning")
 
 
 @dataclass(frozen=True)

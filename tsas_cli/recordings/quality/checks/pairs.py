@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
 
@@ -56,8 +56,7 @@ def unit(trial: RunSignals) -> Findings:
     """
     interval = trial.step_s
     if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
-        yield Finding(
-            "error",
+        yield error(
             "time_s",
             f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
             f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
@@ -78,8 +77,7 @@ def unit(trial: RunSignals) -> Findings:
     of_travel = [*_suspect_unit(travel, moves, _TRAVEL, 1.4), *_halved(trial, travel)]
     yield from of_travel
     if farther > _FARTHER and not of_travel:
-        yield Finding(
-            "warning",
+        yield warning(
             "x_out_mm",
             f"x_out_mm moves {farther:.3g} times as far as x_in_mm; a tendon moves its load less",
             "check unit and pulley radius of both; of a joint or a tip, the arm that moves it",
@@ -91,8 +89,7 @@ def unit(trial: RunSignals) -> Findings:
     suspected = list(_suspect_unit(stiffness, slope, _STIFFNESS, 1.1))
     yield from suspected
     if stiffness is not None and not suspected and not _as_stated(stiffness):
-        yield Finding(
-            "warning",
+        yield warning(
             None,
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
@@ -111,8 +108,7 @@ def _halved(trial: RunSignals, travel: float | None) -> Iterator[Finding]:
     stiffness_N = 1e3 * modulus * math.pi * diameter**2 / 4.0
     lost = (1.0 - travel) * trial.sizes["x_in_mm"].span
     if lost > _STRETCH * forces.span * length / stiffness_N:
-        yield Finding(
-            "error",
+        yield error(
             "x_in_mm",
             f"x_out_mm moves {travel:.4g} mm per mm of x_in_mm, and the tendon cannot stretch by "
             f"the {lost:.3g} mm that are lost; x_in_mm looks like taken with the diameter of a "
@@ -138,8 +134,7 @@ def _suspect_unit(
     nearest = min(likely, key=lambda factor: abs(math.log(ratio / factor)))
     if abs(math.log(ratio / nearest)) < math.log(tolerance):
         column = likely[nearest].split()[0]
-        yield Finding(
-            "error",
+        yield error(
             None if column.startswith("load") else column,
             f"{sentence.format(ratio)}; {likely[nearest]}",
             f"check the unit of {column} and set it at ingest",
@@ -213,8 +208,7 @@ def delay(trial: RunSignals) -> Findings:
     rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
     matters_s = max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
     if abs(mean) - half > matters_s:
-        yield Finding(
-            "warning",
+        yield warning(
             "f_out_N",
             f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
             f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
