@@ -1,7 +1,6 @@
 """JSON tables: rows, records or columns, at the top level or under a key."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,6 @@ from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 
 
-@contextmanager
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a JSON table.
 

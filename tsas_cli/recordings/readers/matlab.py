@@ -4,7 +4,6 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -30,7 +29,6 @@ _PART = 1 << 12
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-@contextmanager
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a MATLAB file.
 

@@ -2,7 +2,6 @@
 
 import struct
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -32,7 +31,6 @@ _KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master
 _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the channels of an MDF file, with those marked as invalid as NaN.
 
