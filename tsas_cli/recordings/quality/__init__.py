@@ -232,31 +232,21 @@ def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
 
 def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:
     """Return the properties of the whole run, and its columns decimated to the rows of a piece."""
-    names = run.known
     every = -(-run.rows // reading.MOST_ROWS)
-    decimated: dict[str, list[Floats]] = {name: [] for name in names}
-    valid: dict[str, list[Floats]] = {name: [] for name in names}
-    noise: dict[str, list[float]] = {name: [] for name in names}
-    ends: dict[str, list[float]] = {name: [] for name in names}
-    for piece in pieces(run, names, strict=False):
+    decimated: dict[str, list[Floats]] = {name: [] for name in run.known}
+    seen: dict[str, list[tuple[Floats, float, float, float]]] = {}
+    for piece in pieces(run, run.known, strict=False):
         for name, values in piece.columns.items():
             decimated[name].append(values[-piece.start % every :: every].copy())
             finite = values[np.isfinite(values)]
-            valid[name].append(finite[::every].copy())
-            if finite.size:
-                noise[name] += [sd for sd in [noise_sd(finite)] if not math.isnan(sd)]
-                ends[name] += [float(finite.min()), float(finite.max())]
-    seen = {
-        name: np.concatenate(parts) for name, parts in valid.items() if name != TIME and ends[name]
-    }
-    overall = {
-        name: Size(
-            float(np.median(noise[name])) if noise[name] else math.nan,
-            step_of(each),
-            span_of(each),
-            min(ends[name]),
-            max(ends[name]),
-        )
-        for name, each in seen.items()
-    }
+            if finite.size and name != TIME:
+                ends = float(finite.min()), float(finite.max())
+                part = finite[::every].copy(), noise_sd(finite), *ends
+                seen.setdefault(name, []).append(part)
+    overall = {}
+    for name, parts in seen.items():
+        valid, noise, lowest, highest = zip(*parts, strict=True)
+        each, known = np.concatenate(valid), [sd for sd in noise if not math.isnan(sd)]
+        middle = float(np.median(known)) if known else math.nan
+        overall[name] = Size(middle, step_of(each), span_of(each), min(lowest), max(highest))
     return overall, {name: np.concatenate(parts) for name, parts in decimated.items()}
