@@ -63,14 +63,11 @@ def unit(trial: RunSignals) -> Findings:
             "check the unit of time_s and set it at ingest",
         )
     tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
+    travel, farther = None, 0.0
     driven = trial.recording.run.load == "displacement"
-    travel = None
     if trial.strokes and not driven and "x_out_mm" in trial.channels:
         travel = _slope(trial, "x_in_mm", "x_out_mm")
-    x_in, x_out = (trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm"))
-    farther = 0.0
-    if x_in and x_out and trial.strokes and not driven:
-        farther = x_out.span / x_in.span
+        farther = trial.sizes["x_out_mm"].span / trial.sizes["x_in_mm"].span
     if travel is None and tension is None and stiffness is None and farther <= _FARTHER:
         yield NotChecked("no two channels whose sizes must agree were recorded and move")
     moves = "x_out_mm moves {:.4g} mm per mm of x_in_mm"
