@@ -217,11 +217,8 @@ def delay(trial: RunSignals) -> Findings:
 
 def _delay(trial: RunSignals, rows: slice) -> float:
     """Return the delay of f_out behind x_out in one cycle [s]; NaN if it is not identifiable."""
-    x, y, time = (
-        trial.channels["x_out_mm"][rows],
-        trial.channels["f_out_N"][rows],
-        trial.time_s[rows],
-    )
+    x, y = (trial.channels[name][rows] for name in ("x_out_mm", "f_out_N"))
+    time = trial.time_s[rows]
     valid = np.isfinite(x) & np.isfinite(y)
     width = max(int(valid.sum()) // _ROWS, 1)
     if valid.sum() < 2 * _ROWS or np.ptp(x[valid]) < 2.0 * trial.visible("x_out_mm"):
