@@ -177,11 +177,7 @@ def _missing_rows(trial: RunSignals) -> Iterator[Finding]:
 
 def _empty_cells(trial: RunSignals, name: str, empty: Mask) -> Finding:
     if empty.all() and (trial.overall is None or name not in trial.overall):
-        return error(
-            name,
-            f"{name} holds no value at all",
-            "leave the column out",
-        )
+        return error(name, f"{name} holds no value at all", "leave the column out")
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))
     starts, lengths = edges[::2], edges[1::2] - edges[::2]
     longest = int(np.argmax(lengths))
