@@ -179,19 +179,13 @@ def floats_of(table: pa.Table, name: str, path: Location, *, first_row: int = 0)
     InputError: it is not numeric, holds an infinite value, or lacks the time of a row.
     """
     values = floats_from(table.column(name))
-    if name == TIME and not np.isfinite(values).all():
-        row = int(np.flatnonzero(~np.isfinite(values))[0])
+    is_time = name == TIME
+    wrong = ~np.isfinite(values) if is_time else np.isinf(values)
+    if wrong.any():
         raise InputError(
-            "time_s is null or not finite",
-            where=f"{path}, row {first_row + row}",
-            expected="a time in s",
-        )
-    infinite = np.flatnonzero(np.isinf(values))
-    if infinite.size:
-        raise InputError(
-            f"{name} is infinite",
-            where=f"{path}, row {first_row + int(infinite[0])}",
-            expected="a number, or null for a gap",
+            "time_s is null or not finite" if is_time else f"{name} is infinite",
+            where=f"{path}, row {first_row + int(wrong.argmax())}",
+            expected="a time in s" if is_time else "a number, or null for a gap",
         )
     return values
 
