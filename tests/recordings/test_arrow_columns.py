@@ -16,6 +16,7 @@ from tsas_cli.recordings.writing import columns_of
 from tsas_cli.support.errors import InputError
 
 NAN = float("nan")
+DRIVE = {"time_s": [0.0, 1.0, 2.0], "x_in_mm": [0.0, 1.0, 2.0]}
 
 
 @pytest.mark.parametrize(
@@ -79,20 +80,22 @@ def test_columns_are_those_of_the_recording(dataset, columns):
 
 
 def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
-    table = {"time_s": [0.0, 1.0, 2.0], "f_in_N": [1.0, None, 3.0], "own": [7.0, 8.0, 9.0]}
-    run = rewritten(dataset, table | {"text": ["a", "b", "c"]})
-    assert run.names == ["time_s", "f_in_N", "own"]
+    table = {"f_in_N": [1.0, None, 3.0], "own": [7.0, 8.0, 9.0]}
+    run = rewritten(dataset, DRIVE | table | {"text": ["a", "b", "c"]})
+    assert run.names == ["time_s", "x_in_mm", "f_in_N", "own"]
     assert np.isnan(run.read("f_in_N")).tolist() == [False, True, False]
     assert run.read("own").tolist() == [7.0, 8.0, 9.0]
-    with pytest.raises(InputError, match="column text is missing; there are: time_s, f_in_N, own"):
+    with pytest.raises(
+        InputError, match="column text is missing; there are: time_s, x_in_mm, f_in_N, own"
+    ):
         run.read("text")
 
 
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ({"f_in_N": [1.0, 2.0]}, "time_s is missing"),
-        ({"time_s": [0.0], "f_in_N": [1.0]}, "short"),
+        ({"x_in_mm": [1.0], "f_in_N": [1.0]}, "time_s is missing"),
+        ({"time_s": [0.0], "x_in_mm": [1.0], "f_in_N": [1.0]}, "1 rows"),
     ],
 )
 def test_a_file_without_time_is_refused(dataset, table, message):
@@ -101,7 +104,7 @@ def test_a_file_without_time_is_refused(dataset, table, message):
 
 
 def test_time_that_runs_backwards_is_refused_when_it_is_read(dataset):
-    run = rewritten(dataset, {"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]})
+    run = rewritten(dataset, DRIVE | {"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]})
     with pytest.raises(InputError, match="row 2: time_s does not increase"):
         run.read("time_s")
 

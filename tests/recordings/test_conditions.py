@@ -1,9 +1,13 @@
 import math
+import re
+import signal
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from tsas_cli.recordings.ingest_map import RunMap, run_conditions
+from tsas_cli.recordings.ingest_map import RunMap, at_most, run_conditions
 from tsas_cli.support.errors import InputError
 
 PATH = Path("/rig/L_4/bend180_0,5Hz.csv")
@@ -96,3 +100,23 @@ def test_a_pattern_that_would_look_for_ever_is_given_up(monkeypatch):
         InputError, match=r"has not finished searching .rig/a+. after 0.2 s; nested"
     ):
         conditions(path=Path(f"/rig/{'a' * 40}"), from_file_name=endless)
+
+
+def test_what_is_late_is_ended_and_what_is_not_goes_on():
+    before = signal.getsignal(signal.SIGALRM)
+    with pytest.raises(TimeoutError), at_most(0.05):
+        re.search("(a|aa)+b", 99 * "a")
+    with at_most(1.0):
+        pass
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+    assert signal.getsignal(signal.SIGALRM) == before
+
+
+def test_beside_the_main_thread_there_is_no_limit():
+    def work():
+        with at_most(0.01):
+            time.sleep(0.05)
+            return True
+
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(work).result()

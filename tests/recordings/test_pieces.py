@@ -29,7 +29,7 @@ def test_every_row_is_read_and_a_small_part_is_held(dataset, monkeypatch):
 def test_a_value_that_no_rig_has_is_named_with_its_row_in_the_run(dataset, monkeypatch):
     values = np.ones(3000)
     values[2100] = 1e10
-    table = pa.table({"time_s": np.arange(3000) / 100.0, "x_in_mm": values})
+    table = pa.table({"time_s": np.arange(3000) / 100.0, "x_in_mm": values, "f_in_N": values})
     monkeypatch.setattr(reading, "MOST_ROWS", 1000)
     opened = open_run(dataset, rewrite(dataset, table))
     with pytest.raises(InputError, match=r"row 2100: x_in_mm is 1e\+10; expected"):

@@ -37,7 +37,7 @@ from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.pieces import known_columns, long_run, pieces
+from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.recordings.writing import parquet_writer, table_of
@@ -142,7 +142,7 @@ def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> L
     columns = long_run(dataset.folder, run)
     if columns is None:
         return None
-    names = known_columns(columns)
+    names = columns.known
     driving = driving_columns(run, names)
     count = -(-columns.rows // reading.MOST_ROWS)
     plans = {name: plan(_samples(columns, name, 0), count) for name in driving}

@@ -17,7 +17,7 @@ from tsas_cli.recordings.ingest_map import IngestMap, run_conditions
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
 from tsas_cli.recordings.readers.joined import joined_by
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
 from tsas_cli.support.errors import InputError
@@ -169,16 +169,11 @@ def merged(parts: Iterable[ColumnTable], time: ColumnSource, how: How) -> Iterat
     """
     held: ColumnTable | None = None  # the rows of the last time
     for part in parts:
-        if held is None:
-            whole = part
-        else:
-            columns = {s: np.concatenate([held.columns[s], v]) for s, v in part.columns.items()}
-            numbers = np.concatenate([held.row_numbers, part.row_numbers])
-            whole = replace(part, columns=columns, numbers=numbers)
-        begins = np.flatnonzero(np.diff(whole.columns[time], prepend=np.nan) != 0.0)
+        table = whole([held, part] if held else [part])
+        begins = np.flatnonzero(np.diff(table.columns[time], prepend=np.nan) != 0.0)
         if begins.size > 1:
-            yield _one_each(_rows(whole, slice(0, int(begins[-1]))), begins[:-1], how)
-        held = _rows(whole, slice(int(begins[-1]) if begins.size else 0, None))
+            yield _one_each(_rows(table, slice(0, int(begins[-1]))), begins[:-1], how)
+        held = _rows(table, slice(int(begins[-1]) if begins.size else 0, None))
     if held is not None:
         yield _one_each(held, np.zeros(1, dtype=np.intp), how)
 

@@ -50,10 +50,8 @@ def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.Par
     path = where or source
     if isinstance(source, Path):
         limits.regular(source)
-        with source.open("rb") as stream:
-            _check_footer(stream, path)
-    else:
-        _check_footer(source, path)
+        source = pa.OSFile(str(source))
+    _check_footer(source, path)
     # Pre-buffered data would stay in memory until the file is closed.
     file = pq.ParquetFile(source, buffer_size=BUFFER_BYTES, pre_buffer=False)
     limits.columns(file.schema_arrow.names, path)
@@ -65,7 +63,7 @@ def size_of(source: ParquetSource) -> int:
     return source.stat().st_size if isinstance(source, Path) else int(source.size())
 
 
-def _check_footer(stream: IO[bytes] | pa.NativeFile, path: object) -> None:
+def _check_footer(stream: pa.NativeFile, path: object) -> None:
     size = int(stream.seek(0, io.SEEK_END))
     stream.seek(max(0, size - _TRAILER_BYTES))
     length, mark = struct.unpack("<I4s", stream.read().rjust(_TRAILER_BYTES, b"\0"))

@@ -12,12 +12,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.columns import BY_NAME, TIME
+from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, in_batches, reading
 from tsas_cli.recordings.run_files import (
     RunColumns,
-    check_columns,
     check_magnitude,
     check_time,
     floats_of,
@@ -63,15 +62,8 @@ def long_run(folder: Location, run: Run) -> RunColumns | None:
     opened = open_run(folder, run)
     if opened.rows <= MOST_ROWS:
         return None
-    known = known_columns(opened)
-    check_columns(known, opened.file.schema_arrow.names, opened.path)
-    check_size(opened.file, opened.path, known, size=opened.size, whole=False)
+    check_size(opened.file, opened.path, opened.known, size=opened.size, whole=False)
     return opened
-
-
-def known_columns(run: RunColumns) -> list[str]:
-    """Return the names of the canonical columns of a run, in the order of the file."""
-    return [name for name in run.file.schema_arrow.names if name in BY_NAME]
 
 
 def pieces(

@@ -48,25 +48,17 @@ def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Record
     """
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
-    table, names = _table_of(checked_file(folder, run), path)
+    opened = open_run(folder, run)
+    columns = opened.read_all(opened.known, strict=strict)
     if isinstance(path, Path) and state is not None:
         check_unchanged(path, state)
-    columns = {name: floats_of(table, name, path) for name in table.column_names}
-    check_columns(list(columns), names, path)
-    if len(columns[TIME]) < 2:
-        raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
-    if strict:
-        _check_values(columns, path)
-    else:
-        _check_sizes(columns, path)
     return Recording(run, columns)
 
 
 @dataclass(frozen=True)
-class RunColumns:
-    """One run, whose columns are read one at a time, on demand."""
+class ColumnFile:
+    """A Parquet file whose columns are read on demand."""
 
-    run: Run
     path: Location
     file: pq.ParquetFile
     size: int
@@ -76,6 +68,11 @@ class RunColumns:
         """The numeric columns, in the order of the file."""
         schema = self.file.schema_arrow
         return [f.name for f in schema if f.name in BY_NAME or is_floating(f.type)]
+
+    @property
+    def known(self) -> list[str]:
+        """The canonical columns, in the order of the file."""
+        return [name for name in self.file.schema_arrow.names if name in BY_NAME]
 
     @property
     def rows(self) -> int:
@@ -94,28 +91,41 @@ class RunColumns:
                 where=self.path,
                 remedy=f"there are: {', '.join(self.names)}",
             )
-        check_size(self.file, self.path, (name,), size=self.size, whole=True)
+        return self.read_all([name])[name]
+
+    def read_all(self, names: list[str], *, strict: bool = True) -> dict[str, Floats]:
+        """Return columns at once; with `strict=False`, of values and times that are implausible."""
+        check_size(self.file, self.path, names, size=self.size, whole=True)
         with reading(self.path):
-            table = self.file.read(columns=[name])
-        values = floats_of(table, name, self.path)
-        _check_values({name: values}, self.path)
-        return values
+            table = self.file.read(columns=names)
+        columns = {name: floats_of(table, name, self.path) for name in names}
+        if strict and TIME in columns:
+            check_time(columns[TIME], self.path)
+        for name, values in columns.items() if strict else ():
+            check_magnitude(name, values, self.path)
+        _check_sizes(columns, self.path)
+        return columns
+
+
+@dataclass(frozen=True)
+class RunColumns(ColumnFile):
+    """The file of a run."""
+
+    run: Run
 
 
 def open_run(folder: Location, run: Run) -> RunColumns:
     """Return one run, opened and validated as far as possible without reading samples.
 
-    InputError: the file is missing, leaves its folder, is not Parquet or has another checksum; time
-    is missing, or a column is in another unit.
+    InputError: the file is missing, leaves its folder, is not Parquet or has another checksum; a
+    column is missing or in another unit, or there are fewer than two samples.
     """
     path = folder / run.file
-    source = checked_file(folder, run)
-    with reading(path):
-        file = open_parquet(source, path)
-        _check_names_and_units(file.schema_arrow, path)
-    if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
-        raise InputError("column time_s is missing or short", where=path, expected="time in s")
-    return RunColumns(run, path, file, size_of(source))
+    opened = RunColumns(**vars(_opened(checked_file(folder, run), path)), run=run)
+    _check_columns(opened.known, opened.file.schema_arrow.names, path)
+    if 0 <= opened.rows < 2:  # a negative number is damage, which reading reports
+        raise InputError(f"{opened.rows} rows", where=path, expected="at least two samples")
+    return opened
 
 
 def read_columns(path: Path) -> dict[str, Floats]:
@@ -126,22 +136,17 @@ def read_columns(path: Path) -> dict[str, Floats]:
     """
     if not path.is_file():
         raise InputError("does not exist", where=path, expected="a Parquet file")
-    table, _ = _table_of(path, path)
-    columns = {name: floats_of(table, name, path) for name in table.column_names}
-    if TIME not in columns or len(columns[TIME]) < 2:
+    opened = _opened(path, path)
+    if TIME not in opened.known or opened.rows < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
-    _check_values(columns, path)
-    return columns
+    return opened.read_all(opened.known)
 
 
-def _table_of(source: ParquetSource, path: Location) -> tuple[pa.Table, list[str]]:
-    """Return the canonical columns of a file, and the names of all columns."""
-    with reading(path), open_parquet(source, path) as file:
-        present = list(file.schema_arrow.names)
-        names = [name for name in present if name in BY_NAME]
+def _opened(source: ParquetSource, path: Location) -> ColumnFile:
+    with reading(path):
+        file = open_parquet(source, path)
         _check_names_and_units(file.schema_arrow, path)
-        check_size(file, path, names, size=size_of(source), whole=True)
-        return file.read(columns=names), present
+    return ColumnFile(path, file, size_of(source))
 
 
 def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
@@ -174,24 +179,18 @@ def floats_of(table: pa.Table, name: str, path: Location, *, first_row: int = 0)
     InputError: it is not numeric, holds an infinite value, or lacks the time of a row.
     """
     values = floats_from(table.column(name))
-    if name == TIME and not np.isfinite(values).all():
-        row = int(np.flatnonzero(~np.isfinite(values))[0])
+    is_time = name == TIME
+    wrong = ~np.isfinite(values) if is_time else np.isinf(values)
+    if wrong.any():
         raise InputError(
-            "time_s is null or not finite",
-            where=f"{path}, row {first_row + row}",
-            expected="a time in s",
-        )
-    infinite = np.flatnonzero(np.isinf(values))
-    if infinite.size:
-        raise InputError(
-            f"{name} is infinite",
-            where=f"{path}, row {first_row + int(infinite[0])}",
-            expected="a number, or null for a gap",
+            "time_s is null or not finite" if is_time else f"{name} is infinite",
+            where=f"{path}, row {first_row + int(wrong.argmax())}",
+            expected="a time in s" if is_time else "a number, or null for a gap",
         )
     return values
 
 
-def check_columns(known: list[str], present: list[str], path: Location) -> None:
+def _check_columns(known: list[str], present: list[str], path: Location) -> None:
     """Refuse a run without time, or without an input and another column that is an output."""
     listed = ", ".join(present) or "none"
     if TIME not in known:
@@ -208,14 +207,6 @@ def check_columns(known: list[str], present: list[str], path: Location) -> None:
             expected=f"one of {', '.join(INPUTS)} and another of {', '.join(OUTPUTS)}",
             remedy=f"there are: {listed}",
         )
-
-
-def _check_values(columns: dict[str, Floats], path: Location) -> None:
-    if TIME in columns:
-        check_time(columns[TIME], path)
-    for name, values in columns.items():
-        check_magnitude(name, values, path)
-    _check_sizes(columns, path)
 
 
 def _check_sizes(columns: dict[str, Floats], path: Location) -> None:

@@ -49,35 +49,27 @@ def may_pass(error: Exception) -> bool:
 def storage_error(address: object, error: Exception) -> InputError:
     """Return an error of the storage's library as one line, without keys or signatures."""
     kinds = {kind.__name__ for kind in type(error).__mro__}
-    if kinds & {"NoCredentialsError", "PartialCredentialsError", "ProfileNotFound"}:
-        return InputError(
-            "no credentials found",
-            where=address,
-            remedy="set them as for the storage's own tools (docs/object-storage.md)",
-        )
     code = getattr(error, "code", None)
-    if (
+    if kinds & {"NoCredentialsError", "PartialCredentialsError", "ProfileNotFound"}:
+        what = "no credentials found"
+        remedy = "set them as for the storage's own tools (docs/object-storage.md)"
+    elif (
         isinstance(error, PermissionError)
         or ("HttpError" in kinds and code in {401, 403})
         or (isinstance(error, OSError) and str(error).startswith("Forbidden"))  # of gcsfs
     ):
-        return InputError(
-            "the storage refuses access",
-            where=address,
-            remedy="check that the credentials are valid and may read the bucket",
+        what = "the storage refuses access"
+        remedy = "check that the credentials are valid and may read the bucket"
+    elif isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED:
+        what = f"the storage cannot be reached, or breaks off ({type(error).__name__})"
+        remedy = (
+            "check the network, and the endpoint if one is set; repeat the call, "
+            f"with a longer {TIMEOUT} (in seconds) if the storage is slow"
         )
-    if isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED:
-        return InputError(
-            f"the storage cannot be reached, or breaks off ({type(error).__name__})",
-            where=address,
-            remedy="check the network, and the endpoint if one is set; repeat the call, "
-            f"with a longer {TIMEOUT} (in seconds) if the storage is slow",
-        )
-    said = str(error).splitlines() or [""]
-    reason = " ".join(said[: 2 if said[0].endswith(":") else 1])  # others may hold a key
-    reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)[:_REASON]
-    return InputError(
-        f"the storage fails ({type(error).__name__}: {reason})",
-        where=address,
-        remedy="check the address, and repeat the call",
-    )
+    else:
+        said = str(error).splitlines() or [""]
+        reason = " ".join(said[: 2 if said[0].endswith(":") else 1])  # others may hold a key
+        reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)[:_REASON]
+        what = f"the storage fails ({type(error).__name__}: {reason})"
+        remedy = "check the address, and repeat the call"
+    return InputError(what, where=address, remedy=remedy)

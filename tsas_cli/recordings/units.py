@@ -27,20 +27,12 @@ _SPELLINGS = {
     "deg C": "degC",
     "deg F": "degF",
     "Grad": "degree",  # German; pint reads it as gon
-    "N-m": "N*m",
-    "N-mm": "N*mm",
-    "in-lb": "lbf*inch",
-    "in-lbf": "lbf*inch",
-    "lb-in": "lbf*inch",
-    "lbf-in": "lbf*inch",
-    "ft-lb": "lbf*foot",
-    "ft-lbf": "lbf*foot",
-    "lbf-ft": "lbf*foot",
 }
 _AS_FORCE = {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "g": "gf", "oz": "ozf", "kp": "kgf"}
 _AS_TEMPERATURE = {"C": "degC", "F": "degF"}
 _LABEL = re.compile(r"counts?|cts|pulses?|ticks?|inc|px|pixels?|m?v|volts?")
-_TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
+_TORQUE = re.compile(r"([mkM]?N)-?(mm|cm|m)")
+_POUND_INCH = re.compile(r"(in|ft)-lbf?|lbf?-(in|ft)")
 _CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
 _UNIT_LENGTH = 100  # characters of a unit
 # Valid characters of a unit. pint drops all others, which turns `?m` into metre.
@@ -152,6 +144,8 @@ def _parse(text: str, to: str, where: str) -> Any:
     spelled = _CAPITALISED.sub(lambda word: word[0].lower(), spelled)
     if torque := _TORQUE.fullmatch(spelled):
         spelled = f"{torque[1]}*{torque[2]}"
+    elif arm := _POUND_INCH.fullmatch(spelled):
+        spelled = f"lbf*{arm[1] or arm[2]}"
     try:
         return _unit(spelled)
     except Exception as error:  # pint's parser raises any of a dozen types

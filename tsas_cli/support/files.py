@@ -153,8 +153,8 @@ def json_text(content: Any) -> str:
     return json.dumps(_finite(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def read_json(path: Path) -> Any:
-    """Return the content of a JSON file.
+def read_json(path: Path, *, lines: bool = False) -> Any:
+    """Return the content of a JSON file; `lines` of JSON are one list.
 
     InputError: the file is missing or unreadable, is not JSON, has a duplicate key, or exceeds a
     limit.
@@ -163,6 +163,8 @@ def read_json(path: Path) -> Any:
     def load() -> Any:
         limits.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
         text = limits.text_of(path, limits.JSON_BYTES)
+        if lines:
+            text = "[" + ",\n".join(line for line in text.split("\n") if line.strip()) + "]"
         return json.loads(text, object_pairs_hook=_without_duplicates)
 
     return parsed(load, "JSON", path)

@@ -15,12 +15,16 @@ WHITE = np.random.default_rng(6).standard_normal(N)
 FINE = Size(0.0, 0.0, 10.0, 0.0, 10.0)
 
 
-def of(check, time_s=None, sizes=None, load="spring", **columns):
-    """Return the findings of a check; each channel has the span 10, no noise and no steps."""
+def fine(time_s=None, sizes=None, load="spring", preload_N=None, **columns):
+    """Return a run; each channel has the span 10, no noise and no steps, but for some sizes."""
     time_s = 0.01 * np.arange(N) if time_s is None else np.asarray(time_s)
-    found = trial({"time_s": time_s, **columns}, load=load)
-    overall = dict.fromkeys(columns, FINE) | (sizes or {})
-    return [f for f in check(replace(found, overall=overall)) if isinstance(f, Finding)]
+    found = trial({"time_s": time_s, **columns}, load=load, preload_N=preload_N)
+    return replace(found, overall=dict.fromkeys(columns, FINE) | (sizes or {}))
+
+
+def of(check, *given, **named):
+    """Return the findings of a check on such a run."""
+    return [f for f in check(fine(*given, **named)) if isinstance(f, Finding)]
 
 
 def spectrum(power, steady=()):
@@ -172,13 +176,8 @@ def test_motion_is_steady_where_the_load_moves_in_a_fifth_of_a_stroke(part, foun
 
 
 def test_the_share_of_a_stroke_in_which_the_load_moves():
-    found = replace(trial({"time_s": 0.01 * np.arange(N), "x_in_mm": X, "x_out_mm": X}),
-                    overall=dict.fromkeys(("x_in_mm", "x_out_mm"), FINE))  # fmt: skip
-    late = replace(
-        found.recording, columns=found.recording.columns | {"x_out_mm": np.maximum(X - 4.0, 0.0)}
-    )
-    for recording, share in ((found.recording, 0.98), (late, 0.58)):
-        one = replace(found, recording=recording)
+    for x_out, share in ((X, 0.98), (np.maximum(X - 4.0, 0.0), 0.58)):
+        one = fine(x_in_mm=X, x_out_mm=x_out)
         assert motion._moving(one, "x_out_mm", one.strokes[0]) == pytest.approx(share, abs=0.011)
 
 
@@ -189,8 +188,7 @@ def test_an_interference_is_the_jump_at_each_reversal_with_the_drive(size):
     x = 5.0 + 5.0 * np.interp(np.mod(t, 2.0), [0.0, 1.0, 2.0], [-1.0, 1.0, -1.0])
     way = np.where(np.mod(t, 2.0) < 1.0, 1.0, -1.0)
     load = np.where(way > 0.0, np.maximum(x - 2.0, 0.0), np.minimum(x, 8.0))
-    found = trial({"time_s": t, "x_in_mm": x, "f_out_N": load + 0.5 * size * way})
-    found = replace(found, overall=dict.fromkeys(("x_in_mm", "f_out_N"), FINE))
+    found = fine(t, x_in_mm=x, f_out_N=load + 0.5 * size * way)
     jumps = motion._jumps(found, found.channels["f_out_N"], 0.0)
     assert jumps == pytest.approx(np.full(5, size), abs=1e-9)
 
@@ -268,10 +266,7 @@ def test_a_position_jumps_ten_times_as_far_as_elsewhere(by, other, noise_mm, ste
 def test_a_tension_is_coupled_to_ac_where_its_mean_falls_to_a_seventh_of_its_span(late, found):
     swing = 3.0 * (-1.0) ** np.arange(N)
     f_in = np.where(np.arange(N) < 150, 6.0, 10.0 * late) + swing
-    time_s = 0.01 * np.arange(N)
-    made = trial({"time_s": time_s, "x_in_mm": X, "f_in_N": f_in}, preload_N=25.0)
-    made = replace(made, overall=dict.fromkeys(("x_in_mm", "f_in_N"), FINE))
-    told = [f for f in extremes.ac_coupled(made) if isinstance(f, Finding)]
+    told = of(extremes.ac_coupled, x_in_mm=X, f_in_N=f_in, preload_N=25.0)
     assert len(told) == found
     assert all(f"a mean of {10.0 * late:.2g} N" in f.sentence for f in told)
 
@@ -303,9 +298,7 @@ def test_a_run_is_torn_where_the_drive_goes_ten_times_and_another_three_times_as
     far = np.arange(N) > 150
     even = 0.1 * np.arange(N)
     columns = {"x_in_mm": even + (0.1 * by - 0.1) * far, "f_in_N": even + (0.1 * other - 0.1) * far}
-    made = trial({"time_s": 0.01 * np.arange(N), **columns})
-    made = replace(made, overall=dict.fromkeys(columns, FINE))
-    assert rows._torn(made, list(columns)) == found
+    assert rows._torn(fine(**columns), list(columns)) == found
 
 
 @pytest.mark.parametrize(
@@ -326,9 +319,7 @@ def test_five_rows_at_an_end_are_clipped_if_the_drive_moves_on_by_a_twentieth(he
 @pytest.mark.parametrize("gain", [1.5, -0.5])
 def test_friction_beside_any_gain_is_told_and_a_negative_gain_is_none(gain):
     f_out = 20.0 + X
-    made = trial({"time_s": 0.01 * np.arange(N), "x_in_mm": X, "f_out_N": f_out,
-                  "f_in_N": 40.0 + gain * f_out + 0.35 * WAY})  # fmt: skip
-    made = replace(made, overall=dict.fromkeys(("x_in_mm", "f_in_N", "f_out_N"), FINE))
+    made = fine(x_in_mm=X, f_out_N=f_out, f_in_N=40.0 + gain * f_out + 0.35 * WAY)
     travel = np.abs(np.gradient(X))
     up, down = (
         np.average(f_out[at], weights=travel[at])

@@ -1,10 +1,10 @@
-"""A sample that stands out is found at any size, and is not held against the other channels."""
+"""A sample that stands out is found at any size, and so is a position that jumps alone."""
 
 import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import Bench, columns
-from tests.recordings.quality.test_faults import GOOD, found
+from tests.recordings.quality.test_faults import GOOD, codes, found, remarks
 from tsas_cli.recordings.quality.samples import outlying, size_of
 
 N = GOOD["time_s"].size
@@ -101,3 +101,24 @@ def test_a_fast_rig_without_noise_is_left_in_peace():
         measured = columns(Bench(shape=shape, noise_mm=0.0, noise_N=0.0, rate_Hz=20.0))
         time_s = measured.pop("time_s")
         assert [standing_out(v, time_s) for v in measured.values()] == [[]] * 4
+
+
+def after(value):
+    return np.where(np.arange(N) >= 1234, value, 0.0)
+
+
+@pytest.mark.parametrize("name", ["x_in_mm", "x_out_mm"])
+@pytest.mark.parametrize("value", [3.0, -40.0, 3e3])
+def test_a_jump_of_one_position_is_said_with_its_row(name, value):
+    jump = dict(remarks(GOOD | {name: GOOD[name] + after(value)}))["jump"]
+    assert (jump.severity, jump.column, jump.first_s) == ("error", name, GOOD["time_s"][1234])
+    assert "row 1234" in jump.sentence
+
+
+def test_what_all_channels_do_what_comes_back_and_a_usual_step_are_no_jump_of_an_encoder():
+    moved = {name: GOOD[name] + after(3.0) for name in ("x_in_mm", "x_out_mm")}
+    assert "jump" not in codes(GOOD | moved | {"f_in_N": GOOD["f_in_N"] + after(20.0)})
+    assert "jump" not in codes(with_wild("x_in_mm", 1234, 50.0))
+    usual = float(np.abs(np.diff(GOOD["x_in_mm"])).max())
+    assert "jump" not in codes(GOOD | {"x_in_mm": GOOD["x_in_mm"] + after(3.0 * usual)})
+    assert "jump" not in codes(GOOD)

@@ -1,4 +1,4 @@
-"""Files that are converted before they are read: packed ones, JSON Lines."""
+"""Packed files, which are converted before they are read; lines of JSON."""
 
 import bz2
 import gzip
@@ -54,6 +54,11 @@ def test_lines_of_json_are_read(write, name):
     table = read(path, ReadOptions(), ["t", "force.x", "force.all[0]"])
     np.testing.assert_array_equal(table.columns["force.x"], [0, 0.5, 1])
     np.testing.assert_array_equal(table.columns["force.all[0]"], [0, 1, 2])
+
+
+def test_an_archive_may_hold_lines_of_json(tmp_path):
+    path = zipped(tmp_path / "a.zip", **{"a.jsonl": b'{"t": 0}\n{"t": 1}\n'})
+    assert names(path, ReadOptions()) == ("t",)
 
 
 def test_tables_of_a_packed_file_are_found(write):

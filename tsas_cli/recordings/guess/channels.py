@@ -48,16 +48,12 @@ def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
         turns = column.kind in ("angle", "label") or (
             column.kind is None and (quantity == "angle" or of_drive)
         )
+        of_motor = motor and turns and quantity in ("angle", "displacement")
         if quantity == "temperature":
             found.setdefault("temperature_C", []).append(column)
         elif quantity == "speed" and (motor or column.kind == "speed"):
             found.setdefault("motor_speed_rpm", []).append(column)
-        elif (
-            motor
-            and quantity in ("angle", "displacement")
-            and turns
-            and not column.words.is_reference
-        ):
+        elif of_motor and not column.words.is_reference:
             found.setdefault("motor_angle_rad", []).append(column)
         elif quantity == "force" and column.words.is_reference and column.end != "in":
             found.setdefault("f_out_ref_N", []).append(column)
@@ -68,9 +64,7 @@ def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
     measured = [c for c in columns if not c.words.is_reference] or columns
     if len(measured) > 1:
         shown = ", ".join(c.shown for c in columns)
-        questions = {"source": f"which one: {shown}?"}
-        why, sources = ("several columns match",), tuple(c.source for c in columns)
-        return Proposed(name, {"source": QUESTION}, "open", why, questions, candidates=sources)
+        return _open(name, ("several columns match",), f"which one: {shown}?", columns)
     column = measured[0]
     entry, questions = with_unit(column, name)
     others = tuple(c.shown for c in columns if c is not column)
@@ -212,6 +206,7 @@ def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     return found
 
 
+_RISES = "1 or -1, so that it rises when the drive pulls"
 _SIGNS: dict[int, Sign] = {
     -1: (-1, "its values are negative, and a tendon cannot push"),
     0: (1, "its values are on both sides of zero: its sign is unknown"),
@@ -232,12 +227,9 @@ def _drive(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sig
             return -1, f"it falls as {assigned[name].shown} rises"
         if correlated < -_CLEAR:
             why = f"it falls as {assigned[name].shown} rises: one of the two has the wrong sign"
-            return QUESTION, f"{why}; 1 or -1, so that it rises when the drive pulls"
+            return QUESTION, f"{why}; {_RISES}"
     if assigned.keys() & {"f_in_N", "f_out_N"}:
-        return (
-            QUESTION,
-            "no tension clearly follows it; 1 or -1, so that it rises when the drive pulls",
-        )
+        return QUESTION, f"no tension clearly follows it; {_RISES}"
     return 1, "no tension shows its sign; it has to rise when the drive pulls"
 
 
@@ -247,10 +239,7 @@ def _load(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sign
     drive = assigned["x_in_mm"]
     correlated = correlation(drive.values, assigned["x_out_mm"].values)
     if abs(correlated) < _CLEAR:
-        return (
-            QUESTION,
-            f"it does not follow {drive.shown}; 1 or -1, so that it rises when the drive pulls",
-        )
+        return QUESTION, f"it does not follow {drive.shown}; {_RISES}"
     sign = found["x_in_mm"][0]
     moves = "moves with" if correlated > 0.0 else "moves opposite to"
     if isinstance(sign, str):

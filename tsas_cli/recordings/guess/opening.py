@@ -12,6 +12,7 @@ from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOpt
 from tsas_cli.support.errors import InputError
 
 T = TypeVar("T")
+Keys = dict[str, tuple[Any, str]]  # of a table of the map: value and reason
 _PREAMBLE = 60  # lines above a table that are tried
 _ENCODINGS = {  # that a map has to set, and why
     "utf-16": "the file begins with the byte-order mark of UTF-16",
@@ -24,7 +25,7 @@ class Opened:
     """The content of one file; the values of `asked` keys are those that it was opened with."""
 
     path: Path
-    read: dict[str, tuple[Any, str]]  # what the file requires under `[read]`: value and reason
+    read: Keys  # what the file requires under `[read]`
     table: ColumnTable  # the numeric columns, all of one length, by their source in a map
     names: dict[ColumnSource, str]  # empty text for a column without one
     left_out: dict[str, str] = field(default_factory=dict)  # the other columns, and why
@@ -47,23 +48,19 @@ def open_file(path: Path) -> Opened:
         return _opened(path, required | decimal, asked | {"decimal": question})
 
 
-def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, str]) -> Opened:
+def _opened(path: Path, required: Keys, asked: dict[str, str]) -> Opened:
     text = text_of(path, options_of(required))
     if text is not None:
         if (encoding := encoding_of(text)) in _ENCODINGS:
             required["encoding"] = (encoding, _ENCODINGS[encoding])
         required |= _preamble(path, required)
-    options = options_of(required)
-    listed = names(path, options)
+    listed = names(path, options_of(required))
     sources: dict[ColumnSource, str] = {  # by number where the name is empty or not unique
         name if name.strip("? ") and listed.count(name) == 1 else number: name
         for number, name in enumerate(listed, start=1)
     }
-    table, left_out = _all_or_each(path, options, list(sources))
-    if table is None:
-        required["resample"] = (True, "the channels have clocks of their own")
-        table, left_out = _all_or_each(path, options_of(required), list(sources), each=True)
-    if table is None or not table.columns:
+    table, left_out = _all_or_each(path, required, list(sources))
+    if not table.columns:
         why = "".join(f" ({reason})" for reason in list(left_out.values())[:1])
         raise InputError(f"holds no column of numbers{why}", where=path)
     rows = max(values.size for values in table.columns.values())
@@ -80,12 +77,12 @@ def _opened(path: Path, required: dict[str, tuple[Any, str]], asked: dict[str, s
     return Opened(path, required, found, found_names, left_out | short, asked)
 
 
-def options_of(required: dict[str, tuple[Any, str]]) -> ReadOptions:
+def options_of(required: Keys) -> ReadOptions:
     """Return the options of keys with values and reasons."""
     return ReadOptions.model_validate({key: value for key, (value, _) in required.items()})
 
 
-def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
+def _table(path: Path) -> tuple[Keys, dict[str, str]]:
     """Return the key `table` if the numbers are in one of a file's tables, and the question."""
     found = tables(path)
     if not found:
@@ -99,7 +96,7 @@ def _table(path: Path) -> tuple[dict[str, tuple[Any, str]], dict[str, str]]:
     return {"table": (found[0], "")}, {"table": question}
 
 
-def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
+def _preamble(path: Path, required: Keys) -> Keys:
     """Return the lines to skip above a text table, if columns are without names with them."""
     best, skipped, options = _named(path, required), 0, options_of(required)
     numbers = list(range(1, len(names(path, options)) + 1)) if best == 0.0 else []
@@ -113,7 +110,7 @@ def _preamble(path: Path, required: dict[str, tuple[Any, str]]) -> dict[str, tup
     return {"skip_lines": (skipped, why)} if skipped else {}
 
 
-def _named(path: Path, required: dict[str, tuple[Any, str]]) -> float:
+def _named(path: Path, required: Keys) -> float:
     """Return the share of columns with names, −1 if there is no table.
 
     A title with delimiters behind it, "Bench 42;;;", names few columns.
@@ -133,12 +130,13 @@ def _tried(reader: Callable[..., T], *arguments: Any) -> T | None:
 
 
 def _all_or_each(
-    path: Path, options: ReadOptions, sources: list[ColumnSource], *, each: bool = False
-) -> tuple[ColumnTable | None, dict[str, str]]:
+    path: Path, required: Keys, sources: list[ColumnSource]
+) -> tuple[ColumnTable, dict[str, str]]:
     """Return all columns; or the readable ones, and the reason for each of the others.
 
-    None if every column is readable by itself but not all of them together.
+    Columns that are readable by themselves but not together require `resample`.
     """
+    options = options_of(required)
     if (every := _tried(read, path, options, sources)) is not None:
         return every, {}
     readable: set[ColumnSource] = set()
@@ -159,10 +157,9 @@ def _all_or_each(
         except InputError as error:
             if source != "time":
                 left_out[str(source)] = error.what
+    together = [s for s in sources if s in readable or (s == "time" and readable)]
     try:
-        together = [s for s in sources if s in readable or (s == "time" and readable)]
         return read(path, options, together), left_out
     except InputError:
-        if each:
-            raise
-        return None, {}
+        required["resample"] = (True, "the channels have clocks of their own")
+        return read(path, options_of(required), together), left_out

@@ -5,14 +5,13 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock, repeats
 from tsas_cli.recordings.guess.columns import FileColumn, Proposed, columns_of, with_trusted_names
 from tsas_cli.recordings.guess.looks import correlation
-from tsas_cli.recordings.guess.opening import Opened, open_file, options_of
+from tsas_cli.recordings.guess.opening import Keys, Opened, open_file, options_of
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names, stem
 from tsas_cli.recordings.readers.table import ColumnSource
@@ -29,10 +28,10 @@ class MapProposal:
     looked_at: Opened  # the file that the proposal is based on
     matching: tuple[Path, ...]  # other files with the same columns
     different: dict[Path, str]  # the rest of them, and how each differs
-    read: dict[str, tuple[Any, str]]  # the keys of `[read]`, with values and reasons
+    read: Keys  # the keys of `[read]`
     channels: tuple[Proposed, ...]  # the tables of `[columns]`
     not_taken: dict[ColumnSource, str]  # the columns without a channel, and their evidence
-    run: dict[str, tuple[Any, str]]  # the keys of `[run]` that differ from their defaults
+    run: Keys  # the keys of `[run]` that differ from their defaults
     doubt: str  # why no column name is used; empty if names are used
 
     @property
@@ -107,7 +106,7 @@ def _first_that_opens(files: Sequence[Path]) -> tuple[Opened, dict[Path, str]]:
     raise next(iter(failed.values()))
 
 
-def _repeated(columns: Sequence[FileColumn], time: Proposed) -> dict[str, tuple[Any, str]]:
+def _repeated(columns: Sequence[FileColumn], time: Proposed) -> Keys:
     """Return the question for the rows that repeat a time."""
     clocks = [column for column in columns if column.source == time.entry.get("source")]
     repeated = repeats(clocks[0].values) if clocks else 0
@@ -118,7 +117,7 @@ def _repeated(columns: Sequence[FileColumn], time: Proposed) -> dict[str, tuple[
     return {"repeated_times": (QUESTION, f"{why}of each channel that stays?")}
 
 
-def _pattern(good: Sequence[Path], different: dict[Path, str]) -> dict[str, tuple[Any, str]]:
+def _pattern(good: Sequence[Path], different: dict[Path, str]) -> Keys:
     """Return the glob for the matching files of a folder, if their suffix distinguishes them."""
     suffixes = {path.suffix for path in good}
     if not different or len(suffixes) > 1 or suffixes & {path.suffix for path in different}:
@@ -126,14 +125,14 @@ def _pattern(good: Sequence[Path], different: dict[Path, str]) -> dict[str, tupl
     return {"files": (f"*{suffixes.pop()}", "the other files hold no such table")}
 
 
-def _id(paths: Sequence[Path]) -> dict[str, tuple[Any, str]]:
+def _id(paths: Sequence[Path]) -> Keys:
     counted = Counter(stem(path) for path in paths)
     duplicates = [name for name, count in counted.items() if count > 1]
     why = f"two files have the name {duplicates[0]}" if duplicates else ""
     return {"id": ("{folder}_{stem}", why)} if duplicates else {}
 
 
-def _load(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[str, tuple[Any, str]]:
+def _load(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> Keys:
     """Return the question for the load, if its tension and displacement are not correlated."""
     by_source = {column.source: column for column in columns}
     at = {p.name: by_source.get(p.entry.get("source", "")) for p in found}

@@ -7,7 +7,6 @@ from textwrap import wrap
 from typing import Any
 
 import tomlkit
-from tomlkit.items import Table
 
 from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
 from tsas_cli.recordings.guess.columns import Proposed
@@ -16,7 +15,7 @@ from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.support.errors import printable
 
-_WIDTH = 96
+_WIDTH = 98
 # Meaning of a condition; its group, the words before its number in a file name, and likely unit.
 _CONDITIONS = {
     "sheath_length_mm": (
@@ -38,26 +37,24 @@ MAP_MARK = b"# A map for `tsas ingest`"  # beginning of a proposed map
 
 def map_text(proposal: MapProposal) -> str:
     """Return the text of the map; a comment above each key states its evidence."""
-    document = tomlkit.document()
-    for sentence in _head(proposal):
-        _comment(document, sentence)
-    dataset, rig = tomlkit.table(), tomlkit.table()
-    dataset.add("name", proposal.name)
-    dataset["name"].comment("the folder's name")
-    dataset.add(tomlkit.comment('description = "…"'))
-    document.add("dataset", dataset)
-    _comment(rig, "The data sheet of the rig; each line is optional:")
-    for key in list(RigSheet.model_fields)[:4]:
-        rig.add(tomlkit.comment(f"{key} ="))
-    document.add("rig", rig)
+    blocks = [
+        [line for sentence in _head(proposal) for line in _comment(sentence)],
+        [
+            "[dataset]",
+            f"name = {_toml(proposal.name)} # the folder's name",
+            '# description = "…"',
+        ],
+        [
+            "[rig]",
+            "# The data sheet of the rig; each line is optional:",
+            *(f"# {key} =" for key in list(RigSheet.model_fields)[:4]),
+        ],
+    ]
     if proposal.read or proposal.not_taken or proposal.looked_at.left_out:
-        document.add("read", _read(proposal))
-    columns = tomlkit.table(is_super_table=True)
-    for channel in proposal.channels:
-        columns.add(channel.name, _channel(channel))
-    document.add("columns", columns)
-    document.add("run", _run(proposal))
-    return tomlkit.dumps(document).rstrip("\n") + "\n"
+        blocks.append(["[read]", *_read(proposal)])
+    blocks += [[f"[columns.{channel.name}]", *_channel(channel)] for channel in proposal.channels]
+    blocks.append(["[run]", *_run(proposal)])
+    return "\n\n".join("\n".join(lines) for lines in blocks) + "\n"
 
 
 def _head(proposal: MapProposal) -> Iterator[str]:
@@ -93,74 +90,69 @@ def _head(proposal: MapProposal) -> Iterator[str]:
         )
 
 
-def _read(proposal: MapProposal) -> Table:
-    table = tomlkit.table()
+def _read(proposal: MapProposal) -> Iterator[str]:
     for key, (value, why) in proposal.read.items():
-        _add(table, key, value, why)
+        yield from _key(key, value, why)
     if proposal.not_taken:
-        _comment(table, "These columns have no channel; extra would keep them unchanged:")
+        yield "# These columns have no channel; extra would keep them unchanged:"
         for source, reason in proposal.not_taken.items():
-            _comment(table, f"- {source}: {reason}.", indent="  ")
-        listed = ", ".join(tomlkit.item(source).as_string() for source in proposal.not_taken)
-        table.add(tomlkit.comment(f"extra = [{listed}]"))
+            yield from _comment(f"- {source}: {reason}.", indent="  ")
+        yield f"# extra = [{', '.join(map(_toml, proposal.not_taken))}]"
     for name, reason in proposal.looked_at.left_out.items():
-        _comment(table, f"{name} cannot be used: {reason}.")
-    return table
+        yield from _comment(f"{name} cannot be used: {reason}.")
 
 
-def _channel(channel: Proposed) -> Table:
-    table = tomlkit.table()
+def _channel(channel: Proposed) -> Iterator[str]:
     meaning = BY_NAME[channel.name].meaning
-    _comment(table, f"{meaning[0].upper()}{meaning[1:]}: {channel.certainty}.")
-    for sentence in channel.why:
-        _comment(table, f"- {sentence}", indent="  ")
-    for other in channel.alternatives:
-        _comment(table, f"- alternative: {other}", indent="  ")
+    yield from _comment(f"{meaning[0].upper()}{meaning[1:]}: {channel.certainty}.")
+    for sentence in (*channel.why, *(f"alternative: {other}" for other in channel.alternatives)):
+        yield from _comment(f"- {sentence}", indent="  ")
     for key, value in channel.entry.items():
-        _add(table, key, value, channel.questions.get(key, ""))
-    return table
+        yield from _key(key, value, channel.questions.get(key, ""))
 
 
-def _run(proposal: MapProposal) -> Table:
-    table = tomlkit.table()
+def _run(proposal: MapProposal) -> Iterator[str]:
     for key, (value, why) in proposal.run.items():
-        _add(table, key, value, why)
+        yield from _key(key, value, why)
     pattern, groups = conditions_in(proposal.looked_at.path)
     for condition, (meaning, _) in _CONDITIONS.items():
         if condition not in groups:
-            _comment(table, f"{condition} =   # for all runs: {meaning}")
+            yield f"# {condition} =   # for all runs: {meaning}"
     if groups:
-        _comment(
-            table, f"The file name {proposal.looked_at.path.name} may hold these; if so, uncomment:"
-        )
-        lines = ["[run.from_file_name]", f"pattern = '(?i){pattern}'"]
+        name = proposal.looked_at.path.name
+        yield from _comment(f"The file name {name} may hold these; if so, uncomment:")
+        yield "# [run.from_file_name]"
+        yield f"# pattern = '(?i){pattern}'"
         for condition, (group, unit) in groups.items():
-            lines += [f"[run.conditions.{condition}]", f'from = "{group}"', f'unit = "{unit}"']
-        for line in lines:
-            table.add(tomlkit.comment(line))
-    missing = [c for c in COLUMNS[:5] if c.name not in {p.name for p in proposal.channels}]
-    for column in missing:
-        _comment(table, f"No column looks like {column.name} ({column.meaning}).")
-    return table
+            yield f"# [run.conditions.{condition}]"
+            yield f'# from = "{group}"'
+            yield f'# unit = "{unit}"'
+    there = {channel.name for channel in proposal.channels}
+    for column in COLUMNS[:5]:
+        if column.name not in there:
+            yield from _comment(f"No column looks like {column.name} ({column.meaning}).")
 
 
-def _add(table: Table, key: str, value: Any, why: str) -> None:
+def _key(key: str, value: Any, why: str) -> Iterator[str]:
     if why:
         sentence = f"QUESTION: {why}" if value == QUESTION else f"{why[0].upper()}{why[1:]}"
-        _comment(table, sentence if sentence.endswith(("?", ".")) else f"{sentence}.")
-    table.add(key, value)
+        yield from _comment(sentence if sentence.endswith(("?", ".")) else f"{sentence}.")
+    yield f"{key} = {_toml(value)}"
 
 
-def _comment(table: Table | tomlkit.TOMLDocument, text: str, *, indent: str = "") -> None:
-    lines = wrap(
+def _toml(value: Any) -> str:
+    return str(tomlkit.item(value).as_string())
+
+
+def _comment(text: str, *, indent: str = "") -> list[str]:
+    return wrap(
         printable(text),
         _WIDTH,
-        subsequent_indent=indent,
+        initial_indent="# ",
+        subsequent_indent=f"# {indent}",
         break_long_words=False,
         break_on_hyphens=False,
     )
-    for line in lines:
-        table.add(tomlkit.comment(line))
 
 
 def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:

@@ -20,7 +20,7 @@ from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, RigSheet
-from tsas_cli.recordings.pieces import known_columns, long_run, pieces
+from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.quality.checks import (
     clock,
     extremes,
@@ -107,9 +107,7 @@ def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     InputError: no run can be read.
     """
     of_runs = check_runs(dataset, step)
-    of_all = [
-        replace(one, code=check.code) for check in DATASET_CHECKS for one in check.find(dataset)
-    ]
+    of_all = [one for check in DATASET_CHECKS for one in check.results(dataset)]
     return Report.of((*of_runs.findings, *of_runs.not_checked, *of_all))
 
 
@@ -120,11 +118,7 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
 
     InputError: no run can be read.
     """
-    results: Results = [
-        replace(one, code=check.code)
-        for check in MANIFEST_CHECKS
-        for one in check.find(dataset.manifest)
-    ]
+    results = [one for check in MANIFEST_CHECKS for one in check.results(dataset.manifest)]
     failures = []
     step.doing("checks the recordings")
     step.ahead(len(dataset.runs))
@@ -135,8 +129,8 @@ def check_runs(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
             else:
                 recording = read_recording(dataset.folder, run, strict=False)
                 trial = RunSignals(recording, dataset.manifest.rig)
-                found = {check.code: look(check, trial) for check in RUN_CHECKS}
-            results += [replace(o, code=code, run=run.id) for code, of in found.items() for o in of]
+                found = [one for check in RUN_CHECKS for one in look(check, trial)]
+            results += [replace(one, run=run.id) for one in found]
         except InputError as error:
             failures.append(error)
             said = error.line(), "restore the file or ingest again"
@@ -177,17 +171,17 @@ def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         missing = [name for name in check.needs if name not in trial.channels]
         if missing:
-            return [NotChecked(f"{' and '.join(missing)} not recorded")]
+            return [NotChecked(f"{' and '.join(missing)} not recorded", code=check.code)]
         for name in check.given:
             if not getattr(trial, name):
-                return [NotChecked(GIVEN[name])]
-        return list(check.find(trial))
+                return [NotChecked(GIVEN[name], code=check.code)]
+        return list(check.results(trial))
 
 
 def look_by_stretches(
     checks: Sequence[QualityCheck[RunSignals]], run: RunColumns, rig: RigSheet
-) -> dict[str, Results]:
-    """Return the results of the checks on a long run, by code."""
+) -> Results:
+    """Return the results of the checks on a long run."""
     overall, decimated = _overview(run)
     whole = RunSignals(Recording(run.run, decimated), rig, overall)
     # A decimated stroke has to have more rows than a stretch has strokes.
@@ -197,16 +191,17 @@ def look_by_stretches(
         check.code: [] for check in checks if check.of_long not in decimatable
     }
     overlap = reading.MOST_ROWS // OVERLAP
-    for piece in pieces(run, known_columns(run), overlap=overlap, strict=False):
+    for piece in pieces(run, run.known, overlap=overlap, strict=False):
         trial = RunSignals(Recording(run.run, piece.columns), rig, overall, piece.start)
         there = f"rows {piece.start} to {piece.stop - 1}"
         for check in checks:
             if check.code in results:
                 results[check.code].append((there, look(check, trial)))
-    return {
-        check.code: _merged(results[check.code]) if check.code in results else look(check, whole)
+    found = [
+        _merged(results[check.code]) if check.code in results else look(check, whole)
         for check in checks
-    }
+    ]
+    return [one for of_check in found for one in of_check]
 
 
 def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
@@ -237,31 +232,21 @@ def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
 
 def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:
     """Return the properties of the whole run, and its columns decimated to the rows of a piece."""
-    names = known_columns(run)
     every = -(-run.rows // reading.MOST_ROWS)
-    decimated: dict[str, list[Floats]] = {name: [] for name in names}
-    valid: dict[str, list[Floats]] = {name: [] for name in names}
-    noise: dict[str, list[float]] = {name: [] for name in names}
-    ends: dict[str, list[float]] = {name: [] for name in names}
-    for piece in pieces(run, names, strict=False):
+    decimated: dict[str, list[Floats]] = {name: [] for name in run.known}
+    seen: dict[str, list[tuple[Floats, float, float, float]]] = {}
+    for piece in pieces(run, run.known, strict=False):
         for name, values in piece.columns.items():
             decimated[name].append(values[-piece.start % every :: every].copy())
             finite = values[np.isfinite(values)]
-            valid[name].append(finite[::every].copy())
-            if finite.size:
-                noise[name] += [sd for sd in [noise_sd(finite)] if not math.isnan(sd)]
-                ends[name] += [float(finite.min()), float(finite.max())]
-    seen = {
-        name: np.concatenate(parts) for name, parts in valid.items() if name != TIME and ends[name]
-    }
-    overall = {
-        name: Size(
-            float(np.median(noise[name])) if noise[name] else math.nan,
-            step_of(each),
-            span_of(each),
-            min(ends[name]),
-            max(ends[name]),
-        )
-        for name, each in seen.items()
-    }
+            if finite.size and name != TIME:
+                ends = float(finite.min()), float(finite.max())
+                part = finite[::every].copy(), noise_sd(finite), *ends
+                seen.setdefault(name, []).append(part)
+    overall = {}
+    for name, parts in seen.items():
+        valid, noise, lowest, highest = zip(*parts, strict=True)
+        each, known = np.concatenate(valid), [sd for sd in noise if not math.isnan(sd)]
+        middle = float(np.median(known)) if known else math.nan
+        overall[name] = Size(middle, step_of(each), span_of(each), min(lowest), max(highest))
     return overall, {name: np.concatenate(parts) for name, parts in decimated.items()}

@@ -1,7 +1,8 @@
 """Results of a check: what it found in a recording, or the reason why it does not apply."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Generic, Literal, TypeVar
 
 Severity = Literal["error", "warning", "note"]
@@ -24,6 +25,9 @@ class Finding:
     sentence: str
     remedy: str
     first_s: float | None = None
+
+
+error, warning = partial(Finding, "error"), partial(Finding, "warning")
 
 
 @dataclass(frozen=True)
@@ -56,3 +60,7 @@ class QualityCheck(Generic[Subject]):
     def code(self) -> str:
         """The name of the function, with hyphens."""
         return self.find.__name__.replace("_", "-")
+
+    def results(self, subject: Subject) -> Findings:
+        """Yield what it finds, under its code."""
+        return (replace(one, code=self.code) for one in self.find(subject))

@@ -32,11 +32,12 @@ _WAYS = {  # from a file that is not read to one that is, by its suffix
 _SAME_WAY = {".tgz": ".tar", ".tbz": ".tar", ".txz": ".tar", ".pickle": ".pkl", ".nc4": ".nc"}
 _SAME_WAY |= dict.fromkeys((".out", ".prn"), ".log")
 _EXPORTED = "export it from the program that has written it, as CSV or Parquet"
+_SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _FORMATS = (  # suffixes, reader, and what they are if its library crashes on damaged files
     ((".csv", ".tsv", ".txt", ".dat", ".asc"), "delimited", ""),
     ((".mat",), "matlab", "a MATLAB file"),
     ((".mf4", ".mdf"), "mdf", "MDF"),
-    ((".json",), "json_table", ""),
+    ((".json", ".jsonl", ".ndjson"), "json_table", ""),
     ((".parquet",), "parquet", ""),
     ((".feather", ".arrow"), "feather", "Feather"),
     ((".npy", ".npz"), "numpy_file", "a NumPy file"),
@@ -46,19 +47,15 @@ _FORMATS = (  # suffixes, reader, and what they are if its library crashes on da
     ((".bag",), "bags", "a bag of ROS 1"),
     ((".db3",), "bags", "a bag of ROS 2"),
     ((".join",), "joined", ""),
-)
-_SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
-_CONVERTED = (  # the same, of files that are converted to one of the above
     (converted.PACKED, "converted", ""),
-    ((".jsonl", ".ndjson"), "json_table", ""),
     ((".lvm",), "labview", ""),
     (_SHEETS, "spreadsheet", "a spreadsheet"),
 )
-READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
-_ALL = READERS | {s: (module, kind) for suffixes, module, kind in _CONVERTED for s in suffixes}
+_READERS = {suffix: (module, kind) for suffixes, module, kind in _FORMATS for suffix in suffixes}
+_CONVERTING = ("converted", "labview", "spreadsheet")  # to a file of another format
 _IN_PARTS = ("delimited", "parquet")  # they have `batches` and `names`, the others `offered`
 _WITH_TABLES = ("json_table", "matlab", "spreadsheet")
-SUFFIXES = tuple(_ALL)
+SUFFIXES = tuple(_READERS)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -121,7 +118,7 @@ def _suffix(path: Path) -> str:
 
 def _call(function: str, path: Path, *rest: Any) -> Any:
     """Return the result of a reader's function, in another process if its library may crash."""
-    module, kind = _ALL[_suffix(path)]
+    module, kind = _READERS[_suffix(path)]
     name = f"{__name__}.{module}"
     if module not in _IN_PARTS and function in ("names", "read"):
         name, rest = offered.__name__, (name, kind or "a table", *rest)
@@ -141,13 +138,15 @@ def _checked(
     """
     file = path
     try:
-        while _suffix(file) not in (*READERS, *but):
+        while True:
             if not is_known(file) and _suffix(file) != ".zip":
                 raise _unknown(file)
             _check(file)
+            module, _ = _READERS[_suffix(file)]
+            if module not in _CONVERTING or _suffix(file) in but:
+                break
             file = converted.converted(file, options, partial(_call, "convert"))
-        _check(file)
-        yield _ALL[_suffix(file)][0], file
+        yield module, file
     except InputError as error:
         if file != path:
             error.where = error.where.replace(str(file), str(path))

@@ -94,7 +94,6 @@ class Topic:
 _Topics = Iterator[tuple[list[Topic], dict[str, str]]]  # and advice where none can be decoded
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the fields of all topics whose type is defined in the file, or by ROS itself.
 

@@ -99,7 +99,7 @@ def _member(archive: zipfile.ZipFile, path: Path) -> str:
 def _is_known(name: str) -> bool:
     inside = PurePosixPath(name)
     hidden = any(part.startswith((".", "__MACOSX")) for part in inside.parts)
-    return inside.suffix.lower() in readers.READERS and not hidden
+    return inside.suffix.lower() in {*readers.SUFFIXES} - {*PACKED} and not hidden
 
 
 def _written(stream: IO[bytes], folder: Path, name: str, path: Path) -> Path:

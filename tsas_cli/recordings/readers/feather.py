@@ -1,7 +1,6 @@
 """Feather: Arrow's own files."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,6 @@ from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ReadOptions
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a Feather file; units from field metadata `unit`."""
     with pa.OSFile(str(path)) as stream, pa.ipc.open_file(stream) as file:

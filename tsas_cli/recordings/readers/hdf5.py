@@ -1,7 +1,6 @@
 """HDF5 files of any program, and the variables of those of MATLAB 7.3, as plain Python values."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,6 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the datasets of numbers by their paths, `group/name`; units from attributes.
 

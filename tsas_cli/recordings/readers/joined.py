@@ -1,7 +1,6 @@
 """One run from several files, each with a clock of its own: a `.join` file lists them."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path, PurePath
 
@@ -43,7 +42,6 @@ def _listed(path: Path) -> dict[str, JoinedFile]:
     return {n: parse(JoinedFile, one, f"{path}, {n}") for n, one in read_toml(path).items()}
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of numbers of all files as `part.column`, with the clock of their file.
 

@@ -1,19 +1,16 @@
 """JSON tables: rows, records or columns, at the top level or under a key."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.readers.offered import Column, Offered, flat
 from tsas_cli.recordings.readers.table import ReadOptions
-from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 
 
-@contextmanager
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a JSON table.
 
@@ -24,7 +21,7 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     InputError: it is no such table.
     """
     above: Raw = {}
-    content = read_json(path)
+    content = _content(path)
     for key in options.table.split(".") if options.table else ():
         if not isinstance(content, dict) or key not in content:
             keys_here = list(content) if isinstance(content, dict) else []
@@ -42,7 +39,11 @@ def tables(path: Path) -> list[str]:
 
     InputError: the file is not JSON, or nested too deep.
     """
-    return list(_tables(read_json(path), ""))
+    return list(_tables(_content(path), ""))
+
+
+def _content(path: Path) -> Any:
+    return read_json(path, lines=path.suffix.lower() != ".json")
 
 
 def _is_numbers(value: Any) -> bool:
@@ -82,22 +83,3 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
         expected="a list of rows, a list of records, or an object of columns",
         remedy=f'name the key that holds it in the map: table = "…" under [read]{keys}',
     )
-
-
-def convert(path: Path, folder: Path, _: ReadOptions) -> Path:
-    """Write the lines as one JSON list into a folder; return its path.
-
-    InputError: the file is not UTF-8.
-    """
-    made = folder / "lines.json"
-    before = "["
-    try:
-        with path.open(encoding="utf-8-sig") as lines, made.open("w", encoding="utf-8") as file:
-            for line in limits.lines(lines, path):
-                if line.strip():
-                    file.write(before + line.rstrip())
-                    before = ",\n"
-            file.write("]" if before != "[" else "[]")
-    except UnicodeError as error:
-        raise InputError("is not UTF-8", where=path, expected="JSON Lines") from error
-    return made

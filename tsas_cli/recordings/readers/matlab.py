@@ -4,7 +4,6 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -30,7 +29,6 @@ _PART = 1 << 12
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-@contextmanager
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
     """Yield the columns of a MATLAB file.
 
@@ -46,8 +44,15 @@ def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
         if name not in structs:
             raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
         content = content[name]
-    capture = find_capture(content, path)
-    if capture is not None:
+    found = {"": content} if _is_capture(content) else captures(content)
+    if len(found) > 1:
+        raise InputError(
+            f"holds {len(found)} captures: {', '.join(found)}",
+            where=path,
+            expected="one",
+            remedy='name it in the map: table = "…" under [read]',
+        )
+    for capture in found.values():
         yield channels_of(capture, path)
         return
     columns = list({column.name: column for column in _columns(content)}.values())
@@ -91,19 +96,15 @@ def check_unpacked(path: Path) -> None:
     The declared size of a variable may be false, so a file that could be large is first unpacked in
     parts to count its bytes.
     """
-    claimed, expanded = Expanded.of(path), Expanded.of(path)
+    expanded = Expanded.of(path)
     if expanded.of_file * _MOST_PACKED <= limits.HARMLESS:
         return
     with path.open("rb") as stream:
         order = _ORDERS.get(stream.read(_HEADER)[-2:], "")
         for kind, size in _elements(stream, order):
-            declared = (
-                _declared_size(stream.read(min(size, _PART)), order) if kind == _PACKED else size
-            )
-            claimed.add(declared, what="unpacked")
-        claimed.fits()
-        for kind, size in _elements(stream, order):
-            for part in _parts(stream, size) if kind == _PACKED else (size,):
+            is_packed = kind == _PACKED
+            expanded.add(0 if is_packed else size, what="unpacked")
+            for part in _parts(stream, size) if is_packed else ():
                 expanded.grow(part, what="unpacked")
     expanded.fits()
 
@@ -119,15 +120,6 @@ def _elements(stream: BinaryIO, order: str) -> Iterator[tuple[int, int]]:
         stream.seek(end)
 
 
-def _declared_size(packed: bytes, order: str) -> int:
-    """Return the declared size of a packed variable [bytes]; 0 if it cannot be unpacked."""
-    try:
-        tag = zlib.decompressobj().decompress(packed, _TAG)
-    except zlib.error:
-        return 0
-    return int(struct.unpack(f"{order}II", tag)[1]) if len(tag) == _TAG else 0
-
-
 def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
     """Yield the unpacked sizes of the parts of the next `size` bytes."""
     packed = zlib.decompressobj()
@@ -139,21 +131,6 @@ def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
             except zlib.error:  # the reader reports it
                 return
             content = packed.unconsumed_tail
-
-
-def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
-    """Return the struct that holds X and Y with data, or None; InputError: there are several."""
-    if _is_capture(content):
-        return content
-    found = captures(content)
-    if len(found) > 1:
-        raise InputError(
-            f"holds {len(found)} captures: {', '.join(found)}",
-            where=path,
-            expected="one",
-            remedy='name it in the map: table = "…" under [read]',
-        )
-    return next(iter(found.values()), None)
 
 
 def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:

@@ -1,12 +1,7 @@
 """ASAM MDF measurement files."""
 
-import gc
-import logging
 import struct
-import sys
-import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -36,14 +31,12 @@ _KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master
 _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the channels of an MDF file, with those marked as invalid as NaN.
 
     InputError: asammdf is not installed, or the file's blocks or samples exceed a limit.
     """
     asammdf = optional("asammdf", extra="mdf")
-    logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # our error repeats its log
     check_blocks(path)
     claimed = Expanded.of(path)
 
@@ -61,28 +54,21 @@ def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
         invalid = np.asarray(found.invalidation_bits, dtype=bool)
         return np.where(invalid, np.nan, floats(found.samples, name, path))
 
-    try:
-        with asammdf.MDF(path) as file:
-            columns = [
-                Column(
-                    channel.name,
-                    partial(values, channel.name, group, index),
-                    file.get_channel_unit(group=group, index=index),
-                    partial(lambda *at: signal(*at).timestamps, channel.name, group, index),
-                    _clock(file, group),
-                )
-                for group, content in enumerate(file.groups)
-                for index, channel in enumerate(content.channels)
-                if index != file.masters_db.get(group)
-            ]
-            header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
-            yield Offered(columns, header)
-    except Exception as error:  # the clean-up of half-made objects prints errors to stderr
-        hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
-        traceback.clear_frames(error.__traceback__)
-        gc.collect()
-        sys.unraisablehook = hook
-        raise
+    with asammdf.MDF(path) as file:
+        columns = [
+            Column(
+                channel.name,
+                partial(values, channel.name, group, index),
+                file.get_channel_unit(group=group, index=index),
+                partial(lambda *at: signal(*at).timestamps, channel.name, group, index),
+                _clock(file, group),
+            )
+            for group, content in enumerate(file.groups)
+            for index, channel in enumerate(content.channels)
+            if index != file.masters_db.get(group)
+        ]
+        header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
+        yield Offered(columns, header)
 
 
 def _clock(file: Any, group: int) -> str:

@@ -1,7 +1,6 @@
 """NumPy's own files, without objects: `.npy` and `.npz`."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ from tsas_cli.recordings.readers.offered import Column, Offered, columns_in
 from tsas_cli.recordings.readers.table import ReadOptions
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the vectors of a file by name; those of a matrix as in `columns_in`."""
     content = np.load(path, allow_pickle=False)

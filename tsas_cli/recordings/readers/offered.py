@@ -1,6 +1,7 @@
 """What most readers give: the columns that a file offers, each loaded when it is requested."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, is_dataclass
 from functools import partial
 from importlib import import_module
@@ -52,13 +53,12 @@ class Offered:
 
 
 def names(path: Path, module: str, kind: str, options: ReadOptions) -> list[str]:
-    """Return the names of a file's columns; `module` has a function `offered` for its format.
+    """Return the names of a file's columns; `module` has a generator `offered` for its format.
 
     InputError: the file is damaged, or the package for its format is not installed.
     """
-    with foreign(path, kind), import_module(module).offered(path, options) as offered:
-        found: list[str] = offered.names
-        return found
+    with _opened(path, module, kind, options) as offered:
+        return offered.names
 
 
 def read(
@@ -71,7 +71,7 @@ def read(
     InputError: as from `names`; or a column is missing or not numeric, the columns hold more than a
     file of this size can, their clocks differ and `resample` is not set, or a clock is no time.
     """
-    with foreign(path, kind), import_module(module).offered(path, options) as offered:
+    with _opened(path, module, kind, options) as offered:
         at = resolve(wanted, offered.names, path)
         expanded = Expanded.of(path)
         columns, times = dict[ColumnSource, Floats](), dict[ColumnSource, Floats]()
@@ -92,6 +92,12 @@ def read(
         units = {s: column.unit for s, column in found.items() if column.unit}
         units |= dict.fromkeys(typed, "s") | dict.fromkeys(clocks, clock_unit)
         return ColumnTable(columns, units, offered.header, typed=frozenset(typed))
+
+
+@contextmanager
+def _opened(path: Path, module: str, kind: str, options: ReadOptions) -> Iterator[Offered]:
+    with foreign(path, kind):
+        yield from import_module(module).offered(path, options)
 
 
 def _clock_unit(columns: Iterable[Column], path: Path, *, is_requested: bool) -> str:

@@ -78,7 +78,8 @@ def whole(parts: Iterable[ColumnTable]) -> ColumnTable:
     if len(tables) == 1:
         return first
     columns = {s: np.concatenate([t.columns[s] for t in tables]) for s in first.columns}
-    return replace(first, columns=columns)
+    numbers = np.concatenate([table.row_numbers for table in tables])
+    return replace(first, columns=columns, numbers=numbers)
 
 
 def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> Floats:

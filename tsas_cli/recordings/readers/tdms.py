@@ -1,7 +1,6 @@
 """TDMS files of LabVIEW."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from operator import getitem
 from pathlib import Path
@@ -15,7 +14,6 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
 
-@contextmanager
 def offered(path: Path, _: ReadOptions) -> Iterator[Offered]:
     """Yield the channels by name, as `group/name` if there are several groups.
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
@@ -29,8 +29,7 @@ def time_order(trial: RunSignals) -> Findings:
     if wrong.any():
         row = int(wrong.argmax()) + 1
         before, after = trial.time_s[row - 1], trial.time_s[row]
-        yield Finding(
-            "error",
+        yield error(
             "time_s",
             f"time {what} at {int(wrong.sum())} of {trial.time_s.size} rows, first at row "
             f"{trial.first_row + row} ({before:.6g} s, then {after:.6g} s)",
@@ -56,8 +55,7 @@ def time_batches(trial: RunSignals) -> Findings:
     }
     worst = max(costs, key=lambda name: costs[name], default=None)
     cost = "" if worst is None else f"; the wrong times change {worst} by {costs[worst]:.2g}"
-    yield Finding(
-        "error",
+    yield error(
         "time_s",
         f"rows come in batches of {batches.rows}: their times are {1e3 * batches.within_s:.3g} ms "
         f"apart, then {1e3 * batches.between_s:.4g} ms"
@@ -82,8 +80,7 @@ def time_jitter(trial: RunSignals) -> Findings:
     steady = interval < 2.5 * usual
     scatter = float(np.sqrt(np.mean((interval[steady] / usual - 1.0) ** 2)))
     if scatter > _TOLERATED:
-        yield Finding(
-            "warning",
+        yield warning(
             "time_s",
             f"the sample interval scatters by {100 * scatter:.3g} % about {1e3 * usual:.4g} ms "
             f"(from {1e3 * interval.min():.4g} to {1e3 * interval[steady].max():.4g} ms)",
@@ -114,8 +111,7 @@ def unsteady_sampling(trial: RunSignals) -> Findings:
     sizes = sorted(found.values())
     pairs = [b for a, b in pairwise(sizes) if b < _ALIKE * a]
     if pairs:
-        yield Finding(
-            "error",
+        yield error(
             None,
             f"the noise of {' and '.join(found)} grows with the speed as if the samples were "
             f"taken {1e3 * pairs[0]:.2g} ms (RMS) early or late",
@@ -169,8 +165,7 @@ def _missing_rows(trial: RunSignals) -> Iterator[Finding]:
     gaps = np.flatnonzero(interval > max(1.5 * median, median + 8.0 * scatter))
     if 0 < gaps.size < _COMMON * interval.size:
         longest = gaps[np.argmax(interval[gaps])]
-        yield Finding(
-            "warning",
+        yield warning(
             TIME,
             f"rows are missing at {count_of(gaps.size, 'place')}; the longest gap is "
             f"{interval[longest]:.4g} s at {trial.time_s[longest]:.6g} s "
@@ -182,17 +177,11 @@ def _missing_rows(trial: RunSignals) -> Iterator[Finding]:
 
 def _empty_cells(trial: RunSignals, name: str, empty: Mask) -> Finding:
     if empty.all() and (trial.overall is None or name not in trial.overall):
-        return Finding(
-            "error",
-            name,
-            f"{name} holds no value at all",
-            "leave the column out",
-        )
+        return error(name, f"{name} holds no value at all", "leave the column out")
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))
     starts, lengths = edges[::2], edges[1::2] - edges[::2]
     longest = int(np.argmax(lengths))
-    return Finding(
-        "warning",
+    return warning(
         name,
         f"{name} is empty in {int(empty.sum())} of {empty.size} rows, at "
         f"{count_of(starts.size, 'place')}; the longest has {lengths[longest]} rows "

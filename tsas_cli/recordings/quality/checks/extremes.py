@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, Severity
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, Severity, error
 from tsas_cli.recordings.quality.samples import (
     alternates,
     calm_noise,
@@ -42,8 +42,7 @@ def ac_coupled(trial: RunSignals) -> Findings:
         began = float(np.nanmean(values[: trial.strokes[0].stop + 1]))
         mean = float(np.nanmean(late))
         if abs(mean) < _ZERO * span < began and np.nanmean(late < 0.0) > _NEGATIVE:
-            yield Finding(
-                "error",
+            yield error(
                 name,
                 f"{name} begins at {began:.3g} N and has a mean of {mean:.2g} N in the second half "
                 f"of the run, with a preload of {preload:g} N: its amplifier is coupled to AC",
@@ -98,8 +97,7 @@ def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Fin
     ]
     if flat:
         seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
-        yield Finding(
-            "error",
+        yield error(
             name,
             f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in "
             f"{count_of(len(flat), 'plateau')} while the motion goes on",
@@ -119,8 +117,7 @@ def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[F
     near = [e for e in filter(None, ends) if abs(e[0] - level) < _NEAR * trial.visible(name)]
     lacks = [e[1] for e in near if e[2]]
     if len(lacks) >= max(_FEWEST_STROKES, _MOST_OF_THEM * len(near)):
-        yield Finding(
-            "error",
+        yield error(
             name,
             f"{name} ends at its {end} level {level:.4g} in {count_of(len(lacks), 'stroke')} while "
             f"the motion goes on: up to {max(lacks):.2g} {name.rsplit('_', 1)[1]} are cut off",

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals, Stroke
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
@@ -41,8 +41,7 @@ def sign(trial: RunSignals) -> Findings:
 
 
 def _wrong_sign(column: str, what: str) -> Finding:
-    return Finding(
-        "error",
+    return error(
         column,
         f"{column} {what}",
         f"invert the sign of {column} at ingest, after checking how the sensor is mounted",
@@ -66,8 +65,7 @@ def negative_tension(trial: RunSignals) -> Findings:
         low, high = np.nanpercentile(values, (0.5, 98.0))
         if low < -limit and high >= -trial.visible(name):  # else the sign check reports it
             share = 100.0 * float(np.mean(values < 0.0))
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"{name} is negative in {share:.3g} % of the samples, down to {low:.4g} N",
                 "add the preload at ingest if the sensor was zeroed under it, or correct its "
@@ -96,8 +94,7 @@ def exchanged(trial: RunSignals) -> Findings:
     excess = _excess_while_pulling(trial)
     visible = 0.5 * (trial.visible("f_in_N") + trial.visible("f_out_N"))
     if excess < -max(_CLEAR_EXCESS * trial.sizes["f_in_N"].span, visible):
-        yield Finding(
-            "error",
+        yield error(
             "f_in_N",
             f"at the same f_out_N, f_in_N is {-excess:.3g} N lower in contraction than in "
             "loosening; friction makes it higher",
@@ -206,8 +203,7 @@ def few_reversals(trial: RunSignals) -> Findings:
     if reversals >= _ENOUGH_REVERSALS:
         return
     moves = f"has {count_of(reversals, 'reversal')}"
-    yield Finding(
-        "warning",
+    yield warning(
         "x_in_mm",
         f"x_in_mm {moves if trial.strokes else 'does not move visibly'}; two full cycles have "
         f"{_ENOUGH_REVERSALS} reversals",
@@ -239,8 +235,7 @@ def no_steady_motion(trial: RunSignals) -> Findings:
         strokes = [s for s in trial.strokes if s.direction == direction]
         share = max((_moving(trial, n, s) for n in indicators for s in strokes), default=1.0)
         if share < _ENOUGH_MOVING:
-            yield Finding(
-                "warning",
+            yield warning(
                 indicators[0],
                 f"no steady {phase}: by {' and '.join(indicators)}, the distal end moves in at "
                 f"most {100 * share:.2g} % of a stroke of x_in_mm",

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import largest
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.support.arrays import Mask
 from tsas_cli.support.wording import count_of
 
 _ASIDE = 3  # neighbours on each side
@@ -40,8 +39,7 @@ def outlier(trial: RunSignals) -> Findings:
         usual = float(np.nanmedian(values))
         farthest = rows[np.argmax(np.abs(values[rows] / 2.0 - usual / 2.0))]
         plausible = abs(values[farthest]) <= largest(name)
-        yield Finding(
-            "error",
+        yield error(
             name,
             f"{name} holds {count_of(rows.size, 'sample')} far from "
             f"{'the samples before and after' if plausible else 'any plausible value'}; the "
@@ -74,8 +72,7 @@ def _frequent(trial: RunSignals) -> Iterator[Finding]:
         if np.count_nonzero(far) < _APART * between:
             continue
         if _RARE < float(far.mean()) < _OFTEN and np.mean(parts) > _EVERYWHERE:
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"{100.0 * far.mean():.2g} % of the samples of {name} deviate from the median of "
                 f"their neighbours by more than {_FAR:g} times its noise",
@@ -113,8 +110,7 @@ def bursts(trial: RunSignals) -> Findings:
         if bursts and float(loud.mean()) < _MOST:
             start = _BLOCK * int(bursts[0][0])
             more = float(np.median(level[loud]) / np.median(level))
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"the noise of {name} rises to {more:.2g} times its level in "
                 f"{count_of(len(bursts), 'burst')}, the first at {trial.time_s[start]:.4g} s",
@@ -138,8 +134,7 @@ def hum(trial: RunSignals) -> Findings:
         spectrum = noise_spectrum(trial.time_s, values, _HUM_S)
         line = None if spectrum is None else _line(spectrum)
         if line is not None:
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"{name} oscillates at about {line:.2g} Hz all the time, whatever the motion",
                 "look for hum, aliased perhaps, and for what runs at this frequency; shield the "
@@ -201,8 +196,7 @@ def filtered(trial: RunSignals) -> Findings:
         change = np.interp(late_s, trial.time_s, values) - values
         wrong = float(np.sqrt(np.mean(change**2)))
         if noise > max(_STEPS * size.step, _COMPUTED * size.span) and wrong > _MATTERS * noise:
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"the noise of {name} ends at about {end_Hz:.2g} Hz, as behind a low-pass filter "
                 f"(the sampling rate is {1.0 / trial.step_s:.4g} Hz)",
@@ -220,15 +214,11 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
         return None
     stands_out = spectrum.power > _FALLS * top
     highest = float(spectrum.power[stands_out & spectrum.is_noise].max(initial=0.0))
-    noisy = stands_out & _up_from_here(spectrum.is_noise | ~stands_out)
+    or_below = spectrum.is_noise | ~stands_out
+    noisy = stands_out & np.logical_and.accumulate(or_below[::-1])[::-1]  # and in all bands above
     even = np.count_nonzero(noisy & (spectrum.power > highest / _EVEN))
     computed = rounding == 0.0 or top < _FLOOR * rounding
     if even < _FEWEST_BANDS[computed]:
         return None  # what is left of a smooth motion
     level = float(np.median(spectrum.power[noisy]))
     return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())
-
-
-def _up_from_here(of_bands: Mask) -> Mask:
-    """Return in which bands, and in all above, something holds, shape (bands,)."""
-    return np.logical_and.accumulate(of_bands[::-1])[::-1]

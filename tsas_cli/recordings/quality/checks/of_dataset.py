@@ -5,7 +5,7 @@ from collections.abc import Callable
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.copies.search import find_copies
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, warning
 from tsas_cli.support.errors import printable
 
 
@@ -63,8 +63,7 @@ def manifest_unit(manifest: Manifest) -> Findings:
         for key, implausible, likely in suspicions:
             value = values[key]
             if value is not None and implausible(value):
-                yield Finding(
-                    "warning",
+                yield warning(
                     None,
                     f"dataset.toml says {place}{key} = {value:g}, which looks like {likely}",
                     f"convert the value to the unit in the key, if it is in {likely}",

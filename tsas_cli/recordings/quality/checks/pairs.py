@@ -5,28 +5,25 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
 
-# Each ratio, if a channel were in that unit.
-_TRAVEL = {
-    1 / 10: "x_out_mm looks like centimetre",
-    1 / 25.4: "x_out_mm looks like inch",
-    1 / 1000: "x_out_mm looks like metre",
-    10.0: "x_in_mm looks like centimetre",
-    25.4: "x_in_mm looks like inch",
-    1000.0: "x_in_mm looks like metre",
-    2.0: "x_in_mm looks like taken with the radius of a wheel for its diameter",
+_LENGTHS = {10.0: "centimetre", 25.4: "inch", 1000.0: "metre"}  # in mm
+_FORCES = {4.448: "pound-force", 9.807: "kilogram-force", 1000.0: "kilonewton"}  # in N
+
+
+def _ratios(lower: str, upper: str, units: Mapping[float, str]) -> dict[float, str]:
+    """Return what the ratio of two channels is if one of them is in another unit."""
+    return {1.0 / size: f"{upper} looks like {unit}" for size, unit in units.items()} | {
+        size: f"{lower} looks like {unit}" for size, unit in units.items()
+    }
+
+
+_TRAVEL = _ratios("x_in_mm", "x_out_mm", _LENGTHS) | {
+    2.0: "x_in_mm looks like taken with the radius of a wheel for its diameter"
 }
-_TENSION = {
-    1 / 4.448: "f_out_N looks like pound-force",
-    1 / 9.807: "f_out_N looks like kilogram-force",
-    1 / 1000: "f_out_N looks like kilonewton",
-    4.448: "f_in_N looks like pound-force",
-    9.807: "f_in_N looks like kilogram-force",
-    1000.0: "f_in_N looks like kilonewton",
-}
+_TENSION = _ratios("f_in_N", "f_out_N", _FORCES)
 _STIFFNESS = {
     1 / 4.448: "f_out_N looks like pound-force",
     1 / 5.710: "load_stiffness_N_per_mm looks like pound-force per inch",
@@ -36,9 +33,7 @@ _STIFFNESS = {
     "load's springs are stated",
     2.0: "x_out_mm looks like taken with the radius of a wheel for its diameter, or one of two "
     "springs is stated",
-    10.0: "x_out_mm looks like centimetre",
-    25.4: "x_out_mm looks like inch",
-    1000.0: "x_out_mm looks like metre",
+    **{size: f"x_out_mm looks like {unit}" for size, unit in _LENGTHS.items()},
 }
 _TWICE = 1.2  # factor within which x_in is taken for twice what it is
 _STRETCH = 10.0  # times what the whole tendon stretches by at the largest change of the tension
@@ -61,30 +56,25 @@ def unit(trial: RunSignals) -> Findings:
     """
     interval = trial.step_s
     if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
-        yield Finding(
-            "error",
+        yield error(
             "time_s",
             f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
             f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
             "check the unit of time_s and set it at ingest",
         )
     tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
+    travel, farther = None, 0.0
     driven = trial.recording.run.load == "displacement"
-    travel = None
     if trial.strokes and not driven and "x_out_mm" in trial.channels:
         travel = _slope(trial, "x_in_mm", "x_out_mm")
-    x_in, x_out = (trial.sizes.get(name) for name in ("x_in_mm", "x_out_mm"))
-    farther = 0.0
-    if x_in and x_out and trial.strokes and not driven:
-        farther = x_out.span / x_in.span
+        farther = trial.sizes["x_out_mm"].span / trial.sizes["x_in_mm"].span
     if travel is None and tension is None and stiffness is None and farther <= _FARTHER:
         yield NotChecked("no two channels whose sizes must agree were recorded and move")
     moves = "x_out_mm moves {:.4g} mm per mm of x_in_mm"
     of_travel = [*_suspect_unit(travel, moves, _TRAVEL, 1.4), *_halved(trial, travel)]
     yield from of_travel
     if farther > _FARTHER and not of_travel:
-        yield Finding(
-            "warning",
+        yield warning(
             "x_out_mm",
             f"x_out_mm moves {farther:.3g} times as far as x_in_mm; a tendon moves its load less",
             "check unit and pulley radius of both; of a joint or a tip, the arm that moves it",
@@ -96,8 +86,7 @@ def unit(trial: RunSignals) -> Findings:
     suspected = list(_suspect_unit(stiffness, slope, _STIFFNESS, 1.1))
     yield from suspected
     if stiffness is not None and not suspected and not _as_stated(stiffness):
-        yield Finding(
-            "warning",
+        yield warning(
             None,
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
@@ -116,8 +105,7 @@ def _halved(trial: RunSignals, travel: float | None) -> Iterator[Finding]:
     stiffness_N = 1e3 * modulus * math.pi * diameter**2 / 4.0
     lost = (1.0 - travel) * trial.sizes["x_in_mm"].span
     if lost > _STRETCH * forces.span * length / stiffness_N:
-        yield Finding(
-            "error",
+        yield error(
             "x_in_mm",
             f"x_out_mm moves {travel:.4g} mm per mm of x_in_mm, and the tendon cannot stretch by "
             f"the {lost:.3g} mm that are lost; x_in_mm looks like taken with the diameter of a "
@@ -143,8 +131,7 @@ def _suspect_unit(
     nearest = min(likely, key=lambda factor: abs(math.log(ratio / factor)))
     if abs(math.log(ratio / nearest)) < math.log(tolerance):
         column = likely[nearest].split()[0]
-        yield Finding(
-            "error",
+        yield error(
             None if column.startswith("load") else column,
             f"{sentence.format(ratio)}; {likely[nearest]}",
             f"check the unit of {column} and set it at ingest",
@@ -218,8 +205,7 @@ def delay(trial: RunSignals) -> Findings:
     rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
     matters_s = max(0.5 * trial.step_s, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
     if abs(mean) - half > matters_s:
-        yield Finding(
-            "warning",
+        yield warning(
             "f_out_N",
             f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
             f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
@@ -231,11 +217,8 @@ def delay(trial: RunSignals) -> Findings:
 
 def _delay(trial: RunSignals, rows: slice) -> float:
     """Return the delay of f_out behind x_out in one cycle [s]; NaN if it is not identifiable."""
-    x, y, time = (
-        trial.channels["x_out_mm"][rows],
-        trial.channels["f_out_N"][rows],
-        trial.time_s[rows],
-    )
+    x, y = (trial.channels[name][rows] for name in ("x_out_mm", "f_out_N"))
+    time = trial.time_s[rows]
     valid = np.isfinite(x) & np.isfinite(y)
     width = max(int(valid.sum()) // _ROWS, 1)
     if valid.sum() < 2 * _ROWS or np.ptp(x[valid]) < 2.0 * trial.visible("x_out_mm"):

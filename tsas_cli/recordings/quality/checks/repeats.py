@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Finding, Findings
+from tsas_cli.recordings.quality.finding import Findings, warning
 from tsas_cli.recordings.quality.samples import is_held, rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
@@ -28,8 +28,7 @@ def repeated_values(trial: RunSignals) -> Findings:
             continue
         share, chance = _beside_one_step(values[fresh], trial.sizes[name].step)
         if share > chance:
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"{name} repeats its value in {100.0 * share:.2g} % of the rows, its noise would "
                 f"in {100.0 * chance:.2g} %: as behind a median filter",
@@ -70,8 +69,7 @@ def slow_channel(trial: RunSignals) -> Findings:
         change = np.abs(np.diff(values))
         if np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values):
             rows = rows_between_changes(values[fresh])
-            yield Finding(
-                "warning",
+            yield warning(
                 name,
                 f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
                 "record the channel at its own rate, or correct for half an update of delay",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked
+from tsas_cli.recordings.quality.finding import Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.samples import alternates, smallest_change
 from tsas_cli.recordings.quality.trial import GAP, RunSignals
 from tsas_cli.support.arrays import Floats, Mask
@@ -66,8 +66,7 @@ def lost_samples(trial: RunSignals) -> Findings:
         lost = [lost_s for _, lost_s in places]
         first, lost_s = places[0]
         at = first + rows - 1
-        yield Finding(
-            "warning",
+        yield warning(
             None,
             f"all channels jump at {count_of(len(places), 'place')}, as if samples were lost and "
             f"the gap closed up: {lost_s:.2g} s at {trial.time_s[at]:.5g} s"
@@ -78,8 +77,7 @@ def lost_samples(trial: RunSignals) -> Findings:
     rows_of_places = {place + rows - 1 for place, _ in places}
     for at in _torn(trial, list(moving)):
         if all(abs(at - row) > rows for row in rows_of_places):
-            yield Finding(
-                "warning",
+            yield warning(
                 None,
                 f"x_in_mm and other channels jump from one row to the next at "
                 f"{trial.time_s[at]:.5g} s, as if samples were lost there, a reversal among them",
@@ -181,8 +179,7 @@ def repeated_rows(trial: RunSignals) -> Findings:
     repeated &= noisy
     count, expected = int(repeated.sum()), float(chance[noisy].sum())
     if count > 3.0 * expected + 10.0:
-        yield Finding(
-            "warning",
+        yield warning(
             None,
             f"{count} of {repeated.size} rows ({100 * count / repeated.size:.2g} %) repeat the row "
             f"before them in all channels; with this noise about {expected:.0f} would",
@@ -234,8 +231,7 @@ def repeated_buffer(trial: RunSignals) -> Findings:
     starts = [int(a) for a, b in pairwise(edges) if lag[a] == b - a >= _FEWEST_OF_A_BUFFER]
     if starts:
         first = starts[0]
-        yield Finding(
-            "error",
+        yield error(
             None,
             f"{count_of(len(starts), 'block')} of rows repeat the block before in all channels; "
             f"the first has {lag[first]} rows and begins at {trial.time_s[first]:.6g} s, "
@@ -275,8 +271,7 @@ def jump(trial: RunSignals) -> Findings:
         alone = all(steps[beside].max() <= _QUIET * _elsewhere(steps, beside) for steps in others)
         if size > least and alone:
             before, after = trial.channels[name][at : at + 2]
-            yield Finding(
-                "error",
+            yield error(
                 name,
                 f"{name} jumps from {before:.6g} to {after:.6g} mm at {trial.time_s[at + 1]:.6g} "
                 f"s, row {trial.first_row + at + 1}, and no other channel jumps there",

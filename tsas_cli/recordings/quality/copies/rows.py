@@ -12,7 +12,7 @@ import numpy.typing as npt
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.pieces import Piece, known_columns, long_run, pieces
+from tsas_cli.recordings.pieces import Piece, long_run, pieces
 from tsas_cli.recordings.quality.samples import alternates, calm_noise, step_of
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.support.arrays import Floats, Indices
@@ -118,7 +118,7 @@ class Reader:
         if run.id in self.cache:
             yield self.cache[run.id]
         elif long := long_run(folder, run):
-            yield from pieces(long, known_columns(long), strict=self.strict)
+            yield from pieces(long, long.known, strict=self.strict)
         else:
             piece = Piece(0, dict(read_recording(folder, run, strict=self.strict).columns))
             values = piece.rows * len(piece.columns)
