@@ -52,13 +52,6 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
     assert said.startswith("may be zero: f_in_offset_N 0.05 [-0.01, 0.11] N")
 
 
-def test_an_interval_that_is_cut_at_the_neutral_value_holds_it():
-    cut = estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)
-    assert may_be_zero("drive_friction", (cut,))
-    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 9.0)
-    assert not may_be_zero("drive_friction", (clear,))
-
-
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
     sum_known = np.array([[1.0, -0.99], [-0.99, 1.0]])
     two = (
@@ -186,7 +179,7 @@ def test_a_split_is_said_with_its_values():
     assert split_in_words(replace(runs, values=five[:4])).endswith("3 (a), 1 (b), 2 (c) and 5 (d)")
 
 
-def test_only_an_effect_with_a_size_may_be_zero():
+def test_only_an_effect_with_a_size_may_be_zero_also_where_its_interval_is_cut_there():
     assert may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)])
     assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)])
     assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.5, 0.9)])

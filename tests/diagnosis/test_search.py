@@ -96,17 +96,15 @@ def made(monkeypatch):
     return lambda mean_squares: fits_over(Bench(mean_squares), (A, C, D))
 
 
-@pytest.mark.parametrize(("left", "quiet"), [(1.149, True), (1.151, False)])
-def test_it_is_quiet_where_the_blur_of_a_right_model_begins(made, left, quiet, monkeypatch):
+@pytest.mark.parametrize(
+    ("left", "complete", "quiet"),
+    [(1.149, False, True), (1.151, False, False), (2.9, True, True), (3.1, True, False)],
+)
+def test_it_is_quiet_up_to_the_blur_of_a_right_model_and_slow_noise_up_to_its_limit(
+    made, left, complete, quiet, monkeypatch
+):
     fits = made({names(A): left})
-    monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
-    assert s.is_quiet(fits, names(A)) == quiet
-
-
-@pytest.mark.parametrize(("left", "quiet"), [(2.9, True), (3.1, False)])
-def test_slow_noise_is_quiet_too_up_to_its_limit(made, left, quiet, monkeypatch):
-    fits = made({names(A): left})
-    monkeypatch.setattr(s, "is_complete", lambda fits, names: True)
+    monkeypatch.setattr(s, "is_complete", lambda fits, names: complete)
     assert s.is_quiet(fits, names(A)) == quiet
 
 
@@ -300,9 +298,7 @@ def test_a_rival_that_is_better_beside_the_others_takes_its_place(made, monkeypa
     """Found first, C is worse than D once A is there; alone, it is better."""
     alone = {names(): 9.0, names(A): 5.0, names(C): 3.0, names(D): 4.0}
     fits = made(alone | {names(A, C): 1.2, names(A, D): 1.0, names(C, D): 2.9})
-    monkeypatch.setattr(
-        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
-    )
+    monkeypatch.setattr(rivals_module, "add", lambda *_: ALL_CONVINCE)
     assert exchanged(fits, names(A, C)) == names(A, D)
     assert exchanged(fits, names(A, D)) == names(A, D)
 
@@ -310,9 +306,7 @@ def test_a_rival_that_is_better_beside_the_others_takes_its_place(made, monkeypa
 def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made, monkeypatch):
     """A size at its bound does not count, a shape does."""
     fits = made({names(): 9.0, names(A): 1.0, names(C): 1.0, names(D): 1.5})
-    monkeypatch.setattr(
-        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
-    )
+    monkeypatch.setattr(rivals_module, "add", lambda *_: ALL_CONVINCE)
     assert exchanged(fits, names(A)) == names(A)
     assert exchanged(fits, names(C)) == names(C)
     for name, at_bound in ((A, [False]), (C, [True, False])):
