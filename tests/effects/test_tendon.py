@@ -11,14 +11,11 @@ from tests.effects.runs import UP_AND_DOWN, A, run
 from tests.physics.references import (
     GROUP_A,
     LOADED_BY_DISPLACEMENT,
-    branches,
     course_of,
     slip_chain,
 )
-from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck, stribeck_factor
-from tsas_cli.physics.response import NODES, DriveInput, simulate
+from tsas_cli.physics.response import NODES
 from tsas_cli.physics.rig import with_values
 
 
@@ -146,36 +143,6 @@ def test_a_tendon_at_rest_is_a_rod_on_bristles(sign):
     q = math.sqrt(A * 25.0 / (L * LENGTH) / EA)
     stiffness = EA * q / math.tanh(q * L)
     np.testing.assert_allclose(f_in - 25.0, stiffness * x, atol=2e-3 * stiffness * np.abs(x).max())
-
-
-EA = GROUP_A.tendon_stiffness_N
-MOTION = np.interp(np.linspace(0, 6, 3000), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, -4])
-
-
-def with_free(proximal, distal):
-    return GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(proximal, distal)))
-
-
-def test_a_free_length_is_a_rod():
-    assert free_compliance(150.0, 6e4) == pytest.approx(0.0025)
-
-
-def test_at_the_drive_it_takes_up_travel_by_its_tension():
-    f_in, f_out, phase = branches(MOTION, with_free(152.0, 0.0))
-    inside = MOTION - (f_in - 25.0) * 152.0 / EA
-    nominal = branches(inside, GROUP_A)
-    np.testing.assert_allclose(f_in, nominal[0], rtol=1e-9)
-    np.testing.assert_allclose(f_out, nominal[1], rtol=1e-9)
-    np.testing.assert_array_equal(phase, nominal[2])
-
-
-def test_at_the_load_it_softens_the_spring_and_moves_the_output_less():
-    spring = GROUP_A.load_stiffness_N_per_mm
-    softer = GROUP_A._replace(load_stiffness_N_per_mm=1.0 / (1.0 / spring + 61.0 / EA))
-    f_in, f_out, _ = branches(MOTION, with_free(0.0, 61.0))
-    np.testing.assert_allclose(f_in, branches(MOTION, softer)[0], rtol=1e-9)
-    response = simulate(with_free(0.0, 61.0), DriveInput(MOTION))
-    np.testing.assert_allclose(response.x_out_mm, (f_out - 25.0) / spring, atol=1e-9)
 
 
 DRAG = 3.0
