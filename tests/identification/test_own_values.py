@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.identification.recorded import ran
+from tests.identification.recorded import clean, ran
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -11,7 +11,7 @@ from tsas_cli.identification.quantities import QUANTITIES
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import conditions
 from tsas_studies.challenge.rig.sensors import Sensors, measure
-from tsas_studies.challenge.rig.tendon import Rig, simulate
+from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
 VALUES = {
@@ -33,7 +33,7 @@ def model(**further):
 
 @pytest.fixture(scope="module")
 def columns():
-    return measure(simulate(TRUE, sine(rate_Hz=400.0)), Sensors(rate_Hz=200.0), seed=1)
+    return measure(clean(TRUE, sine(rate_Hz=400.0)), Sensors(rate_Hz=200.0), seed=1)
 
 
 def own_values(of, columns, **changes):

@@ -30,10 +30,12 @@ BASELINES = [name for name in TOOLS if name != "diagnose"]
 
 @pytest.fixture(scope="module")
 def sealed(tmp_path_factory):
-    """A set of one case with hidden friction and one with nothing hidden."""
+    """Two runs of a case with hidden friction, and of one with nothing hidden."""
     out = tmp_path_factory.mktemp("set")
     cases = (Case("friction", "one", 1.0, (HIDDEN,), 5, 0), Case("plain", "nothing", 0.0, (), 5, 1))
-    make(out, cases, rate_Hz=30.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("tsas_studies.challenge.make.RUNS", "ab")
+        make(out, cases, rate_Hz=30.0)
     answers = json.loads((out / "answers.json").read_text(encoding="utf-8"))["cases"]
     return {case["name"]: out / "cases" / name / "dataset" for name, case in answers.items()}
 
