@@ -30,12 +30,10 @@ BASELINES = [name for name in TOOLS if name != "diagnose"]
 
 @pytest.fixture(scope="module")
 def sealed(tmp_path_factory):
-    """Two runs of a case with hidden friction, and of one with nothing hidden."""
+    """A set of one case with hidden friction and one with nothing hidden."""
     out = tmp_path_factory.mktemp("set")
     cases = (Case("friction", "one", 1.0, (HIDDEN,), 5, 0), Case("plain", "nothing", 0.0, (), 5, 1))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("tsas_studies.challenge.make.RUNS", "ab")
-        make(out, cases, rate_Hz=30.0)
+    make(out, cases, rate_Hz=30.0)
     answers = json.loads((out / "answers.json").read_text(encoding="utf-8"))["cases"]
     return {case["name"]: out / "cases" / name / "dataset" for name, case in answers.items()}
 
