@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.identification.recorded import TRUE, VALUES
 from tests.identification.test_odd_recordings import (
     CHANNELS,
-    TRUE,
-    VALUES,
     calibrated,
     fitted,
     is_right,

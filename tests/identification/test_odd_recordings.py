@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.identification.recorded import clean
+from tests.identification.recorded import TRUE, VALUES, clean
 from tests.identification.recorded import ran as recorded_as
 from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.comparison import compare
@@ -19,13 +19,6 @@ from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
 from tsas_studies.challenge.rig.sensors import PERFECT, Sensor, Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig
 
-TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
-VALUES = {
-    "friction_coefficient": 0.135,
-    "load_stiffness_N_per_mm": 1.45,
-    "preload_N": 27.0,
-    "tendon_stiffness_N": TRUE.axial_stiffness,
-}
 SENSORS = Sensors(rate_Hz=100.0)
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")
 
