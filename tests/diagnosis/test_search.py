@@ -166,13 +166,8 @@ def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_two_that_hide_each_other_are_found_together(made, sign):
     """Each takes next to nothing away alone: they are two sides of nearly the same signature."""
-    rng = np.random.default_rng(3)
-    common, apart, other = np.linalg.qr(rng.standard_normal((SIZE, 3)))[0].T
-    signatures = {
-        A: common[:, None],
-        C: (common + 0.1 * apart)[:, None],
-        D: other[:, None],
-    }
+    common, apart, other = pairs(3)
+    signatures = {A: common[:, None], C: (common + 0.1 * apart)[:, None], D: other[:, None]}
     fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
     fits.trial(names()).solution.residual = sign * apart
     seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
@@ -183,8 +178,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
 
 @pytest.mark.parametrize("squares", [3.99, 3.5])
 def test_a_pair_has_to_convince_and_to_matter(made, squares):
-    rng = np.random.default_rng(3)
-    common, apart = np.linalg.qr(rng.standard_normal((SIZE, 2)))[0].T
+    common, apart = pairs(2)
     signatures = {A: common[:, None], C: (common + 0.1 * apart)[:, None]}
     fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
     fits.trial(names()).solution.residual = apart
