@@ -17,13 +17,11 @@ from tests.diagnosis.searched import (
     C,
     D,
     E,
-    evenly,
     fits_over,
     names,
     screened,
     search_over,
     seen,
-    without_tolerances,
 )
 from tsas_cli.diagnosis import fits as fits_module
 from tsas_cli.diagnosis import search as s
@@ -193,8 +191,7 @@ KNOWN = (A, B, C, D, E)
 @pytest.fixture
 def grown(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
-    monkeypatch.setattr(fits_module, "held_out_squares", evenly)
-    without_tolerances(monkeypatch)
+    search_over(monkeypatch)
 
     def make(mean_squares, **of_bench):
         bench = Bench(defaultdict(lambda: 8.0, mean_squares), **of_bench)
