@@ -14,7 +14,6 @@ from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.sensors import low_pass
 
 TIME_S = np.arange(UP_AND_DOWN.size) * 0.02
 DRIFTED = (1.0 - np.exp(-0.1 * TIME_S)) / 0.1
@@ -61,20 +60,6 @@ def test_a_late_channel_shows_what_was(channel, late):
 
 
 LAG = 0.08
-
-
-def filtered(values, time_s, lag_s=LAG):
-    return low_pass(values, time_s, lag_s, np.full(5, np.nan))
-
-
-def test_a_sine_loses_amplitude_and_phase():
-    """By 1/√(1 + (ωτ)²) and atan ωτ, once it has settled."""
-    t, omega = np.arange(0.0, 4.0, 1e-3), 9.0
-    y = filtered(np.sin(omega * t), t)
-    gain, phase = 1.0 / math.hypot(1.0, omega * LAG), math.atan(omega * LAG)
-    settled = t > 15.0 * LAG
-    expected = gain * np.sin(omega * t - phase)
-    np.testing.assert_allclose(y[settled], expected[settled], atol=2e-5)
 
 
 def test_after_a_step_a_low_pass_comes_by_an_exponential():
