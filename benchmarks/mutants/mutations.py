@@ -6,10 +6,6 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import cosmic_ray.plugins
-from cosmic_ray.ast import ast_nodes, get_ast
-from cosmic_ray.mutating import mutate_code
-
 BINARY = ("Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul", "FloorDiv_Mul", "Mod_Mul")
 MASKS = ("BitAnd_BitOr", "BitOr_BitAnd")
 COMPARED = (
@@ -58,7 +54,10 @@ class Mutant:
 
     def source(self, root: Path) -> str:
         """Return the text of the mutated file."""
-        operator = cosmic_ray.plugins.get_operator(self.operator)()
+        from cosmic_ray.mutating import mutate_code  # a second that only mutants are worth
+        from cosmic_ray.plugins import get_operator
+
+        operator = get_operator(self.operator)()
         text = mutate_code((root / self.path).read_text(), operator, self.occurrence)
         if text is None:
             raise LookupError(f"{self.name}: there is no such place")
@@ -77,13 +76,16 @@ class Mutant:
 @cache
 def mutants(root: Path, path: str) -> tuple[Mutant, ...]:
     """Return every mutant of a file, none of them in an annotation or a guard."""
+    from cosmic_ray.ast import ast_nodes, get_ast
+    from cosmic_ray.plugins import get_operator
+
     text = (root / path).read_text()
     nodes = list(ast_nodes(get_ast(text)))
     left_out = annotations(text) + guards(text)
     calculated, lines = operations(text), statements(text)
     found = []
     for name in OPERATORS:
-        operator = cosmic_ray.plugins.get_operator(name)()
+        operator = get_operator(name)()
         places = [start for node in nodes for start, _ in operator.mutation_positions(node)]
         found += [
             Mutant(path, name, occurrence, start[0], lines.get(start[0], (start[0],)))

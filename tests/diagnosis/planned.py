@@ -10,13 +10,8 @@ from tsas_cli.effects.effect import Effect
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.manifest import Manifest
+from tsas_studies.challenge.rig.recordings import DATA_SHEET
 
-SHEET = {
-    "tendon_diameter_mm": 1.2,
-    "tendon_modulus_GPa": 60.0,
-    "friction_coefficient": 0.125,
-    "load_stiffness_N_per_mm": 1.579,
-}
 NOISE = {"x_in_mm": 0.01, "x_out_mm": 0.01, "f_in_N": 0.1, "f_out_N": 0.1}
 
 
@@ -40,7 +35,7 @@ def rig_file(*runs: PlannedRun, **noise: float) -> RigFile:
         format=1,
         kind="plan",
         name="bench",
-        rig=SHEET,
+        rig=DATA_SHEET,
         sensors={"rate_Hz": 100.0} | NOISE | noise,
         run=runs,
     )
@@ -48,7 +43,7 @@ def rig_file(*runs: PlannedRun, **noise: float) -> RigFile:
 
 def prepared(file: RigFile) -> tuple[Manifest, list[Prepared]]:
     """Return the runs of a file as if they had been recorded, and the manifest that they make."""
-    sheet = {"format": 1, "name": "t", "kind": "simulated", "rig": SHEET}
+    sheet = {"format": 1, "name": "t", "kind": "simulated", "rig": DATA_SHEET}
     none = {"id": "none", "file": "none", "sha256": "0" * 64}
     model = data_sheet(Manifest.model_validate(sheet | {"run": [none]}))
     recordings = simulated_recordings(file.run, file.sensors, model.rig, FIRST)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.diagnosis.planned import run
 from tests.physics.references import GROUP_A
 from tsas_cli.diagnosis.candidates import (
     candidates,
@@ -12,21 +13,11 @@ from tsas_cli.diagnosis.candidates import (
     recorded_limits,
     within,
 )
-from tsas_cli.diagnosis.rig_file import Limits, PlannedRun
+from tsas_cli.diagnosis.rig_file import Limits
 
 
-def planned(run_id="a", **other):
-    values = {
-        "id": run_id,
-        "sheath_length_mm": 785.0,
-        "total_bend_rad": 3.0,
-        "preload_N": 25.0,
-        "motion": "sine",
-        "amplitude_mm": 10.0,
-        "speed_mm_per_s": 8.0,
-        "periods": 2,
-    }
-    return PlannedRun(**values | other)
+def planned(run_id="a", speed_mm_per_s=8.0, **other):
+    return run(speed_mm_per_s, run_id, **{"total_bend_rad": 3.0, "periods": 2} | other)
 
 
 def test_without_limits_twice_the_speed_and_half_more_preload_are_plausible():

@@ -55,25 +55,23 @@ def found(before, after, start, rest, slow=None):
     return channel_errors(bench(run()), {"f_in_N": before}, {"f_in_N": after}, *left)["f_in_N"]
 
 
-def test_attainable_is_the_better_of_both_without_what_a_regression_explains():
-    one = found(1.0, 0.5, 0.0, 0.64)
-    assert (one.rmse_before, one.rmse_after) == (1.0, 0.5)
-    assert one.attainable == pytest.approx(0.5 * 0.6)
-    assert found(1.0, 0.5, 0.96, 0.0).attainable == pytest.approx(0.2)
-
-
-def test_attainable_is_no_less_than_the_noise():
-    one = found(1.0, 0.5, 0.0, 0.999)
-    assert one.attainable == one.noise_floor == pytest.approx(0.1)
-
-
-def test_attainable_is_no_more_than_what_is_reached():
+@pytest.mark.parametrize(
+    ("errors", "explained", "attainable"),
+    [
+        ((1.0, 0.5), (0.0, 0.64), 0.5 * 0.6),
+        ((1.0, 0.5), (0.96, 0.0), 0.2),
+        ((1.0, 0.5), (0.0, 0.999), 0.1),  # no less than the noise
+        ((1.0, 0.09), (0.0, 0.0), 0.09),  # and no more than what is reached
+    ],
+)
+def test_attainable_is_the_better_of_both_without_what_a_regression_explains(
+    errors, explained, attainable
+):
     """The noise level is an estimate: a residual may be below it."""
-    assert found(1.0, 0.09, 0.0, 0.0).attainable == pytest.approx(0.09)
-
-
-def test_a_wrong_model_has_the_same_floor_as_a_right_one():
-    assert found(1.0, 0.9, 0.0, 0.0).noise_floor == found(1.0, 0.1, 0.0, 0.0).noise_floor
+    one = found(*errors, *explained)
+    assert (one.rmse_before, one.rmse_after) == errors
+    assert one.attainable == pytest.approx(attainable)
+    assert one.noise_floor == pytest.approx(0.1)
 
 
 def test_slow_noise_belongs_to_the_floor():

@@ -1,6 +1,7 @@
 """Every stage that fits, or weighs evidence, counts a sample once and says where it was twice."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -18,8 +19,11 @@ from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 RIG = Rig(proximal_length_mm=150.0, cells=60)
 SAID = "so that no sample counts twice."
-A = measure(simulate(RIG, nested(rate_Hz=100.0)), Sensors(rate_Hz=50.0), seed=1)
-N = A["time_s"].size
+
+
+@cache
+def recorded():
+    return measure(simulate(RIG, nested(rate_Hz=100.0)), Sensors(rate_Hz=50.0), seed=1)
 
 
 def dataset(folder, other=None, **runs):
@@ -36,11 +40,16 @@ def rows(columns, *between):
 
 
 COPIES = {
-    "four times": ({"a": A, "b": A, "c": A, "d": A}, ["b", "c", "d"]),
-    "later": ({"a": A, "b": A | {"time_s": A["time_s"] + 3.0}}, ["b"]),
-    "cut out": ({"b": rows(A, 100, 600), "a": A}, ["b"]),
-    "every second": ({"a": A, "b": rows(A, None, None, 2)}, ["b"]),
+    "four times": (lambda A: dict.fromkeys("abcd", A), ["b", "c", "d"]),
+    "later": (lambda A: {"a": A, "b": A | {"time_s": A["time_s"] + 3.0}}, ["b"]),
+    "cut out": (lambda A: {"b": rows(A, 100, 600), "a": A}, ["b"]),
+    "every second": (lambda A: {"a": A, "b": rows(A, None, None, 2)}, ["b"]),
 }
+
+
+def overlapping(folder):
+    """Write two runs, of which the second begins before the first ends."""
+    return dataset(folder, a=rows(recorded(), 0, 700), b=rows(recorded(), 400, None))
 
 
 def found(result):
@@ -63,7 +72,7 @@ def copied(result):
 
 @pytest.fixture(scope="module")
 def once(tmp_path_factory):
-    return dataset(tmp_path_factory.mktemp("once"), a=A)
+    return dataset(tmp_path_factory.mktemp("once"), a=recorded())
 
 
 @pytest.fixture(scope="module")
@@ -73,8 +82,8 @@ def calibrated(once):
 
 @pytest.mark.parametrize("kind", COPIES)
 def test_a_calibration_with_copies_is_that_without(tmp_path, calibrated, kind):
-    runs, names = COPIES[kind]
-    result = tsas.calibrate(dataset(tmp_path / "d", **runs), out=tmp_path / "out")
+    copies, names = COPIES[kind]
+    result = tsas.calibrate(dataset(tmp_path / "d", **copies(recorded())), out=tmp_path / "out")
     assert found(result) == found(calibrated)
     assert parameters(result) == parameters(calibrated)
     assert copied(result) == (names, copied(calibrated)[1])
@@ -83,7 +92,7 @@ def test_a_calibration_with_copies_is_that_without(tmp_path, calibrated, kind):
 
 
 def test_a_diagnosis_with_four_copies_is_that_of_one_run(tmp_path):
-    slow, names = rows(A, None, None, 2), ["b", "c", "d"]
+    slow, names = rows(recorded(), None, None, 2), ["b", "c", "d"]
     before = tsas.diagnose(dataset(tmp_path / "one", a=slow))
     after = tsas.diagnose(dataset(tmp_path / "four", a=slow, **dict.fromkeys(names, slow)))
     assert before.verdict == "ambiguous"  # one run alone does not tell a free tendon from a spring
@@ -94,7 +103,7 @@ def test_a_diagnosis_with_four_copies_is_that_of_one_run(tmp_path):
 
 def test_a_shared_stretch_counts_in_one_of_two_runs(tmp_path, calibrated):
     """Two halves that overlap tell as much as the whole: no narrower intervals, the same values."""
-    parts = dataset(tmp_path, a=rows(A, 0, 700), b=rows(A, 400, N))
+    parts = overlapping(tmp_path)
     result = tsas.calibrate(parts)
     assert copied(result)[0] == ["b"]
     assert result.summary["cannot_tell"][0].startswith(
@@ -108,7 +117,7 @@ def test_a_shared_stretch_counts_in_one_of_two_runs(tmp_path, calibrated):
 
 
 def test_the_shared_stretch_is_left_out_of_a_run_in_pieces_too(tmp_path, monkeypatch):
-    parts = dataset(tmp_path, a=rows(A, 0, 700), b=rows(A, 400, N))
+    parts = overlapping(tmp_path)
     before = tsas.calibrate(parts)
     monkeypatch.setattr(pieces, "MOST_ROWS", 600)
     after = tsas.calibrate(parts)
@@ -130,7 +139,9 @@ def test_a_plan_with_copies_is_that_without(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("stage", ["calibrate", "diagnose", "plan", "identify_harmonic_drive"])
 def test_the_same_samples_under_other_conditions_stop_every_fit(tmp_path, stage):
-    data = dataset(tmp_path / "d", {"total_bend_rad": 1.0}, a=A, b=rows(A, 100, None))
+    data = dataset(
+        tmp_path / "d", {"total_bend_rad": 1.0}, a=recorded(), b=rows(recorded(), 100, None)
+    )
     with pytest.raises(InputError) as stopped:
         getattr(tsas, stage)(data, out=tmp_path / "out")
     assert "run b holds the samples of run a from 2 s to " in str(stopped.value)

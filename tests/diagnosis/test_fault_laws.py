@@ -1,6 +1,5 @@
 """Each fault of a recording is told by its own law, on two short runs that are made up."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,12 +7,10 @@ import pytest
 
 from tsas_cli.diagnosis.faults import search as s
 from tsas_cli.diagnosis.faults import shapes
-from tsas_cli.diagnosis.faults.beside import Candidate, beside
+from tsas_cli.diagnosis.faults.beside import beside
 from tsas_cli.diagnosis.faults.candidates import candidates
-from tsas_cli.diagnosis.faults.rivals import leaves_noise
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
-from tsas_cli.diagnosis.faults.words import differing, record_of, wandering
-from tsas_cli.diagnosis.remainder import Remainder, SlowPart
+from tsas_cli.diagnosis.faults.words import differing
 from tsas_cli.diagnosis.tolerances import frictions_of
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -290,101 +287,3 @@ def test_frictions_that_differ_by_more_than_scatter_are_said(more, said):
     runs = [Run(id=name, file="a", sha256=64 * "0") for name in "ab"]
     assert said in differing(frictions, runs).sentence
     assert differing(0.55 * frictions, runs) is None
-
-
-@pytest.mark.parametrize(
-    ("bends_rad", "frictions", "falls"),
-    [
-        ((1.0, 2.0, 3.0, 4.0), (0.10, 0.01, -0.05, -0.06), True),
-        ((1.0, 2.0, 3.0, 4.0), (-0.10, -0.01, 0.05, 0.06), False),
-        ((1.0, 2.0, 3.0, 4.0), (0.06, -0.09, 0.07, -0.04), False),
-        ((3.0, 3.1, 3.2, 3.3), (0.10, 0.01, -0.05, -0.06), False),
-        ((1.0, 4.0), (0.10, -0.10), False),
-        ((None, None, None), (0.10, 0.0, -0.10), False),
-    ],
-)
-def test_friction_that_does_not_grow_with_the_bend_is_said(bends_rad, frictions, falls):
-    runs = [
-        Run(id=f"r{k}", file="a", sha256=64 * "0", total_bend_rad=bend)
-        for k, bend in enumerate(bends_rad)
-    ]
-    said = differing(np.array(frictions), runs).sentence
-    assert ("does not grow with the bend" in said) == falls
-
-
-def judged(monkeypatch, found, *, squares=200.0):
-    """Return what is said of faults with given reductions, of 100 residuals."""
-    search = search_of(np.zeros(RUN.size), np.zeros(100, int))
-    monkeypatch.setattr(s, "beside", lambda *_: SimpleNamespace(squares=squares))
-    monkeypatch.setattr(s, "runs_at", lambda *_: [None])
-    monkeypatch.setattr(s, "candidates", lambda *_: found)
-    monkeypatch.setattr(s, "_closer", lambda found, *_: found)
-    monkeypatch.setattr(s, "of_frictions", lambda *_: iter(()))
-    return s.fault_of_recording(search, ())
-
-
-def fault(reduction, run=None, code="hum", channels=(F,), edges=1):
-    return Candidate(code, run, channels, 1.0, reduction, edges)
-
-
-def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(monkeypatch):
-    def runs(*found):
-        return [c.run for c in judged(monkeypatch, list(found)).found]
-
-    best = fault(100.0, 0, edges=1)
-    assert runs(best, fault(90.1, 1), fault(89.9, 2)) == [0, 1]
-    assert runs(best, fault(99.0, 1), fault(98.0, 2), fault(97.0, 3)) == [0, 1, 2]
-    assert runs(best, fault(99.0, 0, "clock"), fault(98.0, 1), fault(97.0, 1, "clock")) == [0, 1]
-    assert runs(best, fault(96.0, 1, edges=2), fault(95.0, 2, edges=1)) == [0, 2]
-    assert runs(best, fault(99.0, 1, "channel_delay"), fault(98.0, 2)) == [0, 2]
-    two = fault(100.0, 0, edges=2), fault(99.0, 1, edges=2)
-    assert runs(*two, fault(96.9, 2)) == [0, 1, 2]
-    assert runs(*two, fault(97.1, 2)) == [2]  # with fewer ends as good
-
-
-@pytest.mark.parametrize(
-    ("code", "channels", "amount", "between", "said"),
-    [
-        ("run-offset", (F,), -1.0, (), "f_out_N reads 1 N less than the other runs and channels"),
-        ("run-offset", (F,), 0.2, (3, None), "N more than the other runs and channels fit since"),
-        ("run-offset", (X,), 0.2, (None, 4), "channels fit until about 4 s"),
-        ("run-offset", (X,), 0.2, (3, 4), "a clamp that slips, from about 3 to 4 s"),
-        ("run-gain", (F,), 0.03, (), "f_out_N reads 3 % more than in the other runs"),
-        ("run-delay", (F, X), -0.02, (), "f_out_N and x_out_mm come 20 ms earlier than the other"),
-        ("run-delay", (X,), 0.02, (), "x_out_mm comes 20 ms later than the other channels"),
-        ("clock", (X,), -0.003, (), "the clock of x_out_mm runs 0.3 % faster than that of the"),
-        ("run-length", (), np.log(1.25), (), "its tendon is 1.25 times as stiff as in the other"),
-        ("run-length", (), np.log(1.25), (), "sheath_length_mm were 0.8 times what is stated"),
-        ("run-friction", (), np.log(0.5), (), "its friction is 0.5 times that of the other runs"),
-        ("run-lag", (X,), 0.08, (), "x_out_mm lags, as behind a low pass of 80 ms"),
-        ("lost-samples", (F,), -0.3, (7, None), "are lost: f_out_N comes 300 ms earlier than the"),
-        ("repeated-buffer", (F,), 0.3, (7, None), "are repeated: f_out_N comes 300 ms later than"),
-        ("ac-coupled", (F,), 5.55, (), "f_out_N loses its constant part within about 5.5 s, as"),
-        ("saturates", (F,), 46.0, (), "reads less than it should beyond about 46 N, as a sensor"),
-        ("hum", (F,), 1.5, (), "f_out_N swings at 1.5 Hz in all runs, whatever the motion"),
-    ],
-)
-def test_a_fault_is_said_with_its_size_its_sign_and_its_time(code, channels, amount, between, said):
-    found = Candidate(code, 1, channels, amount, 9.0, 1, *between)
-    record, of_all = (record_of([c], ["a", "b"]) for c in (found, replace(found, run=None)))
-    assert said in record.sentence
-    assert record.sentence == f"run b: {of_all.sentence}"
-    assert (record.run, record.column) == ("b", channels[0] if channels else None)
-
-
-def test_what_wanders_is_said_with_its_size_and_its_memory():
-    slow = {F: SlowPart(3.0, 1.25), X: SlowPart(2.0, 0.5)}
-    found = wandering(Remainder(9.0, {}, (), slow=slow))
-    assert found.column == F
-    assert "f_out_N wanders by 3 times its noise within 1.2 s and follows no" in found.sentence
-    assert wandering(Remainder(9.0, {}, ("x_in_mm",), slow=slow)) is None
-
-
-@pytest.mark.parametrize(("share", "noise"), [(1.14, True), (1.16, False)])
-def test_what_leaves_no_more_than_a_complete_model_may_leaves_noise(share, noise):
-    """15 % more than one for each residual, beside what is free and tolerated."""
-    plain = beside(trial_of(NOISE), TOLERATED, RUN).squares
-    search = search_of(NOISE * np.sqrt(share * RUN.size / plain))
-    for names in (frozenset(), frozenset({"backlash"})):
-        left = leaves_noise(search, names, SimpleNamespace(found=(fault(1.0),)))
-        assert left == noise

@@ -5,12 +5,12 @@ import tomllib
 
 import pytest
 
+from tests.studies.challenge.recorded import recordings
 from tsas_cli.diagnosis.faults.beside import Candidate
 from tsas_cli.diagnosis.faults.words import record_of
 from tsas_cli.stages.diagnose import diagnose
 from tsas_studies.challenge import bench
 from tsas_studies.challenge.cases import Case, Hidden
-from tsas_studies.challenge.make import make
 
 RATE_HZ = 30.0
 
@@ -30,16 +30,14 @@ def simulated_once():
         yield
 
 
-def made(folder, kind, *hidden):
+def made(folder, kind, *hidden, runs="ab"):
     case = Case("made for a test", kind, 1.0, hidden, seed=3, number=77)
-    make(folder, [case], rate_Hz=RATE_HZ)
-    (dataset,) = (folder / "cases").glob("*/dataset")
-    return dataset
+    return recordings(folder, case, rate_Hz=RATE_HZ, runs=runs)
 
 
 def of_three(folder, hidden):
     """Return the diagnosis of three runs with a fault."""
-    return diagnose(made(folder, "recording", hidden), runs=["a", "b", "c"])
+    return diagnose(made(folder, "recording", hidden, runs="abcd"), runs=["a", "b", "c"])
 
 
 def of_a_run(function, **values):
@@ -127,18 +125,18 @@ def test_a_tendon_that_is_stiffer_than_its_data_sheet_is_a_fault_of_the_manifest
     stated = tomllib.loads(manifest.read_text())["rig"]["tendon_modulus_GPa"]
     wrong = f"tendon_modulus_GPa = {stated / 6.895}"
     manifest.write_text(re.sub(r"tendon_modulus_GPa = \S+", wrong, manifest.read_text()))
-    found = diagnose(folder, runs=["a", "b"])
+    found = diagnose(folder)
     (fault,) = found.record.faults
     assert (found.verdict, fault.code) == ("undecided", "tendon-stiffness")
     ratio = float(fault.sentence.partition("the tendon is ")[2].partition(" times")[0])
     assert ratio == pytest.approx(6.895, rel=0.1)
-    again = diagnose(folder, runs=["a", "b"], despite="tendon-stiffness")
+    again = diagnose(folder, despite="tendon-stiffness")
     assert again.verdict == "sufficient"
 
 
 def test_where_one_run_has_its_bend_a_law_of_friction_is_said_beside_a_wrong_bend(tmp_path):
     values = {"run": "d", "key": "total_bend_rad", "factor": 1.12}
-    dataset = made(tmp_path, "recording", Hidden("bend_of_a_run", values))
+    dataset = made(tmp_path, "recording", Hidden("bend_of_a_run", values), runs="abcd")
     (found,) = diagnose(dataset).record.faults
     assert (found.code, found.run) == ("run-friction", "d")
     assert "no other run has its bend" in found.sentence

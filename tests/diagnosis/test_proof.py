@@ -1,19 +1,15 @@
 """What an effect fails to prove."""
 
-from dataclasses import dataclass, replace
-from types import SimpleNamespace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import proven as p
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.proof import FoundCause, failures, may_be_zero, of_one_size, split_in_words
+from tsas_cli.diagnosis.proof import failures, may_be_zero, of_one_size, split_in_words
 from tsas_cli.diagnosis.refitted import HeldOutFit
-from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.support.steps import NO_PROGRESS
 
 CLEAR, CHANCE = Reduction(0.5, 9.0), Reduction(0.5, 2.0)
 NOISE = {"f_in_N": 0.05, "x_out_mm": 0.01}
@@ -50,13 +46,6 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
     zero = estimate("force_sensor_offset.f_in_offset_N", 0.05, -0.01, 0.11)
     (said,) = of(zero, OFFSETS[1])
     assert said.startswith("may be zero: f_in_offset_N 0.05 [-0.01, 0.11] N")
-
-
-def test_an_interval_that_is_cut_at_the_neutral_value_holds_it():
-    cut = estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)
-    assert may_be_zero("drive_friction", (cut,))
-    clear = estimate("drive_friction.friction_N", 0.5, 0.1, 9.0)
-    assert not may_be_zero("drive_friction", (clear,))
 
 
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
@@ -186,7 +175,7 @@ def test_a_split_is_said_with_its_values():
     assert split_in_words(replace(runs, values=five[:4])).endswith("3 (a), 1 (b), 2 (c) and 5 (d)")
 
 
-def test_only_an_effect_with_a_size_may_be_zero():
+def test_only_an_effect_with_a_size_may_be_zero_also_where_its_interval_is_cut_there():
     assert may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.0, 1.7)])
     assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.1, 0.9)])
     assert not may_be_zero("drive_friction", [estimate("drive_friction.friction_N", 0.5, 0.5, 0.9)])
@@ -218,164 +207,3 @@ def test_a_size_that_is_known_at_each_shape_is_not_zero():
 def test_an_effect_of_another_law_is_about_as_large_everywhere(parameter, values, of_one):
     parts = tuple(zip("abc", values, strict=False))
     assert of_one_size(Split(parameter, "speed", CLEAR, parts)) == of_one
-
-
-@dataclass(frozen=True)
-class Search:
-    """The effects of a search, with their rivals."""
-
-    named: frozenset[str]
-    rivals: dict[str, tuple[str, ...]]
-
-
-ZERO = Estimate("backlash.play_mm", 0.01, "mm", "fitted", None, 0.01, 0.0, 0.03, False)
-CLEAR_PLAY = replace(ZERO, value=0.1, interval_low=0.08, interval_high=0.12)
-
-
-@pytest.mark.parametrize(
-    ("negligible", "convincing", "complete", "play", "stand_ins"),
-    [
-        (True, True, False, CLEAR_PLAY, []),
-        (False, True, False, CLEAR_PLAY, ["backlash"]),
-        (False, True, False, ZERO, ["backlash"]),
-        (False, False, False, CLEAR_PLAY, ["backlash"]),
-        (False, True, True, CLEAR_PLAY, ["backlash"]),
-        (False, True, True, ZERO, []),  # nothing is left without it
-        (False, False, True, CLEAR_PLAY, []),
-    ],
-)
-def test_an_effect_that_is_negligible_stands_in_for_nothing(
-    monkeypatch, negligible, convincing, complete, play, stand_ins
-):
-    """It is left out all the same, and the others are judged without it."""
-    fails = FoundCause(
-        *("backlash", (), (play,), 1.0, (0.0, 2.0), ("fails",)),
-        convincing=convincing,
-        negligible=negligible,
-    )
-    holds = FoundCause("preload_loss", (), (), 9.0, (8.0, 10.0))
-
-    def judged(search, fits, found):
-        causes = [cause for cause in (fails, holds) if cause.effect in search.named]
-        after = SimpleNamespace(complete=complete)
-        return p.Proven(search, fits, tuple(causes), found, (), {}, after, after, None)
-
-    monkeypatch.setattr(p, "_judged", judged)
-    monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)
-    names = ("backlash", "preload_loss")
-    found = p.proven_effects(Search(frozenset(names), dict.fromkeys(names, ())), NO_PROGRESS)
-    assert [cause.effect for cause in found.causes] == ["preload_loss"]
-    assert [cause.effect for cause in found.stand_ins] == stand_ins
-
-
-@pytest.mark.parametrize(
-    ("proven", "law", "complete", "named", "rivals"),
-    [
-        ({"load_ripple"}, "", True, "load_ripple", ("free_tendon", "friction_drift")),
-        ({"free_tendon"}, "", True, "free_tendon", ("load_ripple", "friction_drift")),
-        ({"friction_drift"}, "", True, None, ()),  # fits worse than the first two
-        ({"load_ripple"}, "", False, None, ()),  # more than noise is left
-        ({"load_ripple"}, "over the speed", True, None, ()),
-    ],
-)
-def test_an_effect_that_fails_gives_way_to_a_rival_that_is_proven(
-    monkeypatch, proven, law, complete, named, rivals
-):
-    def judged(search, fits, found):
-        causes = [
-            FoundCause(
-                *(name, search.rivals[name], (CLEAR_PLAY,), 9.0, (8.0, 10.0)),
-                failed=() if name in proven | {"preload_loss"} else ("fails",),
-                law_differs=law if name in proven else "",
-            )
-            for name in search.rivals
-        ]
-        after = SimpleNamespace(complete=complete)
-        return p.Proven(search, fits, tuple(causes), found, (), {}, after, after, None)
-
-    monkeypatch.setattr(p, "_judged", judged)
-    monkeypatch.setattr(p, "reweighted_hypotheses", lambda search, step: search)
-    others = ("load_ripple", "free_tendon", "friction_drift")
-    search = Search(
-        frozenset(("backlash", "preload_loss")), {"backlash": others, "preload_loss": ()}
-    )
-    found = p.proven_effects(search, NO_PROGRESS)
-    of = {cause.effect: cause.rivals for cause in found.causes}
-    assert of == {"preload_loss": ()} | ({named: rivals} if named else {})
-    assert [cause.effect for cause in found.stand_ins] == ([] if named else ["backlash"])
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "law", "refused"),
-    [
-        ("load_spring_nonlinearity", "load_ripple", "over the tension", True),
-        ("load_spring_nonlinearity", "load_ripple", "", False),
-        ("load_spring_nonlinearity", "drive_ripple", "over the tension", False),
-        ("stribeck_friction", "sheath_compression", "over the speed", False),
-        ("force_sensor_curvature", "force_sensor_tilt", "over the tension", True),
-        ("force_sensor_curvature", "position_sensor_ripple", "over the tension", False),
-    ],
-)
-def test_what_a_law_of_one_place_lacks_is_no_second_cause(first, second, law, refused):
-    """Of two at one place the one that gains less is refused, where the other's law differs."""
-    more = FoundCause(first, (), (), 60.0, (50.0, 70.0), law_differs=law)
-    less = FoundCause(second, (), (), 40.0, (30.0, 50.0), law_differs=law)
-    both = more, less
-    assert p._beside_another_law(more, both) == more
-    failed = p._beside_another_law(less, both).failed
-    assert bool(failed) == refused
-    assert not failed or "nonlinear load spring" in failed[0] or "curved scale" in failed[0]
-
-
-@pytest.mark.parametrize(
-    ("first", "last", "reducible", "structure", "refused"),
-    [
-        (401.0, 40.0, 39.0, 1.0, False),  # a tenth of 400, less a little
-        (401.0, 42.0, 41.0, 1.0, True),
-        (401.0, 1.0, 0.0, 1.0, False),
-        (401.0, 42.0, 41.0, 0.0, False),
-    ],
-)
-def test_where_much_is_left_no_effect_is_proven(first, last, reducible, structure, refused):
-    """A lost motion at the drive passes for a gain of x_out that takes half of it."""
-    start = Remainder(first, {"x_out_mm": 1.0}, ())
-    after = Remainder(last, {"x_out_mm": structure}, (), reducible=reducible)
-    cause = FoundCause("position_sensor_gain", (), (), 50.0, (40.0, 60.0))
-    failed = p._beside_what_is_left(cause, start, after).failed
-    assert failed == (
-        ("is in a model that leaves 10 % of what could be explained",) if refused else ()
-    )
-
-
-@pytest.mark.parametrize(("values", "within"), [((0.09, 0.11), True), ((0.09, 0.13), False)])
-def test_parts_within_the_interval_of_the_whole_do_not_differ(values, within):
-    parts = tuple(zip(("low", "high"), values, strict=True))
-    split = Split("backlash.play_mm", "speed", Reduction(0.1, 3.0), parts)
-    assert p._within_interval(split, [CLEAR_PLAY]) == within
-
-
-@pytest.mark.parametrize(
-    ("period_mm", "gains", "refused"),
-    [
-        (2.345, 10.0, True),
-        (1.6, 10.0, True),
-        (3.4, 10.0, False),
-        (4.8, 10.0, False),
-        (2.1, 10.0, False),
-        (2.345, 40.0, False),
-    ],
-)
-def test_a_wave_of_half_the_period_of_a_larger_one_is_no_cause(period_mm, gains, refused):
-    """A gear whose ripple has a harmonic passes for a position sensor off its centre."""
-
-    def wave(effect, period, gain):
-        periods = (estimate(f"{effect}.period_mm", period, period - 0.1, period + 0.1, unit="mm"),)
-        return FoundCause(effect, (), periods, gain, (gain - 2.0, gain + 2.0))
-
-    drive = wave("drive_ripple", 4.82, 30.0)
-    cause = wave("position_sensor_ripple", period_mm, gains)
-    plain = FoundCause("backlash", (), (), 50.0, (40.0, 60.0))
-    failed = p._beside_a_wave(cause, (drive, cause, plain)).failed
-    assert failed == (
-        ("may be a harmonic of ripple of the drive's gear, or of its encoder",) * refused
-    )

@@ -7,52 +7,68 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.diagnosis.test_signals import DIRECTION, run_of
-from tsas_cli.diagnosis import remainder as r
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.remainder import Remainder, SlowPart, _is_brief, _is_late, remainder
-from tsas_cli.diagnosis.residual_map import binned, edges_of, residual_map
-from tsas_cli.diagnosis.signals import AtResiduals, signals_at_residuals, signals_of
+from tsas_cli.diagnosis.remainder import (
+    Remainder,
+    SlowPart,
+    _is_brief,
+    _is_late,
+    _oscillation,
+    remainder,
+)
+from tsas_cli.diagnosis.signals import signals_at_residuals
 
-SIZE = 800
+SIZE, ROWS = 800, 400
 TIME_S = 0.05 * np.arange(SIZE)
 X = 10.0 - 10.0 * np.cos(2.0 * np.pi * TIME_S / 10.0)
 REVERSALS = np.array([0, *range(100, SIZE, 100), SIZE - 1])
+SHORT_S = 5.0 + 0.02 * np.arange(ROWS)
 
 
 class Run:
-    """A run whose errors are given; a residual is the error of one sample."""
+    """A run with errors at its samples, or at some of them."""
 
-    def __init__(self, errors, f_in):
-        conditioned = SimpleNamespace(values=X, reversals=REVERSALS)
+    def __init__(self, errors, time_s=TIME_S, x=X, reversals=REVERSALS, samples=None):
+        drive = SimpleNamespace(values=x, reversals=reversals)
         self.run = SimpleNamespace(
-            time_s=TIME_S, drive_column="x_in_mm", conditioned={"x_in_mm": conditioned}
+            time_s=time_s, drive_column="x_in_mm", conditioned={"x_in_mm": drive}
         )
-        self.samples = {name: np.arange(SIZE) for name in errors}
-        self._errors, self._f_in = errors, f_in
+        everything = np.arange(time_s.size)
+        self.samples = dict.fromkeys(errors, everything if samples is None else samples)
+        self.given, self.f_in = errors, 7.0 * everything
 
     def errors(self, rig):
-        return self._errors
+        return self.given
 
     def delays(self, rig):
-        return dict.fromkeys(self._errors, np.array([0.1, -0.2, 0.1, 0.0]))
+        return dict.fromkeys(self.given, np.array([0.1, -0.2, 0.1, 0.0]))
 
     def predict(self, rig):
-        return {"f_in_N": self._f_in}
+        return {"f_in_N": self.f_in}
 
 
-def left_of(*errors):
-    runs = [Run(e, np.zeros(SIZE)) for e in errors]
-    bench = SimpleNamespace(
+def one_stroke(errors, time_s=SHORT_S, samples=None):
+    """Return a run whose drive makes one stroke."""
+    size = time_s.size
+    return Run(errors, time_s, np.arange(float(size)), np.array([0, size - 1]), samples)
+
+
+def bench_of(*runs):
+    return SimpleNamespace(
         rigs=[None] * len(runs),
         rig=lambda trial, k: None,
         errors_for=lambda trial: runs,
         closed=runs,
-        channels=sorted(errors[0]),
+        channels=sorted({name for run in runs for name in run.given}),
     )
+
+
+def left_of(*errors, made=Run):
+    """Return what is left where a residual is the error of one sample."""
+    bench = bench_of(*map(made, errors))
     residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
     block = np.arange(residual.size) // 40
-    run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
+    run = np.repeat(np.arange(len(errors)), [sum(e.size for e in one.values()) for one in errors])
     folds = Folds(block % 4, block, run, by_run=False)
     trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
     none = np.zeros((residual.size, 0))
@@ -139,8 +155,6 @@ def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():
     swing = 4.0 * np.sin(2.0 * np.pi * 1.7 * TIME_S)
     found = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": swing + noise(2)})
     assert found.depends_on[0] == "time_s (f_in_N oscillates at 1.7 Hz)"
-    once = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": noise(2)}, {"f_in_N": noise(3)})
-    assert not any("swings" in signal for signal in once.depends_on)
 
 
 def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not():
@@ -188,121 +202,12 @@ def test_a_channel_wanders_where_nothing_follows_a_signal(changed, wanders):
     assert replace(left, **changed).wanders == wanders
 
 
-ROWS = 400
-SHORT_S = 5.0 + 0.02 * np.arange(ROWS)
-
-
-def test_the_largest_value_is_in_the_last_bin_and_the_smallest_in_the_first():
-    signal = np.arange(25.0)
-    edges = edges_of(signal, "x_in_mm")
-    np.testing.assert_allclose(edges, np.arange(0.0, 25.0, 2.0))
-    bins = binned(signal, signal, edges, "x_in_mm")
-    assert [b.samples for b in bins] == [2] * 11 + [3]
-    assert (bins[-1].high, bins[0].low) == (24.0, 0.0)
-    assert bins[-1].label == "22 to 24"
-    # Edges of more samples than these: what lies below the first one is in the first bin.
-    (below,) = binned(np.array([-1.0, 0.5]), np.array([1.0, 2.0]), np.array([0.0, 1.0]), "x_in_mm")
-    assert (below.samples, below.label) == (2, "0 to 1")
-
-
-class Errors:
-    """A run of seven samples (tests of signals) with an error at some samples of a channel."""
-
-    def __init__(self, run_id, errors, samples):
-        self.run = run_of()
-        self.run.run = SimpleNamespace(id=run_id)
-        self.samples = {name: np.array(at) for name, at in samples.items()}
-        self.given = {name: np.array(e, dtype=float) for name, e in errors.items()}
-
-    def predict(self, rig):
-        return {"f_in_N": 10.0 * rig + np.arange(7.0)}
-
-    def errors(self, rig):
-        return self.given
-
-
-def test_a_map_holds_measured_less_simulated_over_each_signal():
-    runs = [
-        Errors("first", {"f_in_N": [1.0, 3.0]}, {"f_in_N": [0, 2]}),
-        Errors("second", {"f_in_N": [-5.0], "x_out_mm": [8.0]}, {"f_in_N": [6], "x_out_mm": [3]}),
-    ]
-    bench = SimpleNamespace(
-        errors_for=lambda trial: runs, rig=lambda trial, k: float(k), closed=runs
-    )
-    found = residual_map(bench, None)
-    assert set(found) == {"f_in_N", "x_out_mm"}
-    by_run = found["f_in_N"]["run"]
-    assert [(b.label, b.mean, b.samples) for b in by_run] == [
-        ("first", -2.0, 2),
-        ("second", 5.0, 1),
-    ]
-    forces = found["f_in_N"]["f_in_N"]
-    assert (forces[0].low, forces[-1].high) == (0.0, 16.0)  # 10 + 6 of the second run
-    assert sum(b.samples for b in forces) == 3
-    (out,) = found["x_out_mm"]["run"]
-    assert (out.label, out.mean, out.low) == ("second", -8.0, 1.0)
-    assert [b.label for b in found["x_out_mm"][DIRECTION]] == ["releasing"]
-
-
-def test_samples_before_the_first_and_after_the_last_reversal():
-    """They belong to the first and to the last stroke."""
-    x = np.array([2.0, 1.0, 0.0, 1.0, 3.0, 2.5, 2.0])
-    found = signals_of(run_of(reversals=np.array([2, 4]), values=x), x)
-    np.testing.assert_array_equal(
-        found["travel_since_reversal_mm"], [2.0, 1.0, 0.0, 1.0, 3.0, 2.5, 2.0]
-    )
-    np.testing.assert_array_equal(found[DIRECTION], 1.0)
-    alone = signals_of(run_of(reversals=np.array([3, 5, 6]), values=x), x)
-    np.testing.assert_array_equal(
-        alone["travel_since_reversal_mm"], np.abs(x - np.array([1.0, 1, 1, 1, 1, 2.5, 2.5]))
-    )
-    np.testing.assert_array_equal(alone[DIRECTION], [1.0, 1, 1, 1, 1, 1, -1])
-
-
-class ShortRun:
-    """A run of errors at some of its samples."""
-
-    def __init__(self, errors, samples=None, time_s=SHORT_S):
-        self.run = SimpleNamespace(
-            time_s=time_s,
-            drive_column="x_in_mm",
-            conditioned={
-                "x_in_mm": SimpleNamespace(
-                    values=np.arange(float(time_s.size)), reversals=np.array([0, time_s.size - 1])
-                )
-            },
-        )
-        self.given = errors
-        everything = np.arange(time_s.size)
-        self.samples = dict.fromkeys(errors, everything if samples is None else samples)
-
-    def errors(self, rig):
-        return self.given
-
-    def delays(self, rig):
-        return {name: np.zeros(2) for name in self.given}
-
-    def predict(self, rig):
-        return {"f_in_N": 7.0 * np.arange(float(self.run.time_s.size))}
-
-
-def bench_of(*runs):
-    channels = sorted({name for run in runs for name in run.given})
-    return SimpleNamespace(
-        rigs=[None] * len(runs),
-        rig=lambda trial, k: None,
-        errors_for=lambda trial: runs,
-        closed=runs,
-        channels=channels,
-    )
-
-
 def test_a_signal_is_taken_in_the_middle_of_the_samples_of_each_mean():
     """Of 2500 samples three at a time make a mean: the second one of each, the last alone."""
     time_s = 0.01 * np.arange(2600)
     samples = np.arange(50, 2550)
     given = {"f_out_N": np.zeros(2500), "x_out_mm": np.zeros(2500)}
-    found = signals_at_residuals(bench_of(ShortRun(given, samples, time_s)), None)
+    found = signals_at_residuals(bench_of(one_stroke(given, time_s, samples)), None)
     signals, channel = found.signals, found.channel
     middle = np.minimum(np.arange(51, 2551, 3), 2549)
     assert middle.size == 834
@@ -323,20 +228,20 @@ NOISE = np.random.default_rng(1).standard_normal((8, ROWS))
     [(2, 2, True), (1, 2, False), (1, 1, False), (2, 5, True), (2, 6, False), (3, 6, True)],
 )
 def test_half_of_the_runs_have_to_swing_and_two_at_the_least(runs, of, said):
-    made = [ShortRun({"f_in_N": swing(5.0, 3.0) + NOISE[k]}) for k in range(runs)]
-    made += [ShortRun({"f_in_N": NOISE[4 + k % 4]}) for k in range(of - runs)]
-    assert (r._oscillation(bench_of(*made), None) is not None) == said
+    made = [one_stroke({"f_in_N": swing(5.0, 3.0) + NOISE[k]}) for k in range(runs)]
+    made += [one_stroke({"f_in_N": NOISE[4 + k % 4]}) for k in range(of - runs)]
+    assert (_oscillation(bench_of(*made), None) is not None) == said
 
 
 def test_the_frequency_is_the_median_and_the_channels_are_named():
     made = [
-        ShortRun({"x_out_mm": swing(5.0), "f_in_N": swing(5.0)}),
-        ShortRun({"f_in_N": swing(9.0)}),
-        ShortRun({"f_in_N": NOISE[0]}),
+        one_stroke({"x_out_mm": swing(5.0), "f_in_N": swing(5.0)}),
+        one_stroke({"f_in_N": swing(9.0)}),
+        one_stroke({"f_in_N": NOISE[0]}),
     ]
     # 400 samples of 20 ms: a bin is 1/7.98 Hz wide.
     assert (
-        r._oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
+        _oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
     )
 
 
@@ -345,30 +250,15 @@ def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
     """The drive makes one stroke, half a cycle: 2.5 of that is more than one cycle."""
     turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
     swing = np.cos(cycles * turn) + 0.1 * NOISE[0]
-    assert (r._oscillation(bench_of(*[ShortRun({"f_in_N": swing})] * 2), None) is not None) == said
-
-
-def left_of_short(*errors, signals=None):
-    """Residuals are the errors of single samples; four folds of blocks of twenty."""
-    runs = [ShortRun(e) for e in errors]
-    residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
-    block = np.arange(residual.size) // 20
-    run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
-    folds = Folds(block % 4, block, run, by_run=False)
-    trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
-    bench = bench_of(*runs)
-    at = signals_at_residuals(bench, trial)
-    if signals is not None:
-        at = AtResiduals(signals, np.repeat([0, 1], ROWS))
-    return r.remainder(bench, trial, folds, at, np.zeros((residual.size, 0)))
+    assert (_oscillation(bench_of(*[one_stroke({"f_in_N": swing})] * 2), None) is not None) == said
 
 
 def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_none():
     """Squares of 1 + 8, the latter a straight line over the place."""
     line = np.linspace(-1.0, 1.0, ROWS) * np.sqrt(3.0 * 8.0)
-    found = left_of_short({"f_in_N": line + NOISE[0]}, {"f_in_N": line + NOISE[1]})
+    found = left_of({"f_in_N": line + NOISE[0]}, {"f_in_N": line + NOISE[1]}, made=one_stroke)
     assert found.explained["f_in_N"] == pytest.approx(8.0, rel=0.05)
     assert found.mean_square == pytest.approx(9.0, rel=0.05)
-    quiet = left_of_short({"f_in_N": 0.1 * NOISE[0]}, {"f_in_N": 0.1 * NOISE[1]})
+    quiet = left_of({"f_in_N": 0.1 * NOISE[0]}, {"f_in_N": 0.1 * NOISE[1]}, made=one_stroke)
     assert quiet.explained == {"f_in_N": 0.0}
     assert quiet.mean_square == pytest.approx(0.01, rel=0.1)

@@ -103,47 +103,30 @@ CONDITIONS = {
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "allowed", "not_allowed"),
-    [
-        ("sheath_length_mm", 1e-6, 0.0),
-        ("total_bend_rad", 0.0, -1e-6),  # a straight sheath is one
-        ("preload_N", 1e-6, 0.0),
-        ("amplitude_mm", 1e-6, 0.0),
-        ("speed_mm_per_s", 1e-6, 0.0),
-        ("periods", 1, 0),
-        ("periods", 10_000, 10_001),
-        ("dwell_s", 0.0, -1e-6),
-    ],
-)
-def test_conditions_that_cannot_be(name, allowed, not_allowed):
-    assert getattr(PlannedRun(**CONDITIONS | {name: allowed}), name) == allowed
-    with pytest.raises(ValueError, match=name):
-        PlannedRun(**CONDITIONS | {name: not_allowed})
+SENSORS = {"rate_Hz": 100.0, "x_in_mm": 0.01, "f_in_N": 0.1}
 
 
 @pytest.mark.parametrize(
-    ("name", "least", "too_little"),
+    ("of", "usual", "name", "allowed", "not_allowed"),
     [
-        ("rate_Hz", 1e-6, 0.0),
-        ("x_in_mm", 0.0, -1e-6),  # a motor that knows its place
-        ("x_out_mm", 1e-6, 0.0),
-        ("f_in_N", 1e-6, 0.0),
-        ("f_out_N", 1e-6, 0.0),
+        *(
+            (PlannedRun, CONDITIONS, name, 1e-6, 0.0)
+            for name in ("sheath_length_mm", "preload_N", "amplitude_mm", "speed_mm_per_s")
+        ),
+        (PlannedRun, CONDITIONS, "total_bend_rad", 0.0, -1e-6),  # a straight sheath is one
+        (PlannedRun, CONDITIONS, "periods", 1, 0),
+        (PlannedRun, CONDITIONS, "periods", 10_000, 10_001),
+        (PlannedRun, CONDITIONS, "dwell_s", 0.0, -1e-6),
+        *((Sensors, SENSORS, name, 1e-6, 0.0) for name in ("rate_Hz", "f_in_N", "f_out_N")),
+        (Sensors, SENSORS, "x_out_mm", 1e-6, 0.0),
+        (Sensors, SENSORS, "x_in_mm", 0.0, -1e-6),  # a motor that knows its place
+        *((Limits, {}, name, 1e-6, 0.0) for name in ("amplitude_mm", "speed_mm_per_s")),
     ],
 )
-def test_sensors_that_cannot_be(name, least, too_little):
-    usual = {"rate_Hz": 100.0, "x_in_mm": 0.01, "f_in_N": 0.1}
-    assert getattr(Sensors(**usual | {name: least}), name) == least
+def test_what_no_rig_has_is_refused(of, usual, name, allowed, not_allowed):
+    assert getattr(of(**usual | {name: allowed}), name) == allowed
     with pytest.raises(ValueError, match=name):
-        Sensors(**usual | {name: too_little})
-
-
-@pytest.mark.parametrize("name", ["amplitude_mm", "speed_mm_per_s"])
-def test_limits_that_cannot_be(name):
-    assert getattr(Limits(**{name: 1e-6}), name) == 1e-6
-    with pytest.raises(ValueError, match=name):
-        Limits(**{name: 0.0})
+        of(**usual | {name: not_allowed})
 
 
 def test_frequencies_above_0_and_two_periods_unless_said():

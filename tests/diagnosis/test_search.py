@@ -7,44 +7,30 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.diagnosis.searched import (
+    BLOCKS,
+    OF,
+    SIZE,
+    A,
+    B,
+    Bench,
+    C,
+    D,
+    E,
+    fits_over,
+    names,
+    screened,
+    search_over,
+    seen,
+)
 from tsas_cli.diagnosis import fits as fits_module
-from tsas_cli.diagnosis import rivals as rivals_module
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.fits import Fits
-from tsas_cli.diagnosis.rivals import exchanged, rivals_of
-from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.screening import Screened
-
-BLOCKS, SIZE = 20, 200
-OF = {e.name: e for e in EFFECTS}
 
 
-def names(*found):
-    return frozenset(found)
-
-
-class Bench:
-    """Fits whose mean square is given by the effects, or by a list of one after the other."""
-
-    def __init__(self, mean_squares, mesh=()):
-        self.mean_squares, self.mesh = mean_squares, mesh
-        self.fits, self.closed, self.rigs = [], (), ()
-
-    def on_mesh(self, effects):
-        return bool(set(effects) & set(self.mesh))
-
-    def fit(self, effects, start=None, *, near=None, on_mesh=False, values_only=False):
-        fitted = frozenset(effects)
-        self.fits.append(SimpleNamespace(fitted=fitted, start=start, near=near, on_mesh=on_mesh))
-        value = self.mean_squares[fitted]
-        value = value.pop(0) if isinstance(value, list) else value
-        solution = SimpleNamespace(converged=True, residual=np.ones(SIZE), at_bound=[])
-        return SimpleNamespace(mean_square=value, solution=solution, unknowns=[], on_mesh=on_mesh)
-
-    @property
-    def fitted(self):
-        return [fit.fitted for fit in self.fits]
+@pytest.fixture
+def made(monkeypatch):
+    return search_over(monkeypatch)
 
 
 @pytest.mark.parametrize(("period_mm", "part"), [(19.9, False), (20.1, True)])
@@ -55,54 +41,15 @@ def test_a_wave_longer_than_the_strokes_is_part_of_one(period_mm, part):
     assert not s._is_part_of_a_wave(bench, trial, OF["load_spring_nonlinearity"])
 
 
-def evenly(trial, folds):
-    """Return a trial's held-out squares, spread evenly over the blocks."""
-    return np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
-
-
-def without_tolerances(monkeypatch):
-    """Let rigs be without tolerances."""
-    monkeypatch.setattr(fits_module, "tolerances", lambda bench, trial: None)
-    monkeypatch.setattr(fits_module, "with_tolerances", lambda trial, tolerated: trial)
-    monkeypatch.setattr(fits_module, "with_friction_of_runs", lambda trial, run: trial)
-    monkeypatch.setattr(fits_module, "is_in_line", lambda trial, run, session_s: False)
-
-
-def fits_over(bench, known):
-    folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS, run=None)
-    effects = tuple(OF[name] for name in sorted(known))
-    return Fits(bench, folds, effects=effects, tolerated={False: None, True: None})
-
-
-def screened(name, part=0.5, signatures=None):
-    signatures = np.zeros((SIZE, 1)) if signatures is None else signatures
-    return Screened(OF[name], part, {f"{name}.{OF[name].parameters[0].name}": 1.0}, signatures)
-
-
-A, B, C, D, E = "backlash", "drive_friction", "free_tendon", "load_friction", "load_inertia"
-CONVINCES, DOES_NOT = Reduction(0.5, 4.0), Reduction(0.5, 1.0)
-ALL_CONVINCE = [(name, CONVINCES) for name in (A, C, D)]
-
-
-@pytest.fixture
-def made(monkeypatch):
-    """A search over given mean squares; a trial's held-out squares are spread evenly."""
-    monkeypatch.setattr(fits_module, "held_out_squares", evenly)
-    without_tolerances(monkeypatch)
-    return lambda mean_squares: fits_over(Bench(mean_squares), (A, C, D))
-
-
-@pytest.mark.parametrize(("left", "quiet"), [(1.149, True), (1.151, False)])
-def test_it_is_quiet_where_the_blur_of_a_right_model_begins(made, left, quiet, monkeypatch):
+@pytest.mark.parametrize(
+    ("left", "complete", "quiet"),
+    [(1.149, False, True), (1.151, False, False), (2.9, True, True), (3.1, True, False)],
+)
+def test_it_is_quiet_up_to_the_blur_of_a_right_model_and_slow_noise_up_to_its_limit(
+    made, left, complete, quiet, monkeypatch
+):
     fits = made({names(A): left})
-    monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
-    assert s.is_quiet(fits, names(A)) == quiet
-
-
-@pytest.mark.parametrize(("left", "quiet"), [(2.9, True), (3.1, False)])
-def test_slow_noise_is_quiet_too_up_to_its_limit(made, left, quiet, monkeypatch):
-    fits = made({names(A): left})
-    monkeypatch.setattr(s, "is_complete", lambda fits, names: True)
+    monkeypatch.setattr(s, "is_complete", lambda fits, names: complete)
     assert s.is_quiet(fits, names(A)) == quiet
 
 
@@ -154,13 +101,6 @@ def test_gains_are_beside_the_friction_of_each_run_unless_it_changes_with_the_se
     assert fits.gain(names(), names(A)).part == pytest.approx(part)
 
 
-def seen(fits, at, *parts, signatures=None):
-    fits.screened[at] = [
-        screened(name, part, None if signatures is None else signatures[name])
-        for name, part in parts
-    ]
-
-
 def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
     fits = made({names(): 4.0, names(A): 3.0, names(C): 2.0, names(D): 1.0})
     seen(fits, names(), (A, 0.5), (C, 0.11), (D, 0.09))  # a fifth of the best is 0.1
@@ -185,51 +125,6 @@ def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
     away = [next(iter(at.values())) - parameter.neutral for at in starts]
     assert away == pytest.approx([1.0, 0.2, 0.04])
     assert fits.trial(names(C)).mean_square == 3.0
-
-
-def test_rivals_convince_too_and_are_not_surely_worse(made, monkeypatch):
-    fits = made({names(C): 1.001, names(D): 1.001, names(A): 1.0, names(): 4.0})
-    monkeypatch.setattr(
-        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, DOES_NOT)]
-    )
-    assert rivals_of(fits, names(A), A) == (C,)  # itself is none, and D convinces nobody
-    fits.trial(names(C)).solution.converged = False
-    assert rivals_of(fits, names(A), A) == ()
-    worse = made({names(C): 1.02, names(A): 1.0, names(): 4.0})
-    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
-    assert rivals_of(worse, names(A), A) == ()
-
-
-@pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (C,))])
-def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
-    """Of 4.0 the named one takes 3.0 away; 0.4 of that is 0.3 of the squares."""
-    fits = made({names(): 4.0, names(A): 1.0, names(C): 1.0})
-    seen(fits, names(), (A, 0.75), (C, part))
-    assert rivals_of(fits, names(A), A) == rivals
-
-
-@pytest.mark.parametrize(
-    ("unsure", "of_forms", "rivals"),
-    [(0.0, 0.0, ()), (0.025, 0.0, ()), (0.035, 0.0, (C,)), (0.0, 0.04, ()), (0.0, 0.06, (C,))],
-)
-def test_what_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals, monkeypatch):
-    """4 % more: beyond the one per cent that tells right models apart; it takes 5 % less away."""
-    fits = made({names(): 9.0, names(A): 4.8, names(C): 5.0})
-    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
-    assert rivals_of(fits, names(A), A, unsure, of_forms) == rivals
-
-
-@pytest.mark.parametrize(("in_sample", "rivals"), [(1.0, (C,)), (1.001, ())])
-def test_what_its_parameters_cost_is_no_reason_against_a_rival(
-    made, in_sample, rivals, monkeypatch
-):
-    """It predicts worse by 2 %, and fits all the data as well, or worse."""
-    fits = made({names(): 9.0, names(A): 1.0, names(C): in_sample})
-    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
-    for effects, held_out in ((names(A), 1.0), (names(C), 1.02)):
-        of = effects, fits.trial(effects).on_mesh
-        fits.squares[of] = fits.scattered[of] = np.full(BLOCKS, held_out * SIZE / BLOCKS)
-    assert rivals_of(fits, names(A), A) == rivals
 
 
 @pytest.mark.parametrize(
@@ -266,13 +161,8 @@ def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_two_that_hide_each_other_are_found_together(made, sign):
     """Each takes next to nothing away alone: they are two sides of nearly the same signature."""
-    rng = np.random.default_rng(3)
-    common, apart, other = np.linalg.qr(rng.standard_normal((SIZE, 3)))[0].T
-    signatures = {
-        A: common[:, None],
-        C: (common + 0.1 * apart)[:, None],
-        D: other[:, None],
-    }
+    common, apart, other = pairs(3)
+    signatures = {A: common[:, None], C: (common + 0.1 * apart)[:, None], D: other[:, None]}
     fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
     fits.trial(names()).solution.residual = sign * apart
     seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
@@ -283,8 +173,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
 
 @pytest.mark.parametrize("squares", [3.99, 3.5])
 def test_a_pair_has_to_convince_and_to_matter(made, squares):
-    rng = np.random.default_rng(3)
-    common, apart = np.linalg.qr(rng.standard_normal((SIZE, 2)))[0].T
+    common, apart = pairs(2)
     signatures = {A: common[:, None], C: (common + 0.1 * apart)[:, None]}
     fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
     fits.trial(names()).solution.residual = apart
@@ -293,42 +182,13 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     assert s._better(fits, names()) == []
 
 
-def test_a_rival_that_is_better_beside_the_others_takes_its_place(made, monkeypatch):
-    """Found first, C is worse than D once A is there; alone, it is better."""
-    alone = {names(): 9.0, names(A): 5.0, names(C): 3.0, names(D): 4.0}
-    fits = made(alone | {names(A, C): 1.2, names(A, D): 1.0, names(C, D): 2.9})
-    monkeypatch.setattr(
-        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
-    )
-    assert exchanged(fits, names(A, C)) == names(A, D)
-    assert exchanged(fits, names(A, D)) == names(A, D)
-
-
-def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made, monkeypatch):
-    """A size at its bound does not count, a shape does."""
-    fits = made({names(): 9.0, names(A): 1.0, names(C): 1.0, names(D): 1.5})
-    monkeypatch.setattr(
-        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, CONVINCES)]
-    )
-    assert exchanged(fits, names(A)) == names(A)
-    assert exchanged(fits, names(C)) == names(C)
-    for name, at_bound in ((A, [False]), (C, [True, False])):
-        fit = fits.trial(names(name))
-        fit.unknowns = [SimpleNamespace(name=f"{name}.{p.name}") for p in OF[name].parameters]
-        fit.solution.at_bound = at_bound
-    assert exchanged(fits, names(C)) == names(C)
-    fits.trial(names(C)).solution.at_bound = [False, False]
-    assert exchanged(fits, names(C)) == names(A)
-
-
 KNOWN = (A, B, C, D, E)
 
 
 @pytest.fixture
 def grown(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
-    monkeypatch.setattr(fits_module, "held_out_squares", evenly)
-    without_tolerances(monkeypatch)
+    search_over(monkeypatch)
 
     def make(mean_squares, **of_bench):
         bench = Bench(defaultdict(lambda: 8.0, mean_squares), **of_bench)

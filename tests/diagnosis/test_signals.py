@@ -1,4 +1,4 @@
-"""What an error is held against: signals, bins, hats; by hand, on a few samples."""
+"""What an error is held against: signals and hats; by hand, on a few samples."""
 
 from types import SimpleNamespace
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.remainder import hats, regressed
-from tsas_cli.diagnosis.residual_map import binned, edges_of
 from tsas_cli.diagnosis.signals import DIRECTION, signal_in_words, signals_of
 
 X = np.array([0.0, 1.0, 3.0, 2.0, 1.0, 1.5, 2.5])
@@ -51,31 +50,19 @@ def test_every_signal_has_its_words():
     assert signal_in_words("something") == "something"
 
 
-def test_bins_hold_equally_many_samples_each_once():
-    signal, error = np.arange(24.0) ** 2, np.arange(24.0)
-    edges = edges_of(signal, "x_in_mm")
-    assert edges.size == 13
-    assert (edges[0], edges[-1]) == (0.0, 23.0**2)
-    bins = binned(signal, error, edges, "x_in_mm")
-    assert sum(b.samples for b in bins) == 24
-    assert {b.samples for b in bins} == {2}
-    for k, one in enumerate(bins):
-        assert (one.low, one.high) == ((2.0 * k) ** 2, (2.0 * k + 1.0) ** 2)
-        assert one.mean == 2.0 * k + 0.5
-        assert one.sd == 0.5
-    assert bins[0].label.startswith("0 to ")
-
-
-def test_labels_are_bins_of_their_own():
-    direction = np.array([1.0, -1.0, -1.0, 1.0, 1.0])
-    error = np.array([1.0, 2.0, 4.0, 5.0, 9.0])
-    down, up = binned(direction, error, edges_of(direction, DIRECTION), DIRECTION)
-    assert (down.label, down.mean, down.samples) == ("releasing", 3.0, 2)
-    assert (up.label, up.mean, up.samples) == ("pulling", 5.0, 3)
-    number = np.array([1.0, 1.0, 0.0, 1.0, 0.0])
-    first, second = binned(number, error, edges_of(number, "run"), "run", ["a", "b"])
-    assert (first.label, first.mean) == ("a", 6.5)
-    assert (second.label, second.samples) == ("b", 3)
+def test_samples_before_the_first_and_after_the_last_reversal():
+    """They belong to the first and to the last stroke."""
+    x = np.array([2.0, 1.0, 0.0, 1.0, 3.0, 2.5, 2.0])
+    found = signals_of(run_of(reversals=np.array([2, 4]), values=x), x)
+    np.testing.assert_array_equal(
+        found["travel_since_reversal_mm"], [2.0, 1.0, 0.0, 1.0, 3.0, 2.5, 2.0]
+    )
+    np.testing.assert_array_equal(found[DIRECTION], 1.0)
+    alone = signals_of(run_of(reversals=np.array([3, 5, 6]), values=x), x)
+    np.testing.assert_array_equal(
+        alone["travel_since_reversal_mm"], np.abs(x - np.array([1.0, 1, 1, 1, 1, 2.5, 2.5]))
+    )
+    np.testing.assert_array_equal(alone[DIRECTION], [1.0, 1, 1, 1, 1, 1, -1])
 
 
 def test_hats_add_up_to_one_for_their_own_direction():

@@ -10,7 +10,7 @@ from tests.diagnosis.planned import run
 from tsas_cli.diagnosis import simulated_runs
 from tsas_cli.diagnosis.further_runs import _clock
 from tsas_cli.diagnosis.motions import motion
-from tsas_cli.diagnosis.rig_file import PlannedRun, Sensors
+from tsas_cli.diagnosis.rig_file import Sensors
 from tsas_cli.support.errors import InputError
 
 BEGIN = datetime(2001, 2, 3, 4, 5)  # noqa: DTZ001 # a rig has no zone
@@ -65,9 +65,7 @@ def test_the_same_plan_gives_the_same_numbers_and_another_seed_others(made):
 
 
 def planned(speed, **other):
-    usual = {"sheath_length_mm": 785.0, "total_bend_rad": 3.0, "preload_N": 25.0}
-    usual |= {"id": "a", "motion": "sine", "amplitude_mm": 10.0, "periods": 2}
-    return PlannedRun(**usual | {"speed_mm_per_s": speed} | other)
+    return run(speed, **{"periods": 2} | other)
 
 
 @pytest.mark.parametrize(

@@ -5,24 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.amplitudes import Amplitude
+from tests.diagnosis.test_visibility import amplitude, cause, effect
 from tsas_cli.diagnosis.visibility import Imitation, Part
-from tsas_cli.effects.effect import Effect, Parameter
 
 BLOCKS, EACH = 20, 10
 SIZE = BLOCKS * EACH
-
-
-def amplitude(name="size", neutral=0.0, start=0.5, lower=0.0, upper=9.0):
-    return Parameter(name, "mm", neutral, start, lower, upper)
-
-
-def effect(name, *parameters):
-    return Effect(name, name, "drive", True, "", "", parameters or (amplitude(),), "")
-
-
-def cause(parameter, name="play"):
-    return Amplitude(effect(name, parameter), parameter, {})
 
 
 def part(block=None, basis=None, look=None):

@@ -72,7 +72,7 @@ LINES = {
 
 NEAREST = ("bent_scale", "force_sensor_gain")
 # Rows and rate of each run, its bends, the effects to choose from; as plain Python, and compiled.
-SMALL = (200, 20.0, (3.0, 1.0), NEAREST)
+SMALL = (130, 20.0, (3.0, 1.0), NEAREST)
 WHOLE = (1500, 100.0, (3.0, 2.0, 1.0), (*NEAREST, "force_sensor_offset", "free_tendon"))
 SCRIPT = """
 import numpy as np

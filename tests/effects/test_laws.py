@@ -10,7 +10,6 @@ from tsas_cli.effects.friction_drift import FrictionDrift, friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.load_hysteresis import LoadHysteresis, element_force
 from tsas_cli.effects.presliding import friction_share, friction_share_rate
-from tsas_cli.numerics.wave import Wave, wave_at
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import NODES, simulate
 from tsas_cli.physics.rig import with_values
@@ -35,17 +34,6 @@ def test_friction_turns_round_by_dahls_law(before, way):
 def test_before_any_way_the_steeper_side_counts(before):
     sides = [friction_share_rate(before, way, 0.02) for way in (1e-12, -1e-12)]
     assert friction_share_rate(before, 0.0, 0.02) == pytest.approx(max(sides))
-
-
-@pytest.mark.parametrize("position", [-3.0, 0.0, 0.4])
-def test_a_wave_has_its_period_its_slope_and_is_nothing_at_rest(position):
-    ripple = Wave(sine_mm=0.3, cosine_mm=-0.2, period_mm=7.0)
-    ahead, behind = (wave_at(position + step, ripple)[0] for step in (1e-4, -1e-4))
-    wave, slope = wave_at(position, ripple)
-    assert slope == pytest.approx((ahead - behind) / 2e-4, rel=1e-6)
-    assert wave_at(position + 7.0, ripple)[0] == pytest.approx(wave)
-    assert wave_at(0.0, ripple)[0] == 0.0
-    assert wave_at(1.75, ripple)[0] == pytest.approx(0.3 + 0.2)
 
 
 def test_an_element_follows_by_its_stiffness_and_yields():

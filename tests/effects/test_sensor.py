@@ -14,31 +14,20 @@ from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.sensors import low_pass
 
 TIME_S = np.arange(UP_AND_DOWN.size) * 0.02
 DRIFTED = (1.0 - np.exp(-0.1 * TIME_S)) / 0.1
 DRIFT, RIPPLE = "force_sensor_drift", "position_sensor_ripple"
-READINGS = [
-    ({"force_sensor_gain.f_out_gain": 1.1}, "f_out_N", lambda true: 1.1 * true),
-    ({"force_sensor_offset.f_in_offset_N": 0.7}, "f_in_N", lambda true: true + 0.7),
-    ({"force_sensor_offset.f_out_offset_N": -0.7}, "f_out_N", lambda true: true - 0.7),
-    ({f"{DRIFT}.f_in_rate_N_per_s": 0.03}, "f_in_N", lambda true: true + 0.03 * TIME_S),
+READINGS = [  # single ones: physics/test_sensors.py
     (
         {f"{DRIFT}.f_out_rate_N_per_s": 0.03, f"{DRIFT}.settling_per_s": 0.1},
         "f_out_N",
         lambda true: true + 0.03 * DRIFTED,
     ),
-    ({"position_sensor_gain.x_out_gain": 0.97}, "x_out_mm", lambda true: 0.97 * true),
     (
         {f"{RIPPLE}.sine_mm": 0.06, f"{RIPPLE}.cosine_mm": -0.02, f"{RIPPLE}.period_mm": 4.0},
         "x_out_mm",
         lambda true: true + 0.06 * np.sin(np.pi * true / 2) - 0.02 * (np.cos(np.pi * true / 2) - 1),
-    ),
-    (
-        {"force_sensor_gain_drift.f_in_rate_per_s": 0.004},
-        "f_in_N",
-        lambda true: true * (1.0 + 0.004 * TIME_S),
     ),
     (
         {"force_sensor_gain_drift.f_out_rate_per_s": -0.004, "force_sensor_gain.f_out_gain": 1.1},
@@ -71,20 +60,6 @@ def test_a_late_channel_shows_what_was(channel, late):
 
 
 LAG = 0.08
-
-
-def filtered(values, time_s, lag_s=LAG):
-    return low_pass(values, time_s, lag_s, np.full(5, np.nan))
-
-
-def test_a_sine_loses_amplitude_and_phase():
-    """By 1/√(1 + (ωτ)²) and atan ωτ, once it has settled."""
-    t, omega = np.arange(0.0, 4.0, 1e-3), 9.0
-    y = filtered(np.sin(omega * t), t)
-    gain, phase = 1.0 / math.hypot(1.0, omega * LAG), math.atan(omega * LAG)
-    settled = t > 15.0 * LAG
-    expected = gain * np.sin(omega * t - phase)
-    np.testing.assert_allclose(y[settled], expected[settled], atol=2e-5)
 
 
 def test_after_a_step_a_low_pass_comes_by_an_exponential():

@@ -1,7 +1,6 @@
-"""What acts along the tendon, against solutions in closed form."""
+"""What acts along the tendon, in closed form; at each node: physics/slip/test_small_chains.py."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,14 +10,11 @@ from tests.effects.runs import UP_AND_DOWN, A, run
 from tests.physics.references import (
     GROUP_A,
     LOADED_BY_DISPLACEMENT,
-    branches,
     course_of,
     slip_chain,
 )
-from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck, stribeck_factor
-from tsas_cli.physics.response import NODES, DriveInput, simulate
+from tsas_cli.physics.response import NODES
 from tsas_cli.physics.rig import with_values
 
 
@@ -52,49 +48,10 @@ def test_the_wrap_follows_the_time_and_settles(name, direction):
     np.testing.assert_allclose(ratio, direction * wrap(settled), rtol=1e-8)
 
 
-@pytest.mark.parametrize("direction", [1, -1])
-def test_pulleys_add_their_losses_in_full_slip(direction):
-    answer = run({"pulley_friction.drive_loss": 0.05, "pulley_friction.load_loss": 0.08})
-    slip = in_slip(answer, direction)
-    ratio = np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
-    np.testing.assert_allclose(ratio, direction * (A + 0.13), rtol=1e-8)
-
-
-def test_a_pulley_steps_at_its_own_end_of_the_dead_band():
-    at_drive = run({"pulley_friction.drive_loss": 0.1})
-    at_load = run({"pulley_friction.load_loss": 0.1})
-    neither = run({})
-    turn = int(np.argmax(UP_AND_DOWN))
-    soon = turn + 3
-    before = np.array([r.f_in_N[turn] for r in (at_drive, at_load, neither)])
-    fell = np.log(before / [r.f_in_N[soon] for r in (at_drive, at_load, neither)])
-    assert fell[0] > 0.2  # twice the loss, at once
-    assert fell[1] == pytest.approx(fell[2], rel=0.1)
-    # Until slip reaches the load, its tension is that of the reversal.
-    rests = [np.sum(r.f_out_N[turn:] > r.f_out_N[turn] - 1e-6) for r in (at_load, neither)]
-    assert rests[0] > 1.3 * rests[1]
-
-
 def test_friction_is_nothing_where_its_law_would_be_negative():
     answer = run({"position_dependent_friction.slope_per_mm": -0.1})
     far = (answer.x_in_mm > 10.5) & (answer.x_in_mm < 13.0)
     np.testing.assert_allclose(answer.f_in_N[far], answer.f_out_N[far], rtol=1e-8)
-
-
-@pytest.mark.parametrize("speed", [0.5, 2.0, 8.0])
-@pytest.mark.parametrize("direction", [1, -1])
-def test_slow_sliding_has_more_friction(direction, speed):
-    """Every point slides, once friction has settled, at a speed between those of both ends."""
-    stribeck = {"excess": 0.3, "velocity_mm_per_s": 3.0}
-    values = {f"stribeck_friction.{name}": value for name, value in stribeck.items()}
-    answer = run(values, speed=speed)
-    slip = np.flatnonzero(in_slip(answer, direction))
-    slip = slip[slip.size // 2 :]
-    of_load = speed * np.gradient(answer.x_out_mm)[slip] / np.gradient(answer.x_in_mm)[slip]
-    least, most = (A * (1.0 + 0.3 * np.exp(-((v / 3.0) ** 2))) for v in (speed, of_load))
-    wrap = direction * np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
-    assert np.all(least + 0.2 * (most - least) < wrap)
-    assert np.all(wrap < most - 0.2 * (most - least))
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.4, 2.0, 4.0])
@@ -105,26 +62,6 @@ def test_the_slope_of_friction_over_speed_is_that_of_its_factor(exponent):
         ahead, behind = (stribeck_factor(speed + h, law) for h in (1e-5, -1e-5))
         assert stribeck(speed, law)[1] == pytest.approx((ahead - behind) / 2e-5, rel=1e-4, abs=1e-9)
     assert stribeck(0.0, law) == (1.3, 0.0)
-
-
-def test_friction_follows_a_change_of_speed_late():
-    """On a stiff tendon every point has the drive's speed: dv/dt = (speed - v)/lag, first order."""
-    law = {"excess": 0.3, "velocity_mm_per_s": 3.0, "lag_s": 0.02}
-    values = {f"stribeck_friction.{name}": value for name, value in law.items()}
-    stiff = GROUP_A._replace(tendon_stiffness_N=1e8)
-    errors = []
-    for h in (1e-3, 5e-4, 2.5e-4):
-        time_s = np.arange(0.0, 1.1, h)
-        x_in = 8.0 * np.minimum(time_s, 1.0) + 2.0 * np.maximum(time_s - 1.0, 0.0)
-        answer = run(values, x_in, rig=stiff, time_s=time_s)
-        after = time_s > 1.0 + 2e-3
-        v = 2.0 + 6.0 * np.exp(-(time_s[after] - 1.0) / 0.02)
-        wrap = A * (1.0 + 0.3 * np.exp(-((v / 3.0) ** 2)))
-        found = np.log(answer.f_in_N[after] / answer.f_out_N[after])
-        errors.append(np.max(np.abs(found - wrap)) / A)
-    assert errors[-1] < 0.02
-    for coarse, fine in pairwise(errors):
-        assert coarse / fine == pytest.approx(2.0, abs=0.4)
 
 
 LENGTH = 0.05
@@ -146,36 +83,6 @@ def test_a_tendon_at_rest_is_a_rod_on_bristles(sign):
     q = math.sqrt(A * 25.0 / (L * LENGTH) / EA)
     stiffness = EA * q / math.tanh(q * L)
     np.testing.assert_allclose(f_in - 25.0, stiffness * x, atol=2e-3 * stiffness * np.abs(x).max())
-
-
-EA = GROUP_A.tendon_stiffness_N
-MOTION = np.interp(np.linspace(0, 6, 3000), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, -4])
-
-
-def with_free(proximal, distal):
-    return GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(proximal, distal)))
-
-
-def test_a_free_length_is_a_rod():
-    assert free_compliance(150.0, 6e4) == pytest.approx(0.0025)
-
-
-def test_at_the_drive_it_takes_up_travel_by_its_tension():
-    f_in, f_out, phase = branches(MOTION, with_free(152.0, 0.0))
-    inside = MOTION - (f_in - 25.0) * 152.0 / EA
-    nominal = branches(inside, GROUP_A)
-    np.testing.assert_allclose(f_in, nominal[0], rtol=1e-9)
-    np.testing.assert_allclose(f_out, nominal[1], rtol=1e-9)
-    np.testing.assert_array_equal(phase, nominal[2])
-
-
-def test_at_the_load_it_softens_the_spring_and_moves_the_output_less():
-    spring = GROUP_A.load_stiffness_N_per_mm
-    softer = GROUP_A._replace(load_stiffness_N_per_mm=1.0 / (1.0 / spring + 61.0 / EA))
-    f_in, f_out, _ = branches(MOTION, with_free(0.0, 61.0))
-    np.testing.assert_allclose(f_in, branches(MOTION, softer)[0], rtol=1e-9)
-    response = simulate(with_free(0.0, 61.0), DriveInput(MOTION))
-    np.testing.assert_allclose(response.x_out_mm, (f_out - 25.0) / spring, atol=1e-9)
 
 
 DRAG = 3.0

@@ -3,6 +3,7 @@
 Started as a program it reads calls from standard input, one JSON line each, and answers with one.
 """
 
+import gc
 import json
 import os
 import resource
@@ -119,6 +120,7 @@ def serve() -> None:
     from tsas_cli.stages import calibrate, check, compare, ingest, report  # noqa: F401
 
     pint.UnitRegistry()
+    gc.freeze()
     for line in sys.stdin:
         print(json.dumps(_answer(json.loads(line))), flush=True)
 

@@ -16,6 +16,13 @@ from tsas_studies.challenge.rig.tendon import Rig, simulate
 ALL = ("f_in_N", "f_out_N", "x_out_mm")
 CELLS = 60  # 0.013 N off a rig of 200 at the most, where it turns; sensors have noise of 0.08 N
 RATE_HZ = 250.0  # of the rig; 0.01 N off one of 1000 Hz at a reversal
+TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
+VALUES = {
+    "friction_coefficient": 0.135,
+    "load_stiffness_N_per_mm": 1.45,
+    "preload_N": 27.0,
+    "tendon_stiffness_N": TRUE.axial_stiffness,
+}
 
 
 @cache

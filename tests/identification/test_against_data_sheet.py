@@ -12,6 +12,7 @@ from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.recordings.manifest import Manifest
+from tsas_studies.challenge.rig.recordings import DATA_SHEET
 from tsas_studies.challenge.rig.tendon import Rig
 
 EA = 1e3 * 60.0 * math.pi / 4.0 * 1.2**2  # 67858 N
@@ -25,16 +26,10 @@ SHEATH = "sheath_compression.compliance_ratio"
 
 
 def sheet(**changed):
-    rig = {
-        "tendon_diameter_mm": 1.2,
-        "tendon_modulus_GPa": 60.0,
-        "friction_coefficient": 0.125,
-        "load_stiffness_N_per_mm": 1.579,
-    }
     run = {"id": "a", "file": "a.parquet", "sha256": "0" * 64, "preload_N": 25.0}
     run |= {"sheath_length_mm": 785.4, "total_bend_rad": 3.1416} | changed
     return Manifest.model_validate(
-        {"format": 1, "name": "d", "kind": "measured", "rig": rig, "run": [run]}
+        {"format": 1, "name": "d", "kind": "measured", "rig": DATA_SHEET, "run": [run]}
     )
 
 

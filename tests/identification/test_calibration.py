@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.identification.recorded import manifest, prepared
+from tests.identification.recorded import TRUE, manifest, prepared
+from tests.identification.recorded import VALUES as OF_RIG
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import calibration as c
 from tsas_cli.identification.calibration import calibrate_runs, with_preload_correction
@@ -18,18 +19,12 @@ from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.stages.calibrate import CalibrationResult, _stiffness, _theory
 from tsas_studies.challenge.rig.motions import sine, two_sines
+from tsas_studies.challenge.rig.recordings import DATA_SHEET
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
-TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
 OTHER = replace(TRUE, total_bend_rad=math.pi / 2.0, sheath_length_mm=100.0 * math.pi)
-VALUES = {
-    "friction_coefficient": 0.135,
-    "load_stiffness_N_per_mm": 1.45,
-    "preload_N": 27.0,
-    "tendon_stiffness_N": TRUE.axial_stiffness,
-    "x_in_zero_mm": 0.0,
-}
+VALUES = OF_RIG | {"x_in_zero_mm": 0.0}
 
 
 def recorded(rig, motion=None, **more):
@@ -196,18 +191,10 @@ def test_a_former_correction_is_replaced():
     assert sum(e.name == CORRECTION for e in again.estimates) == 1
 
 
-SHEET = {
-    "friction_coefficient": 0.125,
-    "tendon_modulus_GPa": 60.0,
-    "tendon_diameter_mm": 1.2,
-    "load_stiffness_N_per_mm": 1.579,
-    "turntable_radius_mm": 27.1,
-    "gear_ratio": 120.0,
-}
 CONDITIONS = {"total_bend_rad": math.pi, "sheath_length_mm": 785.0, "preload_N": 25.0}
 
 
-def stiffness(phase="contraction", sheet=SHEET, conditions=CONDITIONS, expected=2.4):
+def stiffness(phase="contraction", sheet=DATA_SHEET, conditions=CONDITIONS, expected=2.4):
     run = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64} | conditions
     manifest = Manifest.model_validate(
         {"format": 1, "name": "n", "kind": "measured", "rig": sheet, "run": [run]}
@@ -228,7 +215,9 @@ def test_measured_stiffness_is_told_per_millimetre_and_per_turn():
         assert kr[name] == pytest.approx(0.0236492 * km[name], rel=1e-5)  # 2π r1/(60 im)
     assert (km["unit"], kr["unit"]) == ("N/mm", "N/(s rpm)")
     assert (found["occurrences"], found["samples"], found["expected_N_per_mm"]) == (3, 400, 2.4)
-    less = stiffness(sheet={k: v for k, v in SHEET.items() if k != "gear_ratio"}, expected=None)
+    less = stiffness(
+        sheet={k: v for k, v in DATA_SHEET.items() if k != "gear_ratio"}, expected=None
+    )
     assert less.expected_N_per_mm is less.kr is None
 
 
@@ -248,9 +237,9 @@ def test_theory_is_that_of_the_paper(phase, theory, elastic):
     assert found.note == "theory from the data sheet"
 
 
-@pytest.mark.parametrize("missing", list(SHEET)[:4])
+@pytest.mark.parametrize("missing", list(DATA_SHEET)[:4])
 def test_without_a_data_sheet_theory_is_that_of_the_calibrated_values(missing):
-    found = stiffness(sheet={k: v for k, v in SHEET.items() if k != missing})
+    found = stiffness(sheet={k: v for k, v in DATA_SHEET.items() if k != missing})
     assert found.note == "theory from the calibrated values"
     assert found.theory_N_per_mm == pytest.approx(1.579 * math.exp(0.2 * math.pi))
 

@@ -35,7 +35,7 @@ def test_without_a_force_a_compliance_at_the_load_is_not_fitted():
 
 
 ZERO = "x_in_zero_mm"
-PROXIMAL, DISTAL = "free_tendon.proximal_length_mm", "free_tendon.distal_length_mm"
+PROXIMAL = "free_tendon.proximal_length_mm"
 SIZE = QUANTITIES[PROXIMAL].size
 
 

@@ -15,17 +15,12 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
+from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.rig.recordings import DATA_SHEET
 
 ROWS, PIECE = 12_000, 2500
-SHEET = RigSheet(
-    tendon_diameter_mm=1.2,
-    tendon_modulus_GPa=60.0,
-    friction_coefficient=0.125,
-    load_stiffness_N_per_mm=1.579,
-)
 ANSWERS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
@@ -35,7 +30,7 @@ def entry(load="spring"):
 
 
 def written(folder, columns, run):
-    manifest = Manifest(format=1, name="long", kind="simulated", rig=SHEET, run=(run,))
+    manifest = Manifest(format=1, name="long", kind="simulated", rig=DATA_SHEET, run=(run,))
     folder.mkdir(exist_ok=True)
     table = pa.table({n: pa.array(v, from_pandas=True) for n, v in columns.items()})
     write_dataset(folder, manifest, {"a": table})
@@ -55,7 +50,7 @@ def recorded(rows=ROWS):
 
 
 def answered(time_s, x):
-    manifest = Manifest(format=1, name="long", kind="simulated", rig=SHEET, run=(entry(),))
+    manifest = Manifest(format=1, name="long", kind="simulated", rig=DATA_SHEET, run=(entry(),))
     true = simulate(data_sheet(manifest).rig(entry()), DriveInput(x, time_s=time_s - time_s[0]))
     return {name: getattr(true, name) for name in ANSWERS}
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.identification.recorded import ran
+from tests.identification.recorded import TRUE, VALUES, clean, ran
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -11,14 +11,8 @@ from tsas_cli.identification.quantities import QUANTITIES
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import conditions
 from tsas_studies.challenge.rig.sensors import Sensors, measure
-from tsas_studies.challenge.rig.tendon import Rig, simulate
 
-TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
-VALUES = {
-    "friction_coefficient": 0.135,
-    "load_stiffness_N_per_mm": 1.45,
-    "tendon_stiffness_N": TRUE.axial_stiffness,
-}
+SHARED = {name: value for name, value in VALUES.items() if name != "preload_N"}
 HEIGHTS = {f"drive_law.curve_{k}_N": h for k, h in enumerate((0.0, 4.0, 1.0, 6.0, 3.0), 1)}
 
 
@@ -26,14 +20,14 @@ def model(**further):
     return Model(
         tuple(
             Estimate(name, value, QUANTITIES[name].unit, "fitted")
-            for name, value in (VALUES | further).items()
+            for name, value in (SHARED | further).items()
         )
     )
 
 
 @pytest.fixture(scope="module")
 def columns():
-    return measure(simulate(TRUE, sine(rate_Hz=400.0)), Sensors(rate_Hz=200.0), seed=1)
+    return measure(clean(TRUE, sine(rate_Hz=400.0)), Sensors(rate_Hz=200.0), seed=1)
 
 
 def own_values(of, columns, **changes):
@@ -47,7 +41,7 @@ def test_the_zero_of_a_force_sensor_is_a_runs_own_where_the_model_has_an_offset(
     own = own_values(model(**{offset: 1.0}), columns, f_in_N=-3.0)
     assert own[offset] == pytest.approx(-3.0, abs=0.1)
     assert own["preload_N"] == pytest.approx(27.0, abs=0.1)
-    assert {name: own[name] for name in VALUES} == VALUES
+    assert {name: own[name] for name in SHARED} == SHARED
     without = own_values(model(), columns, f_in_N=-3.0)
     assert offset not in without
 

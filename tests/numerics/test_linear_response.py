@@ -1,4 +1,3 @@
-import control
 import numpy as np
 import pytest
 
@@ -24,6 +23,8 @@ def speed(samples=1500):
 @pytest.mark.parametrize("leak", [0.0, 1e-6, 0.3])
 @pytest.mark.parametrize("lags", LAGS.values(), ids=LAGS)
 def test_linear_between_samples_it_is_python_controls_answer(lags, leak):
+    import control  # takes as long to load as all tests of this file
+
     u = speed()
     G = control.tf([1.0], np.polymul([1.0, leak], lags[::-1]))
     exact = control.forced_response(G, H * np.arange(u.size), u).outputs

@@ -1,11 +1,12 @@
-"""One run: which solver answers, where it starts, and what the sensors would read."""
+"""One run: where it starts, and from where on nothing depends on what came before it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, branches
+from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import first_determined_sample, simulate
 
@@ -16,15 +17,6 @@ MOTION = np.concatenate((np.linspace(0, 20, 500), np.linspace(20, 5, 500), np.li
 @pytest.fixture(scope="module")
 def spring():
     return simulate(RIG, DriveInput(MOTION + 3.0))
-
-
-def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
-    f_in, f_out, phase = branches(MOTION, GROUP_A)
-    assert spring.solver == "closed form"
-    np.testing.assert_array_equal(spring.x_in_mm, MOTION + 3.0)
-    np.testing.assert_allclose(spring.f_in_N, f_in, rtol=1e-12)
-    np.testing.assert_allclose(spring.x_out_mm + 7.0, (f_out - 25.0) / 1.579, atol=1e-12)
-    np.testing.assert_array_equal(spring.phase, phase)
 
 
 def mid_cycle(spring, load, part):
@@ -57,3 +49,36 @@ def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
     assert first > 5
     np.testing.assert_allclose(pulled[first:], released[first:], rtol=1e-6)
     assert np.all(pulled[:first] > released[:first] + 1e-3)
+
+
+EA, KL, L, _, F0 = GROUP_A[1:6]
+WRAP = wrap_of(GROUP_A)
+
+
+def dead_band(x):
+    """Return the travel from contraction at x to loosening, by the formulas of Yang 2025."""
+    slope = KL * math.exp(WRAP) / (1.0 + KL * (math.exp(WRAP) - 1.0) * L / (WRAP * EA))
+    tension = slope * (x + F0 * (1.0 / KL + L / EA))
+    return L / (WRAP * EA) * tension * (1.0 - math.exp(-WRAP)) ** 2
+
+
+def test_a_release_forgets_when_the_widest_dead_band_is_crossed():
+    x = 10.0 - np.arange(0.0, 1.0, 1e-3)
+    first = first_determined_sample(GROUP_A, DriveInput(x))
+    assert x[0] - x[first] == pytest.approx(dead_band(10.0), abs=1.5e-3)
+
+
+def test_a_move_inside_the_dead_band_is_never_forgotten():
+    x = 10.0 + 0.4 * dead_band(10.0) * np.sin(np.linspace(0.0, 20.0, 500))
+    assert first_determined_sample(GROUP_A, DriveInput(x)) is None
+    assert first_determined_sample(GROUP_A, DriveInput(np.full(100, 10.0))) is None
+
+
+@pytest.mark.parametrize("wanted", [5.0, 200.0])
+def test_a_tension_out_of_reach_starts_at_the_nearest_one(wanted):
+    """Below that of loosening, or above that of contraction."""
+    x = np.full(3, 10.0)
+    reached = simulate(GROUP_A, DriveInput(x, start_f_in_N=wanted)).f_in_N[0]
+    pulled = simulate(GROUP_A, DriveInput(np.array([0.0, 10.0]))).f_in_N[-1]
+    released = simulate(GROUP_A, DriveInput(np.array([0.0, 20.0, 10.0]))).f_in_N[-1]
+    assert reached == pytest.approx(pulled if wanted > 100.0 else released, rel=1e-6)

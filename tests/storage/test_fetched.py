@@ -113,16 +113,6 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
     assert lines[0] == lines[1]
 
 
-def test_fewer_bytes_than_were_asked_for_are_refused(bucket, monkeypatch):
-    async def short(*_, **__):
-        return b"con"
-
-    monkeypatch.setattr(storage, "PAUSE_S", 0.01)
-    monkeypatch.setattr(storage.files_of("s3"), "_cat_file", short)
-    with pytest.raises(InputError, match="breaks off"):
-        location_of(f"{bucket}/x").read_part(0, 7)
-
-
 def test_where_there_is_no_room_it_is_said(monkeypatch):
     """Of a small recording it was said when the file was flushed: that the output has no room."""
     assert parquet_files._fetch(Object(), sha256(b"content").hexdigest())[:] == b"content"

@@ -53,16 +53,6 @@ def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
         assert time.monotonic() - before < 20
 
 
-def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):
-    tsas.upload(dataset, f"{bucket}/bench")
-    data = tsas.read(f"{bucket}/bench")
-    wire.target = free_port()
-    forget()
-    with pytest.raises(InputError) as caught:
-        data["a"]
-    assert "cannot be reached" in caught.value.line()
-
-
 @pytest.mark.parametrize(
     ("address", "line"),
     [

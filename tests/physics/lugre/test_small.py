@@ -19,7 +19,6 @@ from tests.physics.references import (
     at,
     course_of,
 )
-from tsas_cli.physics.bristles import Bristle, Bristles, friction, friction_now
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre import state as rows
 from tsas_cli.physics.lugre.balance import balance
@@ -153,24 +152,6 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
         assert s[rows.LOAD_STATE_NEW :][:2].tolist() == pytest.approx([element, stretch])
     np.testing.assert_allclose(nodes(s, rows.RESIDUAL), left, rtol=1e-6, atol=1e-9)
     assert total == pytest.approx(np.abs(left).sum(), rel=1e-6)
-
-
-def test_usual_constants_are_those_of_table_1_for_the_whole_sheath():
-    """Yang 2025: 100 N/mm for each of 50 lumps, 0.25 kg for 100 m, 0.1 N s/mm for each of 50."""
-    critical = math.nan  # the paper's damping diverges
-    table_1 = 100.0 * 50, critical, 0.25 / 100.0, 0.1 / 50
-    assert Bristles() == pytest.approx(table_1, nan_ok=True)
-
-
-@pytest.mark.parametrize("speed", [0.7, -0.7])
-def test_friction_now_is_that_of_a_step_of_no_time(speed):
-    bristle = Bristle(300.0, 0.5, 0.02, 0.01)
-    now, rate_now = friction_now(0.004, speed, 2.0, bristle)
-    later, _, _, z = friction(0.004, speed, 1e-9, 2.0, bristle)
-    assert now == pytest.approx(later, rel=1e-5)
-    assert rate_now == pytest.approx((z - 0.004) / 1e-9, rel=1e-5)
-    longest = 2.0 / 300.0 + 0.01
-    assert rate_now == pytest.approx(speed * (1.0 - math.copysign(1.0, speed) * 0.004 / longest))
 
 
 TIMES = pytest.mark.parametrize("times", [(0.0, 0.3, 0.7, 0.8), (0.0, 0.1, 0.2, 0.5)])

@@ -16,7 +16,7 @@ from tests.physics.references import (
     through,
     wrap_of,
 )
-from tests.physics.slip.test_small_chains import SPRINGY, N, gives, hold_everywhere
+from tests.physics.slip.laws_by_hand import SPRINGY, N, gives, hold_everywhere
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_studies.challenge.rig import tendon

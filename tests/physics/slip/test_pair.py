@@ -19,7 +19,7 @@ from tests.physics.references import (
     through,
     wrap_of,
 )
-from tests.physics.slip.test_small_chains import (
+from tests.physics.slip.laws_by_hand import (
     EFFECTS,
     FREE,
     ROUNDING,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import DRIVEN_BY_FORCE, GROUP_A, LOADED_BY_SPRING, at
-from tests.physics.slip.test_small_chains import EFFECTS, BesideSpring
+from tests.physics.slip.laws_by_hand import EFFECTS, BesideSpring
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.physics.boundary import unloaded_position
 from tsas_cli.physics.course import Losses

@@ -16,7 +16,7 @@ from tests.physics.references import (
     follow,
     slip_chain,
 )
-from tests.physics.slip.test_small_chains import SPRINGY
+from tests.physics.slip.laws_by_hand import SPRINGY
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.mesh import segment_compliances

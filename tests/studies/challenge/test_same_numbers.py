@@ -22,7 +22,7 @@ CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")
 RATE_HZ = 100.0
 SENSORS = replace(PERFECT, rate_Hz=RATE_HZ)
 WHOLE = motion("b", RATE_HZ)
-MOTION = Motion(WHOLE.time_s[:1005], WHOLE.x_in_mm[:1005])  # three periods
+MOTION = Motion(WHOLE.time_s[:670], WHOLE.x_in_mm[:670])  # two periods
 _, _, RADIUS, BEND = RUNS["b"]
 VIRTUAL = VirtualRig(
     total_bend_rad=BEND,

@@ -125,14 +125,14 @@ def test_where_the_bend_sits_changes_the_elongation_but_not_the_ratio():
 
 def test_a_course_of_friction_over_time():
     motion = through([10.0], rate_Hz=200.0)
-    more = simulate(Rig(friction_course=((0.0, 1.2),)), motion).columns
-    plain = simulate(Rig(friction_coefficient=0.15), motion).columns
+    more = simulate(Rig(friction_course=((0.0, 1.2),), cells=60), motion).columns
+    plain = simulate(Rig(friction_coefficient=0.15, cells=60), motion).columns
     np.testing.assert_allclose(more["f_in_N"], plain["f_in_N"], atol=1e-6)
 
 
 def test_friction_that_grows_while_nothing_moves_changes_nothing_but_the_next_pull():
     still = Motion(clock(4.0, 200.0), np.interp(clock(4.0, 200.0), [0, 2, 3, 4], [0, 10, 10, 11]))
-    columns = simulate(Rig(friction_course=((2.0, 1.0), (3.0, 1.3))), still).columns
+    columns = simulate(Rig(friction_course=((2.0, 1.0), (3.0, 1.3)), cells=60), still).columns
     rest = (still.time_s > 2.0) & (still.time_s < 3.0)
     assert np.ptp(columns["f_out_N"][rest]) < 0.1
     assert columns["f_in_N"][-1] / columns["f_out_N"][-1] == pytest.approx(

@@ -1,0 +1,97 @@
+"""What is as good as a named effect, on fits and squares that are made up."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.diagnosis.searched import (
+    ALL_CONVINCE,
+    BLOCKS,
+    CONVINCES,
+    DOES_NOT,
+    OF,
+    SIZE,
+    A,
+    C,
+    D,
+    names,
+    search_over,
+    seen,
+)
+from tsas_cli.diagnosis import rivals as rivals_module
+from tsas_cli.diagnosis.rivals import exchanged, rivals_of
+
+
+@pytest.fixture
+def made(monkeypatch):
+    return search_over(monkeypatch)
+
+
+def test_rivals_convince_too_and_are_not_surely_worse(made, monkeypatch):
+    fits = made({names(C): 1.001, names(D): 1.001, names(A): 1.0, names(): 4.0})
+    monkeypatch.setattr(
+        rivals_module, "add", lambda *_: [(A, CONVINCES), (C, CONVINCES), (D, DOES_NOT)]
+    )
+    assert rivals_of(fits, names(A), A) == (C,)  # itself is none, and D convinces nobody
+    fits.trial(names(C)).solution.converged = False
+    assert rivals_of(fits, names(A), A) == ()
+    worse = made({names(C): 1.02, names(A): 1.0, names(): 4.0})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
+    assert rivals_of(worse, names(A), A) == ()
+
+
+@pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (C,))])
+def test_what_cannot_take_away_as_much_is_no_rival(made, part, rivals):
+    """Of 4.0 the named one takes 3.0 away; 0.4 of that is 0.3 of the squares."""
+    fits = made({names(): 4.0, names(A): 1.0, names(C): 1.0})
+    seen(fits, names(), (A, 0.75), (C, part))
+    assert rivals_of(fits, names(A), A) == rivals
+
+
+@pytest.mark.parametrize(
+    ("unsure", "of_forms", "rivals"),
+    [(0.0, 0.0, ()), (0.025, 0.0, ()), (0.035, 0.0, (C,)), (0.0, 0.04, ()), (0.0, 0.06, (C,))],
+)
+def test_what_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals, monkeypatch):
+    """4 % more: beyond the one per cent that tells right models apart; it takes 5 % less away."""
+    fits = made({names(): 9.0, names(A): 4.8, names(C): 5.0})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
+    assert rivals_of(fits, names(A), A, unsure, of_forms) == rivals
+
+
+@pytest.mark.parametrize(("in_sample", "rivals"), [(1.0, (C,)), (1.001, ())])
+def test_what_its_parameters_cost_is_no_reason_against_a_rival(
+    made, in_sample, rivals, monkeypatch
+):
+    """It predicts worse by 2 %, and fits all the data as well, or worse."""
+    fits = made({names(): 9.0, names(A): 1.0, names(C): in_sample})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
+    for effects, held_out in ((names(A), 1.0), (names(C), 1.02)):
+        of = effects, fits.trial(effects).on_mesh
+        fits.squares[of] = fits.scattered[of] = np.full(BLOCKS, held_out * SIZE / BLOCKS)
+    assert rivals_of(fits, names(A), A) == rivals
+
+
+def test_a_rival_that_is_better_beside_the_others_takes_its_place(made, monkeypatch):
+    """Found first, C is worse than D once A is there; alone, it is better."""
+    alone = {names(): 9.0, names(A): 5.0, names(C): 3.0, names(D): 4.0}
+    fits = made(alone | {names(A, C): 1.2, names(A, D): 1.0, names(C, D): 2.9})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: ALL_CONVINCE)
+    assert exchanged(fits, names(A, C)) == names(A, D)
+    assert exchanged(fits, names(A, D)) == names(A, D)
+
+
+def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made, monkeypatch):
+    """A size at its bound does not count, a shape does."""
+    fits = made({names(): 9.0, names(A): 1.0, names(C): 1.0, names(D): 1.5})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: ALL_CONVINCE)
+    assert exchanged(fits, names(A)) == names(A)
+    assert exchanged(fits, names(C)) == names(C)
+    for name, at_bound in ((A, [False]), (C, [True, False])):
+        fit = fits.trial(names(name))
+        fit.unknowns = [SimpleNamespace(name=f"{name}.{p.name}") for p in OF[name].parameters]
+        fit.solution.at_bound = at_bound
+    assert exchanged(fits, names(C)) == names(C)
+    fits.trial(names(C)).solution.at_bound = [False, False]
+    assert exchanged(fits, names(C)) == names(A)
