@@ -4,6 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, is_far_off
+from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION
 from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
 from tsas_cli.diagnosis.faults.words import (
@@ -107,7 +108,8 @@ def diagnose_runs(
     """Return the effects that a model of these runs lacks; `step` reports progress.
 
     Where a fault of the recordings explains what the nominal model leaves, none is sought; those
-    of codes that are `accepted` are not. `stated` is the data sheet as a model, or another initial
+    of codes that are `accepted` are not. A friction of one run's own is no fault where an effect
+    that gains explains as much. `stated` is the data sheet as a model, or another initial
     model.
     """
     step.doing("fits the nominal model")
@@ -131,7 +133,8 @@ def diagnose_runs(
         if stiffer is not None:
             return _undecided_by(*stiffer, base)
         fault = fault_of_recording(fits, accepted)
-        if fault is not None and not any(effects_as_good(fits, fault)):
+        as_good = frozenset[str]() if fault is None else frozenset(effects_as_good(fits, fault))
+        if fault is not None and not as_good:
             return _of_a_fault(fault, base)
         found = _concluded(proven_effects(find_effects(fits), step), base, step)
     except Ended:
@@ -144,7 +147,9 @@ def diagnose_runs(
         of_other_laws = all(cause.law_differs for cause in found.causes)
         if named and of_other_laws and not leaves_noise(fits, named, fault):
             return by_fault
-        if not found.causes:
+        of_a_friction = fault.found[0].code == OWN_FRICTION
+        gaining = as_good.intersection(one.effect for one in found.stand_ins)
+        if not (found.causes or (of_a_friction and gaining)):
             found = replace(found, fault=by_fault.fault, reason=f"{found.reason} {by_fault.reason}")
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model
