@@ -10,7 +10,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import fit_sentences as fs
 from tsas_cli.identification import joint_fit as j
-from tsas_cli.identification.base_fit import _zero_between, _zeros_by_laws
+from tsas_cli.identification.base_fit import _zero_between
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown
 from tsas_cli.identification.fit_problem import FitProblem, nominal_unknowns, rig_at
@@ -212,24 +212,6 @@ def test_each_load_has_its_unknowns_as_far_off_as_they_may_be(load, bend_rad):
     tendon = next(u for u in found if u.name == "tendon_stiffness_N")
     assert np.exp([tendon.lower, tendon.initial, tendon.upper]) == pytest.approx([1e4, 2e4, 2e4])
     assert found[0].initial == pytest.approx(np.log(0.2))
-
-
-@pytest.mark.parametrize("far", [False, True])
-def test_a_run_is_laid_in_the_middle_of_the_displacements_that_a_law_holds_for(far):
-    """From 2 to 10 mm beside a law from 1 to 4 mm: by 6 less 2.5 mm."""
-    law = Model(
-        (
-            Estimate("drive_law.low_mm", 1.0, "mm", "given"),
-            Estimate("drive_law.high_mm", 4.0, "mm", "given"),
-        )
-    )
-    x = np.array([np.nan, 2.0, 10.0, 3.0]) if not far else np.full(4, np.nan)
-    run = SimpleNamespace(run=SimpleNamespace(id="a"), channel={"x_in_mm": x}.get)
-    found = _zeros_by_laws(law, run)
-    assert [(e.name, e.value, e.run) for e in found.estimates] == [("x_in_zero_mm", 3.5, "a")] * (
-        not far
-    )
-    assert _zeros_by_laws(Model(law.estimates[:1]), run).estimates == ()
 
 
 @pytest.mark.parametrize(("lead_mm", "slack"), [(-0.11, True), (-0.09, False)])

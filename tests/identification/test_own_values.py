@@ -1,12 +1,14 @@
 """What belongs to one run alone is fitted to it: its preload, and the zeros of its sensors."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from tests.identification.recorded import TRUE, VALUES, clean, ran
-from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
+from tsas_cli.identification.own_values import _median, _zeros_by_laws, with_own_values
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import conditions
@@ -62,4 +64,49 @@ def test_a_run_that_ends_before_its_first_full_slip_keeps_the_models_values(colu
     short = {name: values[:25] for name, values in columns.items()}
     law = model(**HEIGHTS | {"drive_law.low_mm": 0.0, "drive_law.high_mm": 20.0})
     own = own_values(law, short)
-    assert {name: own[name] for name in VALUES} == VALUES
+    assert {name: own[name] for name in SHARED} == SHARED
+
+
+@pytest.mark.parametrize("far", [False, True])
+def test_a_run_is_laid_in_the_middle_of_the_displacements_that_a_law_holds_for(far):
+    """From 2 to 10 mm beside a law from 1 to 4 mm: by 6 less 2.5 mm."""
+    law = Model(
+        (
+            Estimate("drive_law.low_mm", 1.0, "mm", "given"),
+            Estimate("drive_law.high_mm", 4.0, "mm", "given"),
+        )
+    )
+    x = np.array([np.nan, 2.0, 10.0, 3.0]) if not far else np.full(4, np.nan)
+    run = SimpleNamespace(run=SimpleNamespace(id="a"), channel={"x_in_mm": x}.get)
+    found = _zeros_by_laws(law, run)
+    assert [(e.name, e.value, e.run) for e in found.estimates] == [("x_in_zero_mm", 3.5, "a")] * (
+        not far
+    )
+    assert _zeros_by_laws(Model(law.estimates[:1]), run).estimates == ()
+
+
+def test_another_run_of_a_mounting_starts_from_the_median_of_the_values_that_the_others_have():
+    of = [("x_in_zero_mm", run, mm) for run, mm in zip("bcd", (1.0, 3.0, 7.0), strict=True)]
+    of += [
+        ("x_in_zero_mm", "a", 50.0),
+        ("preload_N", "b", 20.0),
+        ("friction_coefficient", None, 0.1),
+    ]
+    known = Model(tuple(Estimate(name, v, "", "fitted", run) for name, run, v in of))
+    found = _median(known, SimpleNamespace(run=SimpleNamespace(id="a")))
+    values = {e.name: (e.value, e.run) for e in found.estimates}
+    assert values == {"x_in_zero_mm": (3.0, "a"), "preload_N": (20.0, "a")}
+
+
+def test_a_fit_that_ends_far_off_gives_way_to_one_from_the_values_of_the_other_runs(
+    columns, monkeypatch
+):
+    """What the run shows is misread by 300 mm: the tendon is slack, and nothing pulls it taut."""
+    wrong = Model((Estimate("x_in_zero_mm", 300.0, "mm", "default", "a"),))
+    monkeypatch.setattr("tsas_cli.identification.own_values.read_off", lambda *_: wrong)
+    own = own_values(model(), columns)
+    assert abs(own["x_in_zero_mm"]) > 50.0
+    others = (Estimate("x_in_zero_mm", 0.5, "mm", "fitted", "b"),)
+    known = Model((*model().estimates, *others))
+    of_run = with_own_values(known, ran(columns, **conditions(TRUE) | {"preload_N": None}))
+    assert of_run.value("x_in_zero_mm", "a") == pytest.approx(0.0, abs=0.1)

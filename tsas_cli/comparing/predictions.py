@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from tsas_cli.comparing.sides import Side, same_runs
-from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import compare as simulated
 from tsas_cli.identification.model import Model
+from tsas_cli.identification.own_values import with_own_values
 from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
@@ -153,7 +153,7 @@ def channels(both: Both) -> list[str]:
 
 
 def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model:
-    """Return a model with those values of a single run that belong to this recording.
+    """Return a model with those values of a single run that belong to this recording, or to others.
 
     Another recording of the same name has a preload and zeros of its own. A model that does not
     say what it was fitted to is taken by its names.
@@ -165,8 +165,8 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
     owner = run.id if run.id in same else min(same, default="")
     return Model(
         tuple(
-            e if e.run is None else replace(e, run=run.id)
+            replace(e, run=run.id) if e.run == owner else e
             for e in model.estimates
-            if e.run in (None, owner)
+            if e.run in (None, owner) or e.run != run.id
         )
     )

@@ -5,13 +5,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET
-from tsas_cli.effects.laws import FOLLOWS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
-from tsas_cli.identification.joint_fit import residuals_with, solve_fit
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.phases import Segment, segment
+from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.transfer import Slope, slopes
@@ -19,7 +16,6 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
 FAR = 1.0  # strokes: a zero that a fit from 0 mm does not find
-FORCE_ZEROS = [f"{FORCE_SENSOR_OFFSET.name}.{p.name}" for p in FORCE_SENSOR_OFFSET.parameters]
 SMALLEST_BEND = 1e-3  # rad
 RARE = 0.05  # share of the samples on either side of what a ratio of tensions mostly is
 SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
@@ -208,46 +204,8 @@ def base_fit(
     `stated` has the values of parameters that are fixed, those of the data sheet for example;
     `plausible` are narrower bounds of some.
     """
-    initial = _read_off(stated, runs, segments, measured)
+    initial = read_off(stated, runs, segments, measured)
     return prepare_fit(initial.over(stated), stated.over(initial), runs, plausible=plausible)
-
-
-def with_own_values(model: Model, run: Prepared) -> Model:
-    """Return a model with the parameters of one run fitted to it; all others are fixed.
-
-    The zero of a force sensor is one of them where the model has an offset of it: it changes
-    whenever the sensor is mounted. Where a law of the model holds in a range of displacements, the
-    fit starts once more with the run in the middle of it: beyond it the law is constant, and shows
-    no way back.
-    """
-    parts = segment(run)
-    initial = _read_off(model, [run], [parts], [slopes_of(run, parts)])
-    own = Model(tuple(e for e in initial.estimates if e.run is not None))
-    offsets = [e.name for e in model.estimates if e.name in FORCE_ZEROS and e.value != 0.0]
-    aligned = _zeros_by_laws(model, run)
-    fits = [
-        solve_fit(
-            prepare_fit(start.over(model), model.over(own), [run], shared=False, further=offsets)
-        )
-        for start in ((own, aligned.over(own)) if aligned.estimates else (own,))
-    ]
-    with_samples = [fit for fit in fits if fit.problem.runs]
-    if len(with_samples) < 2:
-        return (with_samples or fits)[0].model
-    return min(with_samples, key=lambda fit: float(np.mean(residuals_with(fit, {}) ** 2))).model
-
-
-def _zeros_by_laws(model: Model, run: Prepared) -> Model:
-    """Return the zeros of a run in the middle of the displacements that the laws hold for."""
-    zeros = {}
-    for law, channel in FOLLOWS.items():
-        low, high = (model.value(f"{law}.{end}_mm") for end in ("low", "high"))
-        x = run.channel(channel)
-        if low is None or high is None or x is None or not np.isfinite(x).any():
-            continue
-        middle = 0.5 * (float(np.nanmin(x)) + float(np.nanmax(x)))
-        zeros[channel.replace("_mm", "_zero_mm")] = middle - 0.5 * (low + high)
-    return Model(tuple(Estimate(n, v, "mm", "default", run.run.id) for n, v in zeros.items()))
 
 
 def slopes_of(
@@ -264,7 +222,7 @@ def slopes_of(
     return slopes(run.conditioned["x_in_mm"].values, f_in, segments)
 
 
-def _read_off(
+def read_off(
     stated: Model,
     runs: Sequence[Prepared],
     segments: Sequence[list[Segment]],

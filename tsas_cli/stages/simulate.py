@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.long_runs import open_long, simulate_long
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import model_of, source_of, write_model
+from tsas_cli.identification.own_values import with_own_values
 from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.mesh import MOST_NODES
