@@ -165,6 +165,7 @@ def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not
     few[[70, 900, 901]] += 25.0
     some[300:330] += 9.0
     assert _is_brief(some)
+    assert not _is_brief(np.where(np.arange(noise.size) % 3 == 0, noise, 0.0))  # mostly the same
     assert not any(map(_is_brief, (noise, 2.0 * noise, noise + slow, few)))
 
 

@@ -101,6 +101,23 @@ def test_gains_are_beside_the_friction_of_each_run_unless_it_changes_with_the_se
     assert fits.gain(names(), names(A)).part == pytest.approx(part)
 
 
+@pytest.mark.parametrize(("bend_rad", "lines"), [(1.0, 2), (0.0, 1)])
+def test_a_straight_sheath_has_no_friction_over_the_inverse_of_its_bend(
+    made, monkeypatch, bend_rad, lines
+):
+    looked_at = []
+    monkeypatch.setattr(
+        fits_module, "is_in_line", lambda trial, run, over: looked_at.append(over) or False
+    )
+    fits = made({names(): 4.0})
+    fits.bench.rigs = (
+        SimpleNamespace(total_bend_rad=2.0),
+        SimpleNamespace(total_bend_rad=bend_rad),
+    )
+    assert fits.scatters(names(), mesh=False)
+    assert len(looked_at) == lines
+
+
 def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
     fits = made({names(): 4.0, names(A): 3.0, names(C): 2.0, names(D): 1.0})
     seen(fits, names(), (A, 0.5), (C, 0.11), (D, 0.09))  # a fifth of the best is 0.1

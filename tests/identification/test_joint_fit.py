@@ -191,6 +191,10 @@ def test_what_is_fixed_is_said_once_for_each_reason():
         "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
     ]
     assert problem.ids == ["a", "b"]
+    of_b = fs.fixed_sentences(problem, {2: [1]})
+    assert of_b[0].startswith(
+        "x_in_zero_mm is not identifiable together with x_in_zero_mm of other"
+    )
 
 
 @pytest.mark.parametrize(("load", "bend_rad"), [("spring", 3.0), ("spring", None), ("force", 3.0)])

@@ -75,9 +75,8 @@ class Fits:
             session_s = np.array([run.run.session_s for run in self.bench.closed])
             bends_rad = np.array([rig.total_bend_rad for rig in self.bench.rigs])
             trial = self.trial(names, on_mesh=mesh)
-            self.in_line[names, mesh] = any(
-                is_in_line(trial, self.folds.run, over) for over in (session_s, 1.0 / bends_rad)
-            )
+            lines = [session_s, *([1.0 / bends_rad] if bends_rad.all() else [])]
+            self.in_line[names, mesh] = any(is_in_line(trial, self.folds.run, x) for x in lines)
         return not self.in_line[names, mesh]
 
     def gain(self, before: Names, after: Names) -> Reduction:

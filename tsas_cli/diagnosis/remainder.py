@@ -190,6 +190,8 @@ def _is_brief(errors: Floats) -> bool:
     Noise is as large at any time, and seldom far beyond its own standard deviation.
     """
     sd = float(np.median(np.abs(errors - np.median(errors)))) / UPPER_QUARTILE
+    if sd == 0.0:  # most errors are the same, as of a coarse channel
+        return False
     size = np.minimum(np.abs(errors) / sd, FARTHEST)
     beyond = np.where(size > FAR, size, 0.0) ** 2
     brief = np.count_nonzero(beyond) >= FEWEST_FAR and float(np.mean(beyond)) > BRIEF

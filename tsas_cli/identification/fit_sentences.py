@@ -18,6 +18,7 @@ def fixed_sentences(problem: FitProblem, confounded: Mapping[int, list[int]]) ->
     for j, partners in confounded.items():
         unknown = problem.unknowns[j]
         names = sorted({problem.unknowns[p].name for p in partners})
+        names = [f"{n} of other runs" if n == unknown.name else n for n in names]
         together = f" together with {' and '.join(names)}" if names else ""
         reasons.setdefault((unknown.name, together), []).append(problem.owner(unknown) or "")
     return [

@@ -196,7 +196,8 @@ def _sentences(opening: str, findings: Sequence[Finding]) -> list[str]:
         kinds.setdefault((one.code, one.column), []).append(one)
     said = []
     for (code, _), alike in kinds.items():
-        where = listed([f"run {one.run}" if one.run else "the manifest" for one in alike])
+        runs = [f"run {one.run}" if one.run else "the manifest" for one in alike]
+        where = listed(list(dict.fromkeys(runs)))
         of_first = "" if len({one.sentence for one in alike}) == 1 else " (the first)"
         said.append(f"{opening} {where}{of_first}: {alike[0].sentence} (`{code}`).")
     return said

@@ -69,7 +69,8 @@ def negative_tension(trial: RunSignals) -> Findings:
                 name,
                 f"{name} is negative in {share:.3g} % of the samples, down to {low:.4g} N",
                 "add the preload at ingest if the sensor was zeroed under it, or correct its "
-                "offset; only the difference of two tendons may be negative",
+                "offset; of the difference of two tendons, which may be negative, state "
+                "antagonist_preload_N under [rig]",
                 float(trial.time_s[np.argmax(values < -limit)]),
             )
 
