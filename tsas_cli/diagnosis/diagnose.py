@@ -38,6 +38,7 @@ from tsas_cli.records.diagnosis import INCOMPLETE, RecordingFault, Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Endable, Ended, Steps
 from tsas_cli.support.wording import count_of
 
+NO_MINIMUM = "the fit of the nominal model did not converge"
 FEW_BLOCKS = 6  # fewer are too few for a test
 
 
@@ -190,7 +191,7 @@ def _not_possible(base: FittedModel) -> str | None:
     if fitted is None:
         return "no parameter of the nominal model is identifiable from these recordings."
     if not fitted.converged:
-        return f"the fit of the nominal model did not converge ({fitted.message})."
+        return f"{NO_MINIMUM} ({fitted.message})."
     return None
 
 
