@@ -151,7 +151,7 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
-        form = straight_line(np.arange(KNOTS), heights)
+        form = straight_line(heights)
         parts.append(f"{subject} {_along(heights)} {unit} along the stroke{form}")
     yields = value.get("compliance_mm_per_N", 0.0)
     if yields * (tensions[1] - tensions[0]) > LEAST * max(high, span):
@@ -172,7 +172,7 @@ def _of_friction(travel: Floats, share: Floats, heights: Floats) -> list[str]:
             + exponential(travel, share)
         )
     if np.ptp(heights) > LEAST * largest:
-        form = straight_line(np.arange(KNOTS), heights)
+        form = straight_line(heights)
         parts.append(f"friction changes {_along(100.0 * heights)} % along the stroke{form}")
     return parts
 

@@ -11,9 +11,11 @@ CLOSE = 0.1  # largest error of a form that is said, over the span of the curve
 LAMBDAS = 200  # travels of decay that are tried, over five decades
 
 
-def straight_line(x: Floats, y: Floats) -> str:
-    """Return that a curve of points, shape (n,), is a straight line, with its largest error."""
-    return _clause("in a straight line", y, np.polyval(np.polyfit(x, y, 1), x))
+def straight_line(heights: Floats) -> str:
+    """Return that a curve of evenly spaced points, shape (n,), is a line, with its error."""
+    x = np.arange(heights.size, dtype=np.float64)
+    line: Floats = np.polyval(np.polyfit(x, heights, 1), x)
+    return _clause("in a straight line", heights, line)
 
 
 def exponential(travel_mm: Floats, change: Floats) -> str:
