@@ -14,8 +14,8 @@ LAMBDAS = 200  # travels of decay that are tried, over five decades
 def straight_line(heights: Floats) -> str:
     """Return that a curve of evenly spaced points, shape (n,), is a line, with its error."""
     x = np.arange(heights.size, dtype=np.float64)
-    line: Floats = np.polyval(np.polyfit(x, heights, 1), x)
-    return _clause("in a straight line", heights, line)
+    slope, level = map(float, np.polyfit(x, heights, 1))
+    return _clause("in a straight line", heights, slope * x + level)
 
 
 def exponential(travel_mm: Floats, change: Floats) -> str:
