@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from itertools import combinations
+from operator import attrgetter
 from types import SimpleNamespace
 
 import numpy as np
@@ -147,7 +148,8 @@ def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
 @pytest.mark.parametrize(
     ("nothing", "part", "statistic", "found"),
     [
-        (0.99, 0.5, 9.0, False),
+        (0.99, 0.5, 3.69, False),
+        (0.99, 0.03, 3.71, True),
         (1.05, 0.09, 3.69, False),
         (1.05, 0.11, 2.7, True),
         (1.05, 0.03, 3.71, True),
@@ -158,7 +160,7 @@ def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
 def test_of_noise_alone_a_first_effect_has_to_take_more(
     made, nothing, part, statistic, found, monkeypatch
 ):
-    """A tenth, or be more significant; nothing below the noise; a fortieth where more is left."""
+    """A tenth, or be more significant, alone below the noise; a fortieth where more is left."""
     fits = made({names(): nothing, names(A): nothing * (1.0 - part)})
     monkeypatch.setattr(s, "is_complete", lambda fits, names: False)
     monkeypatch.setattr(s, "add", lambda *_: [(A, Reduction(part, statistic))])
@@ -183,7 +185,7 @@ def test_two_that_hide_each_other_are_found_together(made, sign):
     fits = made({names(): 4.0, names(A, C): 1.0, names(C): 3.95})
     fits.trial(names()).solution.residual = sign * apart
     seen(fits, names(), (A, 0.0), (C, 0.01), (D, 0.0), signatures=signatures)
-    assert s._best_pair(fits, names(), of_noise=False) == names(A, C)
+    assert s._best_pair(fits, names(), convinces=attrgetter("convincing")) == names(A, C)
     assert set(fits.bench.fitted) == {names(), names(A, C)}
     assert s._better(fits, names()) == [names(A, C)]
 
@@ -195,7 +197,7 @@ def test_a_pair_has_to_convince_and_to_matter(made, squares):
     fits = made({names(): 4.0, names(A, C): squares, names(C): 3.99})
     fits.trial(names()).solution.residual = apart
     seen(fits, names(), (A, 0.0), (C, 0.01), signatures=signatures)
-    assert s._best_pair(fits, names(), of_noise=False) is None
+    assert s._best_pair(fits, names(), convinces=attrgetter("convincing")) is None
     assert s._better(fits, names()) == []
 
 
@@ -308,5 +310,7 @@ def paired(grown, squares, surplus, needed=None):
 )
 def test_a_pair_has_to_explain_more_than_both_alone(grown, nothing, surplus, looked):
     fits = paired(grown, {names(): nothing, names(A, B): 1.0}, surplus)
-    assert (s._best_pair(fits, names(), of_noise=False) == names(A, B)) == looked
+    assert (
+        s._best_pair(fits, names(), convinces=attrgetter("convincing")) == names(A, B)
+    ) == looked
     assert (names(A, B) in fits.bench.fitted) == looked

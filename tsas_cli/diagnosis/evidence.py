@@ -43,10 +43,14 @@ class Reduction:
         return self.beyond(LEAST_REDUCTION)
 
     @property
+    def convincing_of_any(self) -> bool:
+        """Whether it is so for the best of forty effects."""
+        return self.convincing and self.test_statistic > CRITICAL_VALUE_OF_ANY
+
+    @property
     def convincing_of_noise(self) -> bool:
         """Whether it is so where there may be no more than noise: larger, or more significant."""
-        more = self.part > LEAST_REDUCTION_OF_NOISE or self.test_statistic > CRITICAL_VALUE_OF_ANY
-        return self.convincing and more
+        return self.convincing_of_any or self.beyond(LEAST_REDUCTION_OF_NOISE)
 
 
 def gain(before: Floats, after: Floats) -> Reduction:

@@ -4,10 +4,12 @@ Stepwise selection: one effect after the other is added while the best one is si
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other. Where the nominal
 model leaves noise alone, a first effect has to take more of it, or be more significant; where it
-leaves less than is known of the noise, there is none.
+leaves less than is known of the noise, be more significant.
 """
 
+from collections.abc import Callable
 from itertools import combinations
+from operator import attrgetter
 
 import numpy as np
 
@@ -30,6 +32,7 @@ LEAST = 0.003  # least reduction of the nominal model's excess by a further caus
 MOST = 0.5  # unless it takes that share of what is left
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
 LINEAR = 0.4  # share of its reduction that a signature explains; a fit takes up to 2.5 times it
+Criterion = Callable[[Reduction], bool]
 PAIRS = 4  # of effects that are fitted, of those that explain most together
 
 
@@ -120,19 +123,17 @@ def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, effect: Effect) -> bo
 
 def _better(fits: Fits, names: Names) -> list[Names]:
     """Return the extended sets: with the simplest effect, and with the best if it differs."""
-    if not names and held_out_mean_square(fits, names) < 1.0:
-        return []
     fitted = add(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
-    of_noise = not names and is_quiet(fits, names)
+    convinces = _criterion(fits, names)
     singles = [
         (name, found)
         for name, found in fitted
-        if _convinces(found, of_noise) and matters(fits, names, frozenset({name}))
+        if convinces(found) and matters(fits, names, frozenset({name}))
     ]
     if singles:
         branches = dict.fromkeys((_simplest(fits, names, singles), singles[0][0]))
         return [names | {name} for name in branches]
-    pair = _best_pair(fits, names, of_noise) if len(names) + 2 <= MOST_EFFECTS else None
+    pair = _best_pair(fits, names, convinces) if len(names) + 2 <= MOST_EFFECTS else None
     return [] if pair is None else [names | pair]
 
 
@@ -148,11 +149,15 @@ def _simplest(fits: Fits, names: Names, singles: list[tuple[str, Reduction]]) ->
     return best
 
 
-def _convinces(found: Reduction, of_noise: bool) -> bool:
-    return found.convincing_of_noise if of_noise else found.convincing
+def _criterion(fits: Fits, names: Names) -> Criterion:
+    """Return whether a further effect convinces, by what its predecessors leave."""
+    if names or not is_quiet(fits, names):
+        return attrgetter("convincing")
+    below = held_out_mean_square(fits, names) < 1.0
+    return attrgetter("convincing_of_any" if below else "convincing_of_noise")
 
 
-def _best_pair(fits: Fits, names: Names, of_noise: bool) -> Names | None:
+def _best_pair(fits: Fits, names: Names, convinces: Criterion) -> Names | None:
     """Return two effects that are significant only together."""
     screened = fits.screen(names)
     part_of_both = _least_part(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
@@ -173,7 +178,7 @@ def _best_pair(fits: Fits, names: Names, of_noise: bool) -> Names | None:
         fits.step.ahead(fits.is_new(names | pair))
         fits.fit(names, names | pair, a.initial | b.initial)
         found = fits.gain(names, names | pair)
-        if _convinces(found, of_noise) and matters(fits, names, pair):
+        if convinces(found) and matters(fits, names, pair):
             return pair
     return None
 
