@@ -9,7 +9,8 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.response import mechanics_of, read, simulate, solve
+from tsas_cli.physics.mechanics import mechanics_of
+from tsas_cli.physics.response import read, simulate, solve
 from tsas_cli.physics.rig import with_values
 
 X_IN = np.interp(np.linspace(0, 4, 200), np.arange(5), [0.0, 14.0, 3.0, 9.0, 5.0])

@@ -9,13 +9,13 @@ import numpy as np
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS
+from tsas_cli.physics.mechanics import mechanics_of
 from tsas_cli.physics.response import (
     Dynamics,
     Prediction,
     SolvedRun,
     first_determined_sample,
     is_closed,
-    mechanics_of,
     read,
     solve,
 )

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cache
 from operator import attrgetter
 from typing import Literal, TypedDict, Unpack
 
@@ -42,10 +41,6 @@ MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(e.name for e in (*EFFECTS, *LAWS) if not e.closed_form)
 _effects_on_chain = attrgetter(*ON_CHAIN)
 _NEUTRAL_ON_CHAIN = _effects_on_chain(Effects())
-READ = (*(e.name for e in EFFECTS if e.acts_on == "sensor"), "drive_law", "load_law")
-_NEUTRAL_READ = {name: getattr(Effects(), name) for name in READ}
-_PRESCRIBED = {"spring": "", "force": "f_out", "displacement": "x_out"}  # by the load's sensor
-_OF_X_OUT = "position_sensor_ripple"  # whose parameters do not begin with the channel
 
 
 @dataclass(frozen=True)
@@ -107,35 +102,6 @@ def read(rig: Rig, drive: DriveInput, solved: SolvedRun) -> Prediction:
     signals = sensed(solved.output, drive.time_s, rig, boundary, new_memory(), motor_mm)
     response = readings_of(rig, drive, signals, solved.solver)
     return replace(response, step_ends_s=solved.step_ends_s, frames=solved.frames)
-
-
-def mechanics_of(rig: Rig, drive: DriveInput) -> Rig:
-    """Return the rig with perfect sensors, but for the one whose readings determine the motion.
-
-    Both rigs have the same solution of a run. A start and a drive by force need every sensor.
-    """
-    if drive.kind != "displacement" or drive.start_f_in_N is not None:
-        return rig
-    known = _neutral_read(drive.load)
-    effects = {n: getattr(rig.effects, n)._replace(**fields) for n, fields in known.items()}
-    zero = rig.x_out_zero_mm if drive.load == "displacement" else 0.0
-    return rig._replace(effects=rig.effects._replace(**effects), x_out_zero_mm=zero)
-
-
-@cache
-def _neutral_read(load: str) -> dict[str, dict[str, float]]:
-    """Return the neutral parameters of each effect that do not determine a motion with a load."""
-    given, out = _PRESCRIBED[load], {}
-    for name, neutral in _NEUTRAL_READ.items():
-        own = [field.startswith(given) for field in neutral._fields]
-        determines = given and (any(own) or (given == "x_out" and name == _OF_X_OUT))
-        others = ("f_in_", "f_out_", "x_out_") if determines else ("",)
-        out[name] = {
-            field: value
-            for (field, value), is_own in zip(neutral._asdict().items(), own, strict=True)
-            if field.startswith(others) and not (given and is_own)
-        }
-    return out
 
 
 def solve(

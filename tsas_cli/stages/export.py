@@ -16,7 +16,8 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import model_of, read_fitted_to
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lumped import HELD, Lumped, follow, lumped_of
-from tsas_cli.physics.response import mechanics_of, simulate
+from tsas_cli.physics.mechanics import mechanics_of
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.records.base import number_text

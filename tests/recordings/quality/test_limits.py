@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import trial
-from tsas_cli.recordings.quality.checks import clock, extremes, motion, noise, pairs, repeats, rows
+from tsas_cli.recordings.quality.checks import (
+    clipping,
+    clock,
+    extremes,
+    motion,
+    noise,
+    pairs,
+    repeats,
+    rows,
+)
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, Size
 
@@ -309,7 +318,7 @@ def test_five_rows_at_an_end_are_clipped_if_the_drive_moves_on_by_a_twentieth(he
     f_in = x.copy()
     f_in[50 : 50 + held] = 20.0
     told = of(
-        extremes.clipped, x_in_mm=x, f_in_N=f_in, sizes={"f_in_N": replace(FINE, highest=20.0)}
+        clipping.clipped, x_in_mm=x, f_in_N=f_in, sizes={"f_in_N": replace(FINE, highest=20.0)}
     )
     assert len(told) == found
     if told:

@@ -7,6 +7,7 @@ import pytest
 
 from tsas_cli.recordings import quality
 from tsas_cli.recordings.quality.checks import (
+    clipping,
     clock,
     extremes,
     motion,
@@ -22,7 +23,7 @@ EXPLAINED = {check.code: getdoc(check.find) for check in quality.CHECKS}
 
 
 @pytest.mark.parametrize(
-    "module", [clock, extremes, motion, noise, of_dataset, pairs, repeats, rows]
+    "module", [clipping, clock, extremes, motion, noise, of_dataset, pairs, repeats, rows]
 )
 def test_every_function_of_the_checks_is_in_the_list(module):
     public = {

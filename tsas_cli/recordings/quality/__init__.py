@@ -22,6 +22,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, RigSheet
 from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.quality.checks import (
+    clipping,
     clock,
     extremes,
     motion,
@@ -61,7 +62,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(repeats.slow_channel),
     QualityCheck(noise.filtered, given=("increases", "strokes")),
     QualityCheck(extremes.ac_coupled, needs=("x_in_mm",), given=("strokes",)),
-    QualityCheck(extremes.clipped),
+    QualityCheck(clipping.clipped),
     QualityCheck(extremes.stuck),
     QualityCheck(extremes.quantised, of_long="decimated"),
     QualityCheck(motion.sign, needs=("x_in_mm",), of_long="strokes"),
