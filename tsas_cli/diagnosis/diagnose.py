@@ -134,8 +134,7 @@ def diagnose_runs(
         if stiffer is not None:
             return _undecided_by(*stiffer, base)
         fault = fault_of_recording(fits, accepted)
-        as_good = frozenset[str]() if fault is None else frozenset(effects_as_good(fits, fault))
-        if fault is not None and not as_good:
+        if fault is not None and not any(effects_as_good(fits, fault)):
             return _of_a_fault(fault, base)
         found = _concluded(proven_effects(find_effects(fits), step), base, step)
     except Ended:
@@ -148,9 +147,10 @@ def diagnose_runs(
         of_other_laws = all(cause.law_differs for cause in found.causes)
         if named and of_other_laws and not leaves_noise(fits, named, fault):
             return by_fault
-        of_a_friction = fault.found[0].code == OWN_FRICTION
-        gaining = as_good.intersection(one.effect for one in found.stand_ins)
-        if not (found.causes or (of_a_friction and gaining)):
+        gaining = {one.effect for one in found.stand_ins}
+        of_a_friction = gaining and fault.found[0].code == OWN_FRICTION
+        explained = of_a_friction and not gaining.isdisjoint(effects_as_good(fits, fault))
+        if not (found.causes or explained):
             found = replace(found, fault=by_fault.fault, reason=f"{found.reason} {by_fault.reason}")
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model

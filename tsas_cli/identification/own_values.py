@@ -1,7 +1,6 @@
 """The parameters that belong to one run alone, fitted to it: its preload and its sensors' zeros."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -57,14 +56,14 @@ def _log_rms(fit: FittedModel) -> float:
 
 def _median(model: Model, run: Prepared) -> Model:
     """Return the median of what belongs to the other runs of a model alone, for this run."""
-    found: dict[str, list[Estimate]] = {}
+    found: dict[tuple[str, str], list[float]] = {}
     for e in model.estimates:
         if e.run not in (None, run.run.id):
-            found.setdefault(e.name, []).append(e)
+            found.setdefault((e.name, e.unit), []).append(e.value)
     return Model(
         tuple(
-            replace(of[0], value=float(np.median([e.value for e in of])), run=run.run.id)
-            for of in found.values()
+            Estimate(name, float(np.median(values)), unit, "default", run.run.id)
+            for (name, unit), values in found.items()
         )
     )
 

@@ -8,7 +8,8 @@ from tsas_cli.physics.rig import Rig
 
 READ = (*(e.name for e in EFFECTS if e.acts_on == "sensor"), "drive_law", "load_law")
 _NEUTRAL_READ = {name: getattr(Effects(), name) for name in READ}
-_PRESCRIBED = {"spring": "", "force": "f_out", "displacement": "x_out"}  # by the load's sensor
+_CHANNELS = ("f_in_", "f_out_", "x_out_")
+_PRESCRIBED = {"force": "f_out_", "displacement": "x_out_"}  # the sensor's channel, by the load
 _OF_X_OUT = "position_sensor_ripple"  # whose parameters do not begin with the channel
 
 
@@ -28,14 +29,13 @@ def mechanics_of(rig: Rig, drive: DriveInput) -> Rig:
 @cache
 def _neutral_read(load: str) -> dict[str, dict[str, float]]:
     """Return the neutral parameters of each effect that do not determine a motion with a load."""
-    given, out = _PRESCRIBED[load], {}
+    given, out = _PRESCRIBED.get(load), {}
+    others = tuple(channel for channel in _CHANNELS if channel != given)
     for name, neutral in _NEUTRAL_READ.items():
-        own = [field.startswith(given) for field in neutral._fields]
-        determines = given and (any(own) or (given == "x_out" and name == _OF_X_OUT))
-        others = ("f_in_", "f_out_", "x_out_") if determines else ("",)
-        out[name] = {
-            field: value
-            for (field, value), is_own in zip(neutral._asdict().items(), own, strict=True)
-            if field.startswith(others) and not (given and is_own)
-        }
+        fields = neutral._asdict()
+        determines = given is not None and (
+            any(field.startswith(given) for field in fields)
+            or (given == "x_out_" and name == _OF_X_OUT)
+        )
+        out[name] = {f: v for f, v in fields.items() if not determines or f.startswith(others)}
     return out
