@@ -62,6 +62,9 @@ def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, refu
     kinds = ["dataset.toml", "calibration.json", "simulation.json", "check.json"]
     refused(folder / "other", "--out", folder / "r.html", says=["other", *kinds])
     assert [p.name for p in folder.iterdir() if "r.html" in p.name] == []
+    refused(
+        folder / "nowhere", "--out", folder / "r.html", says=["nowhere: does not exist", *kinds]
+    )
 
 
 @pytest.mark.parametrize(

@@ -206,8 +206,9 @@ def _by_file(folders: Sequence[Location], *, several: bool) -> dict[str, list[Lo
         looked_for = known if isinstance(folder, Path) else (MANIFEST_FILE,)
         files = [file for file in looked_for if (folder / file).is_file()]
         if not files:
+            missing = isinstance(folder, Path) and not folder.exists()
             raise InputError(
-                "neither a dataset nor what a stage wrote",
+                "does not exist" if missing else "neither a dataset nor what a stage wrote",
                 where=folder,
                 expected=f"a folder with one of {', '.join(looked_for)}",
             )

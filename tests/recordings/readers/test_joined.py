@@ -78,6 +78,13 @@ def test_an_offset_moves_one_clock(bench):
     np.testing.assert_allclose(table.columns[2], 20 * (np.arange(2, 11) / 10 - 0.2), atol=1e-12)
 
 
+def test_rows_of_a_file_without_a_clock_count(bench):
+    path = bench(LIST.replace('time = 1\nunit = "s"\noffset_s = -0.5', "rate_Hz = 4.0"))
+    assert names(path, ReadOptions()) == ("drive.x [mm]", "load.1", "load.2", "time")
+    table = read(path, ReadOptions(resample=True), ALL)
+    np.testing.assert_allclose(table.columns["load.2"], 2 * np.arange(11))
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -87,6 +94,8 @@ def test_an_offset_moves_one_clock(bench):
         ('"t [ms]"', '"t"', "column t is missing"),
         ('unit = "s"', "", "the clock 1 states no unit"),
         ('unit = "s"', 'unit = "mm"', "mm"),
+        ('unit = "s"', "rate_Hz = 4.0", "needs a time, or rate_Hz"),
+        ("time = 1", "", "needs a time, or rate_Hz"),
         ("offset_s", "offset", "offset"),
         ("-0.5", "50.0", "never overlap"),
         (LIST, "a = 1", "a"),

@@ -5,27 +5,38 @@ from functools import partial
 from pathlib import Path, PurePath
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tsas_cli.recordings import readers
 from tsas_cli.recordings.guess.words import unit_behind
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.recordings.readers.offered import Column, Offered
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
+from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.plausible import SampleRate
 from tsas_cli.support.strict_table import StrictTable
 
 
 class JoinedFile(StrictTable):
-    """One of the files: `offset_s` plus its column `time` in s is the clock of the run."""
+    """One of the files: `offset_s` plus its column `time` in s is the clock of the run.
+
+    A file without a clock has a rate in its place, by which the rows count.
+    """
 
     file: str = Field(min_length=1)
-    time: ColumnSource
+    time: ColumnSource | None = None
+    rate_Hz: SampleRate | None = None
     unit: str | None = None
     offset_s: float | None = None
     read: ReadOptions = ReadOptions()
+
+    @model_validator(mode="after")
+    def _has_one_clock(self) -> "JoinedFile":
+        if (self.time is None) == (self.rate_Hz is None):
+            raise ValueError("needs a time, or rate_Hz where the file has no clock")
+        return self
 
 
 SUFFIX = ".join"
@@ -61,8 +72,9 @@ def _columns(path: Path, name: str, part: JoinedFile) -> Iterator[Column]:
             where=f"{path}, {name}",
             expected="the name of a recording beside the list",
         )
-    clock = readers.read(file, part.read, [part.time])
-    times = _seconds(clock, part, f"{path}, {name}")
+    offset_s, times = part.offset_s or 0.0, np.zeros(0)
+    if part.time is not None:
+        times = _seconds(file, part.time, part, f"{path}, {name}") + offset_s
     for number, column in enumerate(readers.names(file, part.read), start=1):
         if part.time in (column, number):
             continue
@@ -70,20 +82,25 @@ def _columns(path: Path, name: str, part: JoinedFile) -> Iterator[Column]:
             table = readers.read(file, part.read, [number])
         except InputError:
             continue
-        values, unit = partial(np.asarray, table.columns[number]), table.units.get(number, "")
-        yield Column(f"{name}.{column or number}", values, unit, partial(np.asarray, times))
+        values, unit = table.columns[number], table.units.get(number, "")
+        if part.rate_Hz is not None:
+            times = np.arange(values.size) / part.rate_Hz + offset_s
+        own = f"{name}.{column or number}"
+        yield Column(own, partial(np.asarray, values), unit, partial(np.asarray, times))
 
 
-def _seconds(table: ColumnTable, part: JoinedFile, where: str) -> Floats:
-    behind = unit_behind(part.time)[1] if isinstance(part.time, str) else ""
-    unit = part.unit or table.units.get(part.time) or behind or None
+def _seconds(file: Path, clock: ColumnSource, part: JoinedFile, where: str) -> Floats:
+    """Return the clock of one file, in s, without the offset."""
+    table = readers.read(file, part.read, [clock])
+    behind = unit_behind(clock)[1] if isinstance(clock, str) else ""
+    unit = part.unit or table.units.get(clock) or behind or None
     if unit is None:
-        raise InputError(f"the clock {part.time} states no unit", where=where, remedy='unit = "ms"')
-    if part.time in table.typed and part.offset_s is None:
+        raise InputError(f"the clock {clock} states no unit", where=where, remedy='unit = "ms"')
+    if clock in table.typed and part.offset_s is None:
         raise InputError(
-            f"the clock {part.time} counts from the first date of its own file",
+            f"the clock {clock} counts from the first date of its own file",
             where=where,
             remedy="offset_s = the seconds from the first file's beginning to this one's",
         )
     slope, intercept = conversion(unit, "s", where=where)
-    return table.columns[part.time] * slope + (intercept + (part.offset_s or 0.0))
+    return table.columns[clock] * slope + intercept

@@ -148,7 +148,7 @@ def _listed(names: Sequence[str]) -> str:
         return "there are no columns of numbers"
     if not any(names):
         return f"there are {len(names)} columns without names: map them by number, from 1"
-    shown = [name[:80] or f"(number {i + 1})" for i, name in enumerate(names)]
+    shown = [name[:80] or f"{i + 1} (a number: it has no name)" for i, name in enumerate(names)]
     more = f" and {len(shown) - 40} more" if len(shown) > 40 else ""
     return f"there are: {', '.join(shown[:40])}{more}"
 
