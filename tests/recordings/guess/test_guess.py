@@ -1,4 +1,3 @@
-import json
 import os
 import re
 import tomllib
@@ -6,21 +5,15 @@ from itertools import permutations
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
-from asammdf import MDF, Signal
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from scipy.io import savemat
 
-from tests.recordings.guess.rig_files import CHANNELS, in_unit, run, verdicts, write_csv
-from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
+from tests.recordings.guess.rig_files import CHANNELS, in_unit, judged, run, verdicts, write_csv
 from tsas_cli.commands.common import show
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.guess.text import map_text, tables
 from tsas_cli.recordings.ingest_map import read_map
-from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.support.errors import InputError
 
 FEWER = settings(
@@ -50,11 +43,6 @@ LABS = {
 }
 
 
-@pytest.fixture
-def path(tmp_path):
-    return tmp_path / "a.csv"
-
-
 def write_lab(path, lab):
     """Write the run under a lab's names, in the units that they state, and return the names."""
     names, columns = LABS[lab].split(", "), []
@@ -64,14 +52,6 @@ def write_lab(path, lab):
         columns.append((name, in_unit(channel, unit)))
     write_csv(path, columns)
     return names
-
-
-def judged(path, names, **other):
-    """Write the run under these names, some values changed, and return what is guessed of it."""
-    values = [other.get(channel, run()[channel]) for channel in CHANNELS]
-    write_csv(path, list(zip(names, values, strict=True)))
-    truth = [name or i for i, name in enumerate(names, start=1)]
-    return verdicts(path, dict(zip(CHANNELS, truth, strict=True)))
 
 
 @pytest.mark.parametrize("lab", LABS)
@@ -130,90 +110,6 @@ def test_a_reference_may_stand_for_a_drive_that_was_not_recorded(path):
     assert "its reference will do" in x_in.questions["source"]
 
 
-def bracketed(name):
-    return "{} [{}]".format(*name.rsplit("_", 1))
-
-
-def save_parquet(path):
-    write_parquet(path, pa.table(run()))
-
-
-def save_parquet_of_another_tool(path):
-    pq.write_table(pa.table({bracketed(n): values for n, values in run().items()}), path)
-
-
-def save_json(path):
-    log = {"columns": CHANNELS, "rows": np.transpose([*run().values()]).tolist()}
-    path.write_text(json.dumps({"rig": "bench", "log": log}))
-
-
-def save_mat(path):
-    savemat(path, {"gains": np.arange(3.0), "log": run()})
-
-
-def save_mat_73(path):
-    def build(file):
-        group = struct(file, "log")
-        for name, values in run().items():
-            numbers(group, name, values)
-
-    save_73(path, build)
-
-
-def save_capture(path):
-    clock, *channels = run().items()
-    listed = [(f'"{n}"', values, n.rsplit("_", 1)[1], 1) for n, values in channels]
-    savemat(path, {"capture": controldesk([clock[1]], listed)})
-
-
-def save_mdf(path):
-    clock, *channels = run().items()
-    with MDF(version="4.10") as file:
-        file.append([Signal(values, clock[1], name=n[:-2]) for n, values in channels[2:]])
-        other = clock[1] + 1e-4
-        file.append([Signal(values, other, name=n[:-3], unit="mm") for n, values in channels[:2]])
-        file.save(path, overwrite=True)
-
-
-@pytest.mark.parametrize(
-    ("suffix", "save", "source"),
-    [
-        (".parquet", save_parquet, "{}".format),
-        (".parquet", save_parquet_of_another_tool, bracketed),
-        (".json", save_json, "{}".format),
-        (".mat", save_mat, "log.{}".format),
-        (".mat", save_mat_73, "log.{}".format),
-        (".mat", save_capture, lambda name: name.replace("time_s", "time")),
-    ],
-)
-def test_every_format_is_opened(tmp_path, suffix, save, source):
-    path = tmp_path / f"a{suffix}"
-    save(path)
-    proposal = propose([path])
-    assert {c.name: c.entry["source"] for c in proposal.channels} == {
-        name: source(name) for name in CHANNELS
-    }
-    assert proposal.questions == {}
-
-
-def test_channels_of_two_clocks_are_resampled(tmp_path):
-    save_mdf(tmp_path / "a.mf4")
-    proposal = propose([tmp_path / "a.mf4"])
-    sources = {c.name: c.entry["source"] for c in proposal.channels}
-    assert (sources["f_out_N"], sources["time_s"]) == ("f_out", "time")
-    assert proposal.read["resample"][0] is True
-    assert len(proposal.questions) == 2
-
-
-@pytest.mark.parametrize("other", [1, 2, 3, 4])
-def test_a_time_that_is_none_is_not_believed(path, other):
-    names = ["time", "x_in", "x_out", "f_in", "f_out"]
-    names[0], names[other] = names[other], names[0]
-    found = judged(path, names)
-    assert "wrong" not in found.values()
-    assert found["time_s"] == "open"
-
-
 def test_exchanged_load_cells_leave_the_displacements_as_they_are(path):
     found = judged(path, ["time [s]", "x_in [mm]", "x_out [mm]", "f_out [N]", "f_in [N]"])
     assert found == dict.fromkeys(CHANNELS, "right") | {"f_in_N": "open", "f_out_N": "open"}
@@ -270,22 +166,6 @@ def test_half_a_loop_tells_no_ends(path):
     write_csv(path, [(n, v[:300]) for n, v in zip(NUMBERED, run().values(), strict=True)])
     open_ = {c.name for c in propose([path]).channels if c.certainty == "open"}
     assert open_ == set(CHANNELS[1:])
-
-
-@pytest.mark.parametrize(
-    ("name", "factor", "expected"),
-    [
-        ("time", 1.0, {"source": "time", "unit": "s"}),
-        ("t", 1e3, {"source": "t", "unit": "ms"}),
-        ("Time [ms]", 1.0, {"source": "Time [ms]", "unit": "?"}),  # 100 kHz in all of 12 ms
-        ("Time [s]", 1e6, {"source": "Time [s]", "unit": "?"}),
-        ("Sample", 100.0, {"rate_Hz": "?"}),
-    ],
-)
-def test_the_unit_of_the_clock_has_to_make_sense(path, name, factor, expected):
-    others = [(n, run()[n]) for n in ("x_in_mm", "f_in_N")]
-    write_csv(path, [(name, run()["time_s"] * factor), *others])
-    assert propose([path]).channels[0].entry == expected
 
 
 STEMS = {
@@ -424,32 +304,6 @@ def test_of_public_recordings_nothing_is_guessed_wrong(name, at_least):
             assert entry["source"] == truth[channel].source
             assert entry.get("sign", 1) in ("?", truth[channel].sign)
             assert channel != "time_s" or entry["unit"] in ("?", truth[channel].unit)
-
-
-@pytest.mark.parametrize(
-    ("step", "first", "unit"),
-    [
-        (1_000_000, 0, "ns"),  # 1 kHz; in microseconds it were 1 Hz
-        (10_000_000, 1_772_532_000_000_000_000, "ns"),  # since 1970
-        (50_000, 1_772_532_000_000_000, "us"),  # 20 Hz; as nanoseconds it were 20 kHz, in 1970
-        (10, 1_772_532_000_000, "ms"),
-        (50_000, 0, "?"),
-    ],
-)
-def test_the_unit_of_a_clock_follows_from_its_steps_and_its_date(path, step, first, unit):
-    rows = zip(run()["x_in_mm"], run()["f_in_N"], strict=True)
-    lines = [f"{first + i * step},{x:.7g},{f:.7g}" for i, (x, f) in enumerate(rows)]
-    path.write_text("\n".join(["stamp,x_in [mm],f_in [N]", *lines]))
-    assert propose([path]).channels[0].entry["unit"] == unit
-
-
-@pytest.mark.parametrize(("every_s", "unit"), [(0.01, "s"), (1.001, "?")])
-def test_a_clock_of_a_slow_logger_is_asked_about(path, every_s, unit):
-    columns = run(step=40)
-    columns["time_s"] = np.arange(columns["x_in_mm"].size) * every_s
-    named = [("t", columns["time_s"]), ("x_in [mm]", columns["x_in_mm"])]
-    write_csv(path, [*named, ("f_in [N]", columns["f_in_N"])])
-    assert propose([path]).channels[0].entry["unit"] == unit
 
 
 def test_a_motor_position_without_a_unit_is_that_of_the_drive(path):

@@ -18,6 +18,7 @@ _FASTEST_S, _SLOWEST_S = 5e-6, 2.0
 _STROKE_S = (0.02, 500.0)  # plausible strokes of a rig
 _UNITS = ("s", "ms", "us", "ns")
 _EPOCH_S = (9.4e8, 4.1e9)  # 2000 to 2099, since 1970
+_MOST_REPEATS = 0.9  # of the rows: what stays for longer numbers strokes or runs
 
 
 def clock(columns: Sequence[FileColumn]) -> Proposed:
@@ -62,9 +63,15 @@ def repeats(values: Floats) -> int:
 
 
 def like_a_clock(column: FileColumn) -> bool:
-    """Return whether a column increases evenly, and its unit does not exclude a time."""
+    """Return whether a column increases evenly, and its unit does not exclude a time.
+
+    It may repeat a time in a few rows, as where a device is read faster than its clock counts.
+    """
     may_be = column.kind in (None, "label", "time") and column.quantity != "counter"
-    return may_be and increases(column.values) and is_even(column.values)
+    values = column.values
+    if 0 < repeats(values) <= _MOST_REPEATS * values.size:
+        values = np.unique(values)
+    return may_be and increases(values) and is_even(values)
 
 
 def _which(found: Sequence[FileColumn], why: str) -> Proposed:

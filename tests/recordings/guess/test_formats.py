@@ -1,0 +1,88 @@
+import json
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from asammdf import MDF, Signal
+from scipy.io import savemat
+
+from tests.recordings.guess.rig_files import CHANNELS, run
+from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
+from tsas_cli.recordings.guess.proposal import propose
+from tsas_cli.recordings.writing import write_parquet
+
+
+def bracketed(name):
+    return "{} [{}]".format(*name.rsplit("_", 1))
+
+
+def save_parquet(path):
+    write_parquet(path, pa.table(run()))
+
+
+def save_parquet_of_another_tool(path):
+    pq.write_table(pa.table({bracketed(n): values for n, values in run().items()}), path)
+
+
+def save_json(path):
+    log = {"columns": CHANNELS, "rows": np.transpose([*run().values()]).tolist()}
+    path.write_text(json.dumps({"rig": "bench", "log": log}))
+
+
+def save_mat(path):
+    savemat(path, {"gains": np.arange(3.0), "log": run()})
+
+
+def save_mat_73(path):
+    def build(file):
+        group = struct(file, "log")
+        for name, values in run().items():
+            numbers(group, name, values)
+
+    save_73(path, build)
+
+
+def save_capture(path):
+    clock, *channels = run().items()
+    listed = [(f'"{n}"', values, n.rsplit("_", 1)[1], 1) for n, values in channels]
+    savemat(path, {"capture": controldesk([clock[1]], listed)})
+
+
+def save_mdf(path):
+    clock, *channels = run().items()
+    with MDF(version="4.10") as file:
+        file.append([Signal(values, clock[1], name=n[:-2]) for n, values in channels[2:]])
+        other = clock[1] + 1e-4
+        file.append([Signal(values, other, name=n[:-3], unit="mm") for n, values in channels[:2]])
+        file.save(path, overwrite=True)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "save", "source"),
+    [
+        (".parquet", save_parquet, "{}".format),
+        (".parquet", save_parquet_of_another_tool, bracketed),
+        (".json", save_json, "{}".format),
+        (".mat", save_mat, "log.{}".format),
+        (".mat", save_mat_73, "log.{}".format),
+        (".mat", save_capture, lambda name: name.replace("time_s", "time")),
+    ],
+)
+def test_every_format_is_opened(tmp_path, suffix, save, source):
+    path = tmp_path / f"a{suffix}"
+    save(path)
+    proposal = propose([path])
+    assert {c.name: c.entry["source"] for c in proposal.channels} == {
+        name: source(name) for name in CHANNELS
+    }
+    assert proposal.questions == {}
+
+
+def test_channels_of_two_clocks_are_resampled(tmp_path):
+    save_mdf(tmp_path / "a.mf4")
+    proposal = propose([tmp_path / "a.mf4"])
+    sources = {c.name: c.entry["source"] for c in proposal.channels}
+    assert (sources["f_out_N"], sources["time_s"]) == ("f_out", "time")
+    assert proposal.read["resample"][0] is True
+    assert len(proposal.questions) == 2
