@@ -1,7 +1,7 @@
 """The verdict of a diagnosis in a few plain sentences."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.evidence import Reduction
@@ -32,81 +32,98 @@ def reason_of(
     `channels` are the residuals on held-out data with the causes, `after` is what remains with
     them, and `law` describes it. `nearest` is the effect that gains most alone.
     """
-    sentences = []
+    if verdict == "sufficient":
+        return _sufficient(after)
     if causes:
-        names = listed([_title(cause.effect) for cause in causes])
-        name, most = max(channels.items(), key=lambda it: _fall(it[1]))
-        before, now = _distinct(most.rmse_before, most.rmse_after)
-        sentences.append(f"The nominal model lacks: {names}.")
-        sentences.append(
-            f"With {'them' if causes[1:] else 'it'} the RMS of the residual of {name} on held-out "
-            f"data falls from {before} to {now} {BY_COLUMN[name].unit}."
-        )
-        sentences += [
-            f"No parameter of {_title(c.effect)} is significant alone; together they are."
-            for c in causes
-            if _only_together(c)
-        ]
-        sentences += [
-            f"The law of {_title(c.effect)} differs from the catalogue's {c.law_differs}."
-            for c in causes
-            if c.law_differs
-        ]
-        sentences += [
-            f"These recordings do not distinguish {_title(c.effect)} from "
-            f"{listed([_title(rival) for rival in c.rivals], ' or ')}."
-            for c in causes
-            if c.rivals
-        ]
-    elif verdict == "sufficient" and after.mean_square > 1.0 + LEAST_SLOW:
-        return (
-            f"The nominal model leaves {_digits(math.sqrt(after.mean_square), 2)} × the noise "
-            "level: no more than slow noise and the tolerances of load cells, bend and friction "
-            "do. These runs show no missing effect."
-        )
-    elif verdict == "sufficient":
-        return "The nominal model is at the noise level: these runs show no missing effect."
+        sentences = [*_gain(causes, channels), *_of_each(causes)]
     else:
-        name, most = max(channels.items(), key=lambda it: it[1].rmse_before / it[1].noise_floor)
-        sentences.append(
-            f"The RMS of the residual of {name} on held-out data is {_digits(most.rmse_before, 3)} "
-            f"{BY_COLUMN[name].unit}, and no catalogued effect explains it."
-        )
-        if nearest is not None and not stand_ins:
-            sentences += _nearest(*nearest)
-    for failed in dict.fromkeys(cause.failed[0] for cause in stand_ins):
-        alike = [cause for cause in stand_ins if cause.failed[0] == failed]
-        names = listed([_title(cause.effect) for cause in alike])
-        gains = listed([f"{cause.gain_percent:.0f}" for cause in alike])
-        take, are, each = ("take", "are", "each") if alike[1:] else ("takes", "is", "it")
-        sentences.append(f"{names} {take} {gains} % off it, but {are} not proven: {each} {failed}.")
+        sentences = [_residual(channels), *([] if stand_ins else _nearest(nearest))]
+    sentences += _stand_ins(stand_ins)
     if not after.complete:
         if causes:
             sentences.append("No catalogued effect explains the remaining residual.")
         sentences += _dependence(after)
     if law is not None:
-        falls = [
-            f"{name} from {number_text(law.before.rmse[name])} to {number_text(now)} "
-            f"{BY_COLUMN[name].unit}"
-            for name, now in law.after.rmse.items()
-            if now < law.before.rmse[name]
-            and number_text(now) != number_text(law.before.rmse[name])
-        ]
-        beside = f", beside {listed([_title(e) for e in law.beside])}," if law.beside else ""
-        sentences.append(
-            f"A law of unnamed origin{beside} describes it: with it the RMS on held-out data falls "
-            f"in {listed(falls)}."
-        )
+        sentences.append(_law(law))
     return " ".join(text[0].upper() + text[1:] for text in sentences)
 
 
-def _nearest(effect: str, found: Reduction) -> list[str]:
+def _sufficient(after: Remainder) -> str:
+    if after.mean_square > 1.0 + LEAST_SLOW:
+        return (
+            f"The nominal model leaves {_digits(math.sqrt(after.mean_square), 2)} × the noise "
+            "level: no more than slow noise and the tolerances of load cells, bend and friction "
+            "do. These runs show no missing effect."
+        )
+    return "The nominal model is at the noise level: these runs show no missing effect."
+
+
+def _gain(causes: Sequence[FoundCause], channels: Mapping[str, HeldOutErrors]) -> Iterator[str]:
+    names = listed([_title(cause.effect) for cause in causes])
+    name, most = max(channels.items(), key=lambda it: _fall(it[1]))
+    before, now = _distinct(most.rmse_before, most.rmse_after)
+    yield f"The nominal model lacks: {names}."
+    yield (
+        f"With {'them' if causes[1:] else 'it'} the RMS of the residual of {name} on held-out "
+        f"data falls from {before} to {now} {BY_COLUMN[name].unit}."
+    )
+
+
+def _of_each(causes: Sequence[FoundCause]) -> Iterator[str]:
+    for cause in causes:
+        if _only_together(cause):
+            yield f"No parameter of {_title(cause.effect)} is significant alone; together they are."
+    for cause in causes:
+        if cause.law_differs:
+            yield (
+                f"The law of {_title(cause.effect)} differs from the catalogue's "
+                f"{cause.law_differs}."
+            )
+    for cause in causes:
+        if cause.rivals:
+            rivals = listed([_title(rival) for rival in cause.rivals], " or ")
+            yield f"These recordings do not distinguish {_title(cause.effect)} from {rivals}."
+
+
+def _residual(channels: Mapping[str, HeldOutErrors]) -> str:
+    name, most = max(channels.items(), key=lambda it: it[1].rmse_before / it[1].noise_floor)
+    return (
+        f"The RMS of the residual of {name} on held-out data is {_digits(most.rmse_before, 3)} "
+        f"{BY_COLUMN[name].unit}, and no catalogued effect explains it."
+    )
+
+
+def _nearest(nearest: tuple[str, Reduction] | None) -> list[str]:
     """Return the effect that gains most, where it gains much."""
-    if found.part < NEAR:
+    if nearest is None or nearest[1].part < NEAR:
         return []
+    effect, found = nearest
     takes = 100.0 * (1.0 - math.sqrt(1.0 - found.part))
     said = f"takes {takes:.0f} % off it, but not in enough stretches of the runs"
     return [f"{_title(effect)} comes nearest: it {said}."]
+
+
+def _stand_ins(stand_ins: Sequence[FoundCause]) -> Iterator[str]:
+    for failed in dict.fromkeys(cause.failed[0] for cause in stand_ins):
+        alike = [cause for cause in stand_ins if cause.failed[0] == failed]
+        names = listed([_title(cause.effect) for cause in alike])
+        gains = listed([f"{cause.gain_percent:.0f}" for cause in alike])
+        take, are, each = ("take", "are", "each") if alike[1:] else ("takes", "is", "it")
+        yield f"{names} {take} {gains} % off it, but {are} not proven: {each} {failed}."
+
+
+def _law(law: Law) -> str:
+    falls = [
+        f"{name} from {number_text(law.before.rmse[name])} to {number_text(now)} "
+        f"{BY_COLUMN[name].unit}"
+        for name, now in law.after.rmse.items()
+        if now < law.before.rmse[name] and number_text(now) != number_text(law.before.rmse[name])
+    ]
+    beside = f", beside {listed([_title(e) for e in law.beside])}," if law.beside else ""
+    return (
+        f"A law of unnamed origin{beside} describes it: with it the RMS on held-out data falls "
+        f"in {listed(falls)}."
+    )
 
 
 def _dependence(after: Remainder) -> list[str]:
