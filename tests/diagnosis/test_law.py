@@ -14,9 +14,10 @@ from tsas_cli.diagnosis.diagnose import bench_folds
 from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe
 from tsas_cli.diagnosis.law_bench import priors_of
 from tsas_cli.diagnosis.law_words import after_reversal, records_of, sentence_of
+from tsas_cli.diagnosis.moments import LATE
 from tsas_cli.diagnosis.nominal import nominal_fit
 from tsas_cli.diagnosis.refitted import HeldOutFit
-from tsas_cli.diagnosis.remainder import LATE, remainder
+from tsas_cli.diagnosis.remainder import remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     rigs_with_tolerances,

@@ -8,14 +8,8 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.remainder import (
-    Remainder,
-    SlowPart,
-    _is_brief,
-    _is_late,
-    _oscillation,
-    remainder,
-)
+from tsas_cli.diagnosis.moments import _is_brief, _is_late, oscillation
+from tsas_cli.diagnosis.remainder import Remainder, SlowPart, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
 SIZE, ROWS = 800, 400
@@ -231,7 +225,7 @@ NOISE = np.random.default_rng(1).standard_normal((8, ROWS))
 def test_half_of_the_runs_have_to_swing_and_two_at_the_least(runs, of, said):
     made = [one_stroke({"f_in_N": swing(5.0, 3.0) + NOISE[k]}) for k in range(runs)]
     made += [one_stroke({"f_in_N": NOISE[4 + k % 4]}) for k in range(of - runs)]
-    assert (_oscillation(bench_of(*made), None) is not None) == said
+    assert (oscillation(bench_of(*made), None) is not None) == said
 
 
 def test_the_frequency_is_the_median_and_the_channels_are_named():
@@ -241,9 +235,7 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
         one_stroke({"f_in_N": NOISE[0]}),
     ]
     # 400 samples of 20 ms: a bin is 1/7.98 Hz wide.
-    assert (
-        _oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
-    )
+    assert oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
 
 
 @pytest.mark.parametrize(("cycles", "said"), [(1, False), (2, True)])
@@ -251,7 +243,7 @@ def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
     """The drive makes one stroke, half a cycle: 2.5 of that is more than one cycle."""
     turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
     swing = np.cos(cycles * turn) + 0.1 * NOISE[0]
-    assert (_oscillation(bench_of(*[one_stroke({"f_in_N": swing})] * 2), None) is not None) == said
+    assert (oscillation(bench_of(*[one_stroke({"f_in_N": swing})] * 2), None) is not None) == said
 
 
 def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_none():

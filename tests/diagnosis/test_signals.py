@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.remainder import hats, regressed
+from tsas_cli.diagnosis.regression import hats, regressed
 from tsas_cli.diagnosis.signals import DIRECTION, signal_in_words, signals_of
 
 X = np.array([0.0, 1.0, 3.0, 2.0, 1.0, 1.5, 2.5])

@@ -17,7 +17,8 @@ import numpy as np
 from tsas_cli.diagnosis.diagnose import FEW_BLOCKS
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.proven import SEED
-from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
+from tsas_cli.diagnosis.regression import hats, regressed
+from tsas_cli.diagnosis.remainder import DEPENDS
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch, rivals

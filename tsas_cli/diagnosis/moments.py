@@ -1,0 +1,86 @@
+"""Errors of little weight in a mean square: at reversals, at a few moments, at one frequency.
+
+An error with the shape of a misplaced reversal has no weight in a fit, so its mean over the strokes
+is tested by itself; so are errors at a few moments of a run.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
+from tsas_cli.support.wording import listed
+
+FEWEST_STROKES = 4
+LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
+FAR, FARTHEST = 4.0, 10.0  # standard deviations, and where one error counts for no more
+FEWEST_FAR = 8  # errors that far: fewer may be a reversal out of place
+UPPER_QUARTILE = 0.67449  # of the normal distribution, in standard deviations
+BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run with brief errors
+ABOVE_NOISE = 0.15  # of its square: the mean square of such a run is larger by that
+LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
+PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
+OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
+
+
+def at_moments(
+    bench: Bench, errors: Sequence[RunErrors], rigs: Sequence[Rig]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the channels whose strokes lag or lead, and those with errors at a few moments."""
+    pairs = list(zip(errors, rigs, strict=True))
+    delays, parts = [run.delays(rig) for run, rig in pairs], [run.errors(rig) for run, rig in pairs]
+    late, brief = [], []
+    for name in bench.channels:
+        if _is_late(np.concatenate([run[name] for run in delays if name in run])):
+            late.append(name)
+        if any(_is_brief(run[name]) for run in parts if name in run):
+            brief.append(name)
+    return tuple(late), tuple(brief)
+
+
+def _is_brief(errors: Floats) -> bool:
+    """Return whether what a run's errors exceed the noise by comes at a few moments.
+
+    Noise is as large at any time, and seldom far beyond its own standard deviation.
+    """
+    sd = float(np.median(np.abs(errors - np.median(errors)))) / UPPER_QUARTILE
+    if sd == 0.0:  # most errors are the same, as of a coarse channel
+        return False
+    size = np.minimum(np.abs(errors) / sd, FARTHEST)
+    beyond = np.where(size > FAR, size, 0.0) ** 2
+    brief = np.count_nonzero(beyond) >= FEWEST_FAR and float(np.mean(beyond)) > BRIEF
+    return bool(brief) and float(np.mean(errors**2)) > 1.0 + ABOVE_NOISE
+
+
+def _is_late(delays: Floats) -> bool:
+    """Return whether strokes with these delays lag behind the model, or lead it, on average."""
+    if delays.size < FEWEST_STROKES:
+        return False
+    scatter = float(delays.std(ddof=1)) / math.sqrt(delays.size)
+    return abs(float(delays.mean())) > max(LATE, LATE_CRITICAL * scatter)
+
+
+def oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
+    """Return a phrase on a dominant frequency of the residuals of most runs, or None."""
+    found = []
+    for k, run in enumerate(bench.errors_for(trial)):
+        strokes = run.run.conditioned[run.run.drive_column].reversals.size - 1
+        for name, errors in run.errors(bench.rig(trial, k)).items():
+            time_s = run.run.time_s[run.samples[name]]
+            even = np.linspace(time_s[0], time_s[-1], errors.size)
+            power = np.abs(np.fft.rfft(np.interp(even, time_s, errors - errors.mean()))) ** 2
+            peak = int(np.argmax(power))
+            band = power[max(peak - 1, 0) : peak + 2].sum() / power.sum()
+            if band > PEAK and peak > OWN * 0.5 * strokes:
+                found.append((name, peak / (even[-1] - even[0])))
+    if len(found) < max(2, len(bench.rigs) // 2):
+        return None
+    frequency = float(np.median([f for _, f in found]))
+    names = sorted({name for name, _ in found})
+    verb = "oscillates" if len(names) == 1 else "oscillate"
+    return f"time_s ({listed(names)} {verb} at {frequency:.3g} Hz)"
