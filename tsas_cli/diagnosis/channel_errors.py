@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.extension import Bench
@@ -47,6 +47,16 @@ def channel_errors(
         least = min(max(min(attainable), noise), after[name])
         out[name] = HeldOutErrors(before[name], after[name], floor, least)
     return out
+
+
+def with_law(
+    channels: Mapping[str, HeldOutErrors], reached: Mapping[str, float]
+) -> dict[str, HeldOutErrors]:
+    """Return the errors with the RMS that a law reaches in each channel in place of the causes'."""
+    return {
+        name: replace(c, rmse_after=reached[name], attainable=min(c.attainable, reached[name]))
+        for name, c in channels.items()
+    }
 
 
 def is_far_off(name: str, errors: HeldOutErrors) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, is_far_off
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, is_far_off, with_law
 from tsas_cli.diagnosis.faults.candidates import OWN_FRICTION
 from tsas_cli.diagnosis.faults.rivals import effects_as_good, leaves_noise
 from tsas_cli.diagnosis.faults.search import FoundFault, fault_of_recording
@@ -206,14 +206,12 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     bench, folds, named = judged.bench, judged.folds, judged.named
     before = judged.trial(frozenset(), on_mesh=bench.on_mesh(named))
     final = judged.trial(named)
-    start, after = proven.start, proven.after
     nominal = list(proven.estimates)
     if named:
         nominal = estimates_with_tolerances(judged, before, tolerances(bench, before)).estimates
     errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
-    by_causes = channel_errors(bench, *errors, start, after)
-    only_noise = after.complete and not any(map(is_far_off, by_causes, by_causes.values()))
-    complete = only_noise and not any(cause.law_differs for cause in causes)
+    channels = channel_errors(bench, *errors, proven.start, proven.after)
+    only_noise = proven.after.complete and not any(map(is_far_off, channels, channels.values()))
     law, whole = None, proven.whole if stand_ins else None
     if not only_noise:
         unproven = None if whole is None else whole.judged.trial(whole.judged.named)
@@ -223,42 +221,35 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     verdict = verdict_of(
         [cause.rivals for cause in causes],
         [cause.effect for cause in stand_ins],
-        complete=complete,
+        complete=only_noise and not any(cause.law_differs for cause in causes),
         described=law is not None,
     )
-    fault = wandering(after) if verdict == "unexplained" else None
+    fault = wandering(proven.after) if verdict == "unexplained" else None
     if verdict == "sufficient":
         frictions = frictions_of(final, proven.tolerated, folds.run)
         fault = differing(frictions, [errors.run.run for errors in bench.closed])
         verdict = verdict if fault is None else "unexplained"
-    judged_ones = frozenset[str]() if proven.whole is None else proven.whole.judged.named
-    nearest = proven.search.best_alone(judged_ones)
-    reason = reason_of(verdict, causes, stand_ins, by_causes, after, law, nearest)
-    if fault is not None:
-        reason += f" {fault.sentence}."
-    channels = by_causes
-    if law is not None:
-        reached = law.after.rmse
-        channels = {
-            name: replace(c, rmse_after=reached[name], attainable=min(c.attainable, reached[name]))
-            for name, c in by_causes.items()
-        }
+    gaining = frozenset[str]() if proven.whole is None else proven.whole.judged.named
+    nearest = proven.search.best_alone(gaining)
+    reason = reason_of(verdict, causes, stand_ins, channels, proven.after, law, nearest)
     return Diagnosis(
         verdict,
-        reason,
-        Model(proven.estimates if law is None else law.estimates).over(base.model),
-        Model(tuple(nominal)).over(base.model),
-        causes,
-        stand_ins,
-        channels,
-        after,
-        share_left(start, after),
-        proven.search,
-        judged,
-        before,
-        final,
-        base.not_identifiable,
-        Model(whole.estimates).over(base.model) if whole is not None and law is None else None,
-        law,
-        fault,
+        reason if fault is None else f"{reason} {fault.sentence}.",
+        model=Model(proven.estimates if law is None else law.estimates).over(base.model),
+        nominal=Model(tuple(nominal)).over(base.model),
+        causes=causes,
+        stand_ins=stand_ins,
+        channels=channels if law is None else with_law(channels, law.after.rmse),
+        remainder=proven.after,
+        share_left=share_left(proven.start, proven.after),
+        search=proven.search,
+        judged=judged,
+        before=before,
+        final=final,
+        cannot_tell=base.not_identifiable,
+        stand_in_model=(
+            Model(whole.estimates).over(base.model) if whole is not None and law is None else None
+        ),
+        law=law,
+        fault=fault,
     )
