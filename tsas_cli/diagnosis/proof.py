@@ -97,11 +97,9 @@ def failures(
     """Return what an effect fails to prove, in sentences without their subject.
 
     `refitted_gain` is its reduction of the squares on held-out data by new fits, `without` and
-    `with_it` are the errors there. A channel becomes worse where both its RMS and that of its
-    error over the noise rise: the first alone may rise where a reversal is steep.
-    `tolerance_N` is by how much a force sensor of a
-    sound rig may be wrong, `stroke_mm` the longest way of the drive, infinite where it is not
-    known, and `zero` whether the effect `may_be_zero`.
+    `with_it` are the errors there. `tolerance_N` is by how much a force sensor of a sound rig may
+    be wrong, `stroke_mm` the longest way of the drive, infinite where it is not known, and `zero`
+    whether the effect `may_be_zero`.
     """
     own = {e.name.partition(".")[2]: e for e in estimates}
     parameters = {p.name: p for p in BY_NAME[effect].parameters}
@@ -127,25 +125,44 @@ def failures(
         for name, e in own.items()
         if parameters[name].period and e.value > stroke_mm
     ]
-    sensors = [e for name, e in sizes.items() if effect in BOTH_SENSORS and not e.at_bound]
+    if effect in BOTH_SENSORS:
+        out += _alike_in_both(effect, [e for e in sizes.values() if not e.at_bound], zero=zero)
+    out += _worse_channels(without, with_it, tolerance_N or {})
+    return tuple(out)
+
+
+def _alike_in_both(effect: str, sensors: Sequence[Estimate], *, zero: bool) -> list[str]:
+    """Return that both force sensors are wrong by the same amount, where they are or may be."""
+    if len(sensors) < 2:
+        return []
     both = [e.value for e in sensors]
-    apart, size = (np.ptp(both), abs(np.mean(both))) if len(both) == 2 else (math.inf, 0.0)
+    apart, size = np.ptp(both), abs(np.mean(both))
     near, unsure = apart < ALIKE * size, not zero and all(e.holds(*both) for e in sensors)
-    if near or (unsure and apart < 2.0 * ALIKE * size):
-        out.append(
-            f"{'is' if near else 'may be'} the same for both sensors ({both[0]:.3g} and "
-            f"{both[1]:.3g} {sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
-        )
+    if not (near or (unsure and apart < 2.0 * ALIKE * size)):
+        return []
+    return [
+        f"{'is' if near else 'may be'} the same for both sensors ({both[0]:.3g} and "
+        f"{both[1]:.3g} {sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
+    ]
+
+
+def _worse_channels(
+    without: HeldOutFit, with_it: HeldOutFit, tolerance_N: Mapping[str, float]
+) -> list[str]:
+    """Return which channels an effect makes worse.
+
+    Both the RMS and that of the error over the noise rise: the first alone may where a reversal is
+    steep.
+    """
     changes = {n: after**2 - without.normalised[n] ** 2 for n, after in with_it.normalised.items()}
     fall = -sum(min(change, 0.0) for change in changes.values())
-    out += [
+    return [
         f"makes {name} worse on held-out data ({number_text(before)} to {number_text(after)})"
         for (name, before), after in zip(without.rmse.items(), with_it.rmse.values(), strict=True)
         if after > (1.0 + LEAST_RISE) * before
         and changes[name] > RISE_OF_FALL * fall
-        and after**2 - before**2 > (tolerance_N or {}).get(name, 0.0) ** 2
+        and after**2 - before**2 > tolerance_N.get(name, 0.0) ** 2
     ]
-    return tuple(out)
 
 
 def may_be_zero(
