@@ -140,10 +140,9 @@ def _alike_in_both(effect: str, sensors: Sequence[Estimate], *, zero: bool) -> l
     near, unsure = apart < ALIKE * size, not zero and all(e.holds(*both) for e in sensors)
     if not (near or (unsure and apart < 2.0 * ALIKE * size)):
         return []
-    return [
-        f"{'is' if near else 'may be'} the same for both sensors ({both[0]:.3g} and "
-        f"{both[1]:.3g} {sensors[0].unit}), which {BOTH_SENSORS[effect]} does too"
-    ]
+    values = f"{both[0]:.3g} and {both[1]:.3g} {sensors[0].unit}"
+    are = "is" if near else "may be"
+    return [f"{are} the same for both sensors ({values}), which {BOTH_SENSORS[effect]} does too"]
 
 
 def _worse_channels(
