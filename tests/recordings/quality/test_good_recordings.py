@@ -199,6 +199,20 @@ def test_a_smooth_motion_is_not_filtered_where_it_is_alike_in_all_parts_of_a_run
     assert "filtered" not in complaints({"time_s": time, **positions, **forces})
 
 
+@pytest.mark.parametrize("first", [0.3, 1.0])
+def test_harmonics_of_a_stroke_that_repeats_are_no_noise_behind_a_filter(first):
+    """A shaking table whose motion has harmonics up to a seventh of the rate."""
+    time = np.arange(2600) / 100.0
+    angle = 2.0 * np.pi * 0.97 * time
+    wave = sum(0.004 * np.sin(n * angle + n * n) for n in range(2, 15))
+    x = 5.0 - 5.0 * np.cos(angle + first) + wave
+    x_out, f_in, f_out = spring(x, time)
+    noise = 0.1 * np.random.default_rng(2).standard_normal((2, x.size))
+    positions = {"x_in_mm": counted(x, 5e-4), "x_out_mm": counted(x_out, 0.005, 0.3)}
+    forces = {"f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
+    assert "filtered" not in complaints({"time_s": time, **positions, **forces})
+
+
 def test_a_stroke_that_hardly_leaves_the_dead_band_is_not_clipped():
     """The tension rises no further once the whole tendon slips against a soft load."""
     time = np.arange(1200) / 100.0

@@ -8,6 +8,7 @@ from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
 
 _ASIDE = 3  # neighbours on each side
@@ -178,8 +179,9 @@ def filtered(trial: RunSignals) -> Findings:
     a filter that ends there would change the channel by more than ten times its noise. What a
     smooth motion leaves falls too, and may be alike in all parts of the run; but it falls slower
     than noise behind a filter, so that the highest frequencies at which anything stands out are
-    the motion's then, and differ from part to part. Not reported: noise that grows slower towards
-    low frequencies, a fast amplifier, a recording without noise.
+    the motion's then, and differ from part to part. Those of a stroke that repeats are the same in
+    all parts, but they are lines, with little between them. Not reported: noise that grows slower
+    towards low frequencies, a fast amplifier, a recording without noise.
     """
     segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
     for name, values in trial.mechanical.items():
@@ -188,7 +190,7 @@ def filtered(trial: RunSignals) -> Findings:
         size = trial.sizes[name]
         rounding = size.step**2 / 6.0 * trial.step_s  # its power per hertz [unit²/Hz]
         end_Hz = None if spectrum is None else _end_of_noise(spectrum, rounding)
-        if end_Hz is None or spectrum is None:
+        if end_Hz is None or spectrum is None or _are_lines(values, trial.step_s, end_Hz):
             continue
         below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
         noise = float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
@@ -202,6 +204,16 @@ def filtered(trial: RunSignals) -> Findings:
                 f"(the sampling rate is {1.0 / trial.step_s:.4g} Hz)",
                 "record without the filter, or with one that is ten times as fast for all channels",
             )
+
+
+def _are_lines(values: Floats, step_s: float, end_Hz: float) -> bool:
+    """Return whether what ends at a frequency are lines: in most of its bins little is left."""
+    straight = np.linspace(values[0], values[-1], values.size)
+    power = np.abs(np.fft.rfft((values - straight) * np.blackman(values.size))) ** 2
+    frequency_Hz = np.fft.rfftfreq(values.size, step_s)
+    below = power[(frequency_Hz > 0.5 * end_Hz) & (frequency_Hz < end_Hz)]
+    top = power[frequency_Hz > _TOP * frequency_Hz[-1]]
+    return below.size > 0 and float(np.median(below)) < _FALLS * float(np.median(top))
 
 
 def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
