@@ -71,6 +71,17 @@ def test_a_buffer_that_is_written_twice():
     assert remark.first_s == pytest.approx(TIME[1020])
 
 
+def test_rows_of_a_rest_that_are_alike_by_chance_are_no_buffer():
+    """A rest in which the channels take seven values, as an encoder and its servo do."""
+    rest = {n: np.full(200, v[0]) for n, v in GOOD.items() if n != "time_s"}
+    digits = np.random.default_rng(3).integers(0, 7, 200)
+    digits[96:105] = [4, 0, 5, 1, 4, 0, 5, 1, 6]
+    rest |= {n: rest[n] + 0.013 * digits for n in ("f_in_N", "x_in_mm")}
+    rows = {n: np.concatenate((v, GOOD[n])) for n, v in rest.items()}
+    time = {"time_s": 0.005 * np.arange(200 + N)}
+    assert "repeated-buffer" not in {code for code, _ in remarks(time | rows)}
+
+
 def test_sampling_at_other_times_than_are_written():
     at = TIME + 0.006 * np.random.default_rng(1).standard_normal(N)
     clean = columns(Bench(noise_mm=0.0, noise_N=0.0))

@@ -10,7 +10,7 @@ import numpy as np
 from tsas_cli.recordings.quality.finding import Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.samples import alternates, smallest_change
 from tsas_cli.recordings.quality.trial import GAP, RunSignals
-from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.arrays import Floats, Indices, Mask
 from tsas_cli.support.wording import count_of
 
 _OF_A_STROKE, _LONGEST_S = 0.03, 0.1  # window on each side
@@ -207,14 +207,16 @@ def _chances(trial: RunSignals, fresh: Mask) -> Floats:
 
 
 _FEWEST_OF_A_BUFFER = 4  # of a block
+_BY_CHANCE = 0.01  # expected number of blocks that repeat
 
 
 def repeated_buffer(trial: RunSignals) -> Findings:
     """A block of rows is written twice, one after the other, and the times run on.
 
     A driver that hands out its buffer again when no new one is ready. Every channel then repeats,
-    to the last digit, as many rows as the block has. Noise never does; a computed recording without
-    noise repeats whole periods, but more than once.
+    to the last digit, as many rows as the block has. Noise never does, but in a rest, where it
+    takes few values, some rows may; a computed recording without noise repeats whole periods, but
+    more than once.
     """
     noisy = [values for values in trial.channels.values() if alternates(values)]
     if not noisy:
@@ -228,7 +230,8 @@ def repeated_buffer(trial: RunSignals) -> Findings:
     before[order[1:][same]] = order[:-1][same]
     lag = np.where(before >= 0, np.arange(row.size) - before, 0)
     edges = np.flatnonzero(np.diff(lag, prepend=0, append=0))
-    starts = [int(a) for a, b in pairwise(edges) if lag[a] == b - a >= _FEWEST_OF_A_BUFFER]
+    blocks = [(a, b) for a, b in pairwise(edges.tolist()) if lag[a] == b - a]
+    starts = [a for a, b in blocks if b - a >= _FEWEST_OF_A_BUFFER and not _by_chance(row, a, b)]
     if starts:
         first = starts[0]
         yield error(
@@ -239,6 +242,16 @@ def repeated_buffer(trial: RunSignals) -> Findings:
             "write each buffer once; remove the repeated rows with their times at the source",
             float(trial.time_s[first]),
         )
+
+
+def _by_chance(row: Indices, start: int, stop: int) -> bool:
+    """Return whether as many rows repeat those before somewhere by chance, as rows do nearby.
+
+    `row` has the same number for rows that are alike, shape (n,).
+    """
+    counts = np.bincount(row[max(start - _BLOCK, 0) : stop + _BLOCK])
+    pairs = float(np.sum(counts * (counts - 1))) / (counts.sum() * (counts.sum() - 1))
+    return row.size * pairs ** (stop - start) > _BY_CHANCE
 
 
 _FARTHEST, _LOUDEST = 10.0, 20.0  # times the largest step elsewhere, and noise levels
