@@ -238,6 +238,23 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
     assert oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
 
 
+@pytest.mark.parametrize(("strokes", "said"), [((1, 1), True), ((8, 9), False), ((9, 9), True)])
+def test_a_frequency_that_goes_with_the_strokes_of_each_run_is_none_of_the_rig(strokes, said):
+    """40 and 45 periods; of 8 and 9 strokes five each, of as many strokes a little apart."""
+    turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
+    made = []
+    for periods, count, noise in zip((40, 45), strokes, NOISE, strict=False):
+        edges = np.linspace(0, ROWS - 1, count + 1).astype(int)
+        errors = {"f_in_N": np.sin(periods * turn) + 0.1 * noise}
+        made.append(Run(errors, SHORT_S, np.arange(float(ROWS)), edges))
+    assert (oscillation(bench_of(*made), None) is not None) == said
+
+
+def test_runs_that_swing_at_frequencies_far_apart_have_none_in_common():
+    made = [one_stroke({"f_in_N": swing(f, 3.0) + NOISE[0]}) for f in (3.0, 5.0, 9.0)]
+    assert oscillation(bench_of(*made), None) is None
+
+
 @pytest.mark.parametrize(("cycles", "said"), [(1, False), (2, True)])
 def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
     """The drive makes one stroke, half a cycle: 2.5 of that is more than one cycle."""

@@ -25,6 +25,7 @@ BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run 
 ABOVE_NOISE = 0.15  # of its square: the mean square of such a run is larger by that
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
+SAME = 0.1  # relative difference of frequencies that are the same
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
 
 
@@ -66,8 +67,11 @@ def _is_late(delays: Floats) -> bool:
 
 
 def oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
-    """Return a phrase on a dominant frequency of the residuals of most runs, or None."""
-    found = []
+    """Return a phrase on a dominant frequency of the residuals of half of the runs, or None.
+
+    It is the same in all of them; one that is a multiple of each run's strokes is the motion's.
+    """
+    found, multiples = [], []
     for k, run in enumerate(bench.errors_for(trial)):
         strokes = run.run.conditioned[run.run.drive_column].reversals.size - 1
         for name, errors in run.errors(bench.rig(trial, k)).items():
@@ -78,9 +82,21 @@ def oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
             band = power[max(peak - 1, 0) : peak + 2].sum() / power.sum()
             if band > PEAK and peak > OWN * 0.5 * strokes:
                 found.append((name, peak / (even[-1] - even[0])))
-    if len(found) < max(2, len(bench.rigs) // 2):
+                multiples.append(peak / strokes)
+    if not found:
         return None
-    frequency = float(np.median([f for _, f in found]))
-    names = sorted({name for name, _ in found})
+    frequencies = [frequency for _, frequency in found]
+    if _spread(multiples) + SAME / 10.0 < 0.5 * _spread(frequencies):
+        return None
+    frequency = float(np.median(frequencies))
+    alike = [name for name, f in found if abs(f - frequency) <= SAME * frequency]
+    if len(alike) < max(2, len(bench.rigs) // 2):
+        return None
+    names = sorted(set(alike))
     verb = "oscillates" if len(names) == 1 else "oscillate"
     return f"time_s ({listed(names)} {verb} at {frequency:.3g} Hz)"
+
+
+def _spread(values: Sequence[float]) -> float:
+    """Return the standard deviation of the logarithms of some values."""
+    return float(np.std(np.log(values)))

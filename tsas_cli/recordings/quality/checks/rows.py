@@ -207,7 +207,7 @@ def _chances(trial: RunSignals, fresh: Mask) -> Floats:
 
 
 _FEWEST_OF_A_BUFFER = 4  # of a block
-_BY_CHANCE = 0.01  # expected number of blocks that repeat
+_BY_CHANCE = 1e-4  # expected number of blocks that repeat
 
 
 def repeated_buffer(trial: RunSignals) -> Findings:
@@ -251,7 +251,7 @@ def _by_chance(row: Indices, start: int, stop: int) -> bool:
     """
     counts = np.bincount(row[max(start - _BLOCK, 0) : stop + _BLOCK])
     pairs = float(np.sum(counts * (counts - 1))) / (counts.sum() * (counts.sum() - 1))
-    return row.size * pairs ** (stop - start) > _BY_CHANCE
+    return bool(row.size * pairs ** (stop - start) > _BY_CHANCE)
 
 
 _FARTHEST, _LOUDEST = 10.0, 20.0  # times the largest step elsewhere, and noise levels
