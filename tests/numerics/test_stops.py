@@ -79,3 +79,4 @@ def test_a_curve_is_straight_between_its_heights_and_constant_outside():
     x = np.array([-9.0, 0.0, 0.5, 1.0, 1.75, 2.0, 9.0])
     expected = [1.0, 1.0, 2.0, 3.0, -1.5, -3.0, -3.0]
     assert curve_of(x, 0.0, 2.0, (1.0, 3.0, -3.0)) == pytest.approx(expected)
+    assert np.isnan(curve_of(np.array([np.nan]), 0.0, 2.0, (1.0, 3.0, -3.0))).all()

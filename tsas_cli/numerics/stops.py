@@ -69,8 +69,13 @@ def move_elements(value: float, widths: Floats, memory: Floats) -> None:
 
 @kernel
 def curve_at(value: float, low: float, high: float, heights: Sequence[float] | Floats) -> float:
-    """Return a curve of straight lines between heights at even distances, constant outside."""
+    """Return a curve of straight lines between heights at even distances, constant outside.
+
+    NaN for NaN.
+    """
     last = len(heights) - 1
+    if np.isnan(value):
+        return value
     if value <= low:
         return heights[0]
     if value >= high:
