@@ -71,6 +71,15 @@ def test_a_buffer_that_is_written_twice():
     assert remark.first_s == pytest.approx(TIME[1020])
 
 
+@pytest.mark.parametrize("column", ["f_in_N", "x_out_mm"])
+def test_a_buffer_of_one_channel_that_is_written_twice(column):
+    again = GOOD[column].copy()
+    again[1020:1040] = again[1000:1020]
+    remark = told(GOOD | {column: again}, "repeated-buffer")
+    assert f"1 block of rows repeat the block before in {column}" in remark.sentence
+    assert remark.first_s == pytest.approx(TIME[1020])
+
+
 def test_rows_of_a_rest_that_are_alike_by_chance_are_no_buffer():
     """A rest in which the channels take seven values, as an encoder and its servo do."""
     rest = {n: np.full(200, v[0]) for n, v in GOOD.items() if n != "time_s"}
