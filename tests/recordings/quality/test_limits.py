@@ -225,7 +225,7 @@ def test_times_look_like_another_unit_where_steps_and_strokes_are_long(step_s, s
 @pytest.mark.parametrize(("copied", "found"), [(3, 0), (4, 1), (40, 1)])
 def test_a_buffer_of_four_rows_is_written_twice(copied, found):
     again = np.concatenate((WHITE[:100], WHITE[100 - copied : 400 - copied]))
-    told = of(rows.repeated_buffer, f_in_N=again)
+    told = of(repeats.repeated_buffer, f_in_N=again)
     assert len(told) == found
     if told:
         assert f"the first has {copied} rows and begins at 1 s, row 100" in told[0].sentence

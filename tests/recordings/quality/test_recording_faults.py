@@ -71,7 +71,7 @@ def test_a_buffer_that_is_written_twice():
     assert remark.first_s == pytest.approx(TIME[1020])
 
 
-@pytest.mark.parametrize("column", ["f_in_N", "x_out_mm"])
+@pytest.mark.parametrize("column", ["f_in_N", "f_out_N"])
 def test_a_buffer_of_one_channel_that_is_written_twice(column):
     again = GOOD[column].copy()
     again[1020:1040] = again[1000:1020]
@@ -156,6 +156,16 @@ def test_an_interference_that_follows_the_motor(column, size, severity):
     assert remark.severity == severity
     assert ("a delay, or" in remark.sentence) == (severity == "warning")
     assert ("mass of the load" in remark.sentence) == (column == "f_out_N" and size < 0.0)
+
+
+@pytest.mark.parametrize(("turns", "said"), [(5, True), (3, False)])
+def test_three_jumps_that_are_alike_are_an_interference(turns, said):
+    """The drive turns so often, and the load rests at three or less of these times."""
+    speed = np.gradient(columns(Bench(noise_mm=0.0))["x_in_mm"], TIME)
+    stop = np.flatnonzero(np.diff(np.sign(speed)) != 0.0)[turns] - 40
+    taken = GOOD | {"f_out_N": GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)}
+    codes = {code for code, _ in remarks({n: v[:stop] for n, v in taken.items()})}
+    assert ("interference" in codes) == said
 
 
 def test_a_reversal_among_the_samples_that_are_lost():

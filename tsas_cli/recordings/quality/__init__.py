@@ -57,7 +57,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(noise.bursts),
     QualityCheck(noise.hum, given=("increases",)),
     QualityCheck(rows.repeated_rows),
-    QualityCheck(rows.repeated_buffer),
+    QualityCheck(repeats.repeated_buffer),
     QualityCheck(repeats.repeated_values),
     QualityCheck(repeats.slow_channel),
     QualityCheck(noise.filtered, given=("increases", "strokes")),

@@ -125,10 +125,11 @@ def _excess_while_pulling(trial: RunSignals) -> float:
 
 _BESIDE_S, _OF_A_STROKE = 0.4, 0.06  # stretch on either side, at most
 _APART = 0.3  # of it: the time of the reversal itself
-_FEWEST_ROWS, _FEWEST_REVERSALS = 6, 4
+_FEWEST_ROWS, _FEWEST_REVERSALS, _FEWEST_JUMPS = 6, 4, 3
 _RESTS = 1.5  # noise levels of a change while the load rests
 _PART = 0.2  # of a jump, that it may change by then
-_VISIBLE, _CRITICAL = 4.0, 6.0  # noise levels, and standard errors of the mean
+_VISIBLE, _CRITICAL = 4.0, 6.0  # noise levels, and standard errors of the mean,
+_CHANCE = 0.005  # or as many as few jumps by chance have with this probability, on either side
 
 
 def interference(trial: RunSignals) -> Findings:
@@ -140,15 +141,18 @@ def interference(trial: RunSignals) -> Findings:
     looks like friction of the drive. What is late jumps too, against the direction, and so does the
     force of a load with a mass, where it stops braking.
     """
+    from scipy.special import stdtrit
+
     if len(trial.strokes) <= _FEWEST_REVERSALS:
         yield NotChecked("the drive has too few reversals")
         return
     for name in [n for n in ("x_out_mm", "f_out_N") if n in trial.noisy]:
         jumps = _jumps(trial, trial.noisy[name], trial.sizes[name].noise)
-        if jumps.size < _FEWEST_REVERSALS:
+        if jumps.size < _FEWEST_JUMPS:
             continue
+        critical = max(_CRITICAL, float(stdtrit(jumps.size - 1, 1.0 - _CHANCE)))
         mean, error = float(jumps.mean()), float(jumps.std(ddof=1)) / math.sqrt(jumps.size)
-        if abs(mean) > max(_VISIBLE * trial.sizes[name].noise, _CRITICAL * error):
+        if abs(mean) > max(_VISIBLE * trial.sizes[name].noise, critical * error):
             unit = name.rsplit("_", 1)[1]
             lags = "a delay, " if name == "x_out_mm" else "mass of the load, a delay, "
             yield Finding(

@@ -1,13 +1,20 @@
 """The checks for channels that repeat their own values."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import Findings, warning
-from tsas_cli.recordings.quality.samples import is_held, rows_between_changes, smallest_change
+from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
+from tsas_cli.recordings.quality.samples import (
+    alternates,
+    is_held,
+    rows_between_changes,
+    smallest_change,
+)
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Indices
+from tsas_cli.support.wording import count_of
 
 _ONE_STEP, _DEVIATIONS = 1.2, 4.0  # times the share of changes by one step, and its deviations
 _TWO_STEPS = 0.4  # changes by two steps over those by one, in noise that is larger than the steps
@@ -74,3 +81,76 @@ def slow_channel(trial: RunSignals) -> Findings:
                 f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
                 "record the channel at its own rate, or correct for half an update of delay",
             )
+
+
+_FEWEST_OF_A_BUFFER, _MOST_OF_A_BUFFER = 4, 512  # rows
+_BY_CHANCE = 1e-4  # expected number of blocks that repeat
+_NEARBY = 32  # rows on either side of a block
+
+
+def repeated_buffer(trial: RunSignals) -> Findings:
+    """A block of rows is written twice, one after the other, and the times run on.
+
+    A driver that hands out its buffer again when no new one is ready. Every channel of it then
+    repeats, to the last digit, as many rows as the block has, of which at most 512 are sought.
+    Noise never does, but in a rest, where it takes few values, some rows may; a computed recording
+    without noise repeats whole periods, but more than once.
+    """
+    noisy = {n: values for n, values in trial.channels.items() if alternates(values)}
+    if not noisy:
+        yield NotChecked("no channel has noise, so rows may repeat by themselves")
+        return
+    everything = np.column_stack([np.nan_to_num(values) for values in trial.channels.values()])
+    of_all = _blocks_again(everything)
+    if of_all:
+        yield _buffers(trial, None, of_all)
+        return
+    for name in [n for n in noisy if n.startswith("f_")]:  # an encoder may count the same again
+        if blocks := _blocks_again(np.nan_to_num(noisy[name])[:, None]):
+            yield _buffers(trial, name, blocks)
+
+
+def _buffers(trial: RunSignals, column: str | None, blocks: Sequence[tuple[int, int]]) -> Finding:
+    """Return that blocks of rows, from and to, repeat those before in one column or in all."""
+    start, stop = blocks[0]
+    which = "all channels" if column is None else column
+    return error(
+        column,
+        f"{count_of(len(blocks), 'block')} of rows repeat the block before in {which}; "
+        f"the first has {stop - start} rows and begins at {trial.time_s[start]:.6g} s, "
+        f"row {trial.first_row + start}",
+        "write each buffer once; remove the repeated rows with their times at the source",
+        float(trial.time_s[start]),
+    )
+
+
+def _blocks_again(table: Floats) -> list[tuple[int, int]]:
+    """Return the blocks of rows, from and to, that repeat the block before, shape (n, columns).
+
+    What repeats more than once is periodic.
+    """
+    row = np.unique(table, axis=0, return_inverse=True)[1].ravel()
+    found = []
+    for size in range(_FEWEST_OF_A_BUFFER, min(_MOST_OF_A_BUFFER, row.size // 2) + 1):
+        again = np.concatenate((np.zeros(size, bool), row[size:] == row[:-size], [False]))
+        if np.count_nonzero(again) < size:
+            continue
+        edges = np.flatnonzero(again[1:] != again[:-1]) + 1
+        lengths = edges[1::2] - edges[::2]
+        for k in np.flatnonzero((lengths >= size) & (lengths < 2 * size)):
+            start = int(edges[2 * k])
+            if not _by_chance(row, start, start + size):
+                found.append((start, start + size))
+    return sorted(found)
+
+
+def _by_chance(row: Indices, start: int, stop: int) -> bool:
+    """Return whether as many rows repeat those before somewhere by chance, as rows do nearby.
+
+    `row` has the same number for rows that are alike, shape (n,). A row like the one before it
+    tells nothing.
+    """
+    counts = np.bincount(row[max(start - _NEARBY, 0) : stop + _NEARBY])
+    pairs = float(np.sum(counts * (counts - 1))) / (counts.sum() * (counts.sum() - 1))
+    changes = np.count_nonzero(np.diff(row[start:stop]))
+    return bool(row.size * pairs**changes > _BY_CHANCE)
