@@ -136,10 +136,29 @@ def test_where_much_is_left_no_effect_is_proven(first, last, reducible, structur
     start = Remainder(first, {"x_out_mm": 1.0}, ())
     after = Remainder(last, {"x_out_mm": structure}, (), reducible=reducible)
     cause = FoundCause("position_sensor_gain", (), (), 50.0, (40.0, 60.0))
-    failed = p._beside_what_is_left(cause, start, after).failed
-    assert failed == (
-        ("is in a model that leaves 10 % of what could be explained",) if refused else ()
+    failed = p._beside_what_is_left(cause, start, after, 0.004).failed
+    assert failed == (("leaves 10 % of what could be explained",) if refused else ())
+
+
+@pytest.mark.parametrize(
+    ("late_s", "complete", "refused"),
+    [
+        ((-0.0010, -0.0015), False, True),
+        ((-0.0010, -0.0025), False, False),
+        ((-0.0010, -0.0015), True, False),
+    ],
+)
+def test_a_delay_within_half_a_sample_interval_is_no_cause_where_more_is_wrong(
+    late_s, complete, refused
+):
+    names = ("f_in", "x_out")
+    delays = tuple(
+        Estimate(f"channel_delay.{name}_delay_s", late, "s", "fitted")
+        for name, late in zip(names, late_s, strict=True)
     )
+    cause = FoundCause("channel_delay", (), delays, 12.0, (8.0, 18.0))
+    start, after = Remainder(9.0, {}, ()), Remainder(1.0, {"f_in_N": 0.0 if complete else 0.2}, ())
+    assert bool(p._beside_what_is_left(cause, start, after, 0.004).failed) == refused
 
 
 @pytest.mark.parametrize(("values", "within"), [((0.09, 0.11), True), ((0.09, 0.13), False)])

@@ -117,7 +117,7 @@ def test_a_stand_in_is_said_with_what_it_fails_to_prove():
 
 
 def test_what_several_stand_ins_fail_to_prove_is_said_once():
-    left_over = "is in a model that leaves 15 % of what could be explained"
+    left_over = "leaves 15 % of what could be explained"
     failing = [cause(PLAY, failed=(left_over,)), cause(MASS, failed=(left_over,))]
     said = reason_of("stand_in", [], failing, START, left(16.0, "time_s"))
     assert (

@@ -26,6 +26,7 @@ from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of, share_left
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
+from tsas_cli.effects.channel_delay import CHANNEL_DELAY
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
@@ -131,7 +132,9 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     start = after
     if named:
         start = remainder_of(bench, judged.trial(frozenset(), on_mesh=mesh), judged.folds)
-    causes = tuple(_beside_what_is_left(cause, start, after) for cause in causes)
+    causes = tuple(
+        _beside_what_is_left(cause, start, after, bench.sample_interval_s) for cause in causes
+    )
     estimates = tuple(found.estimates)
     return Proven(search, judged, causes, stand_ins, estimates, held_out, start, after, tolerated)
 
@@ -222,13 +225,24 @@ def _beside_a_wave(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCaus
     return cause
 
 
-def _beside_what_is_left(cause: FoundCause, start: Remainder, after: Remainder) -> FoundCause:
-    """Return a cause, refused where much is left: an effect that is alike may take the rest too."""
-    left = share_left(start, after)
-    if after.complete or left <= MOST_LEFT:
+def _beside_what_is_left(
+    cause: FoundCause, start: Remainder, after: Remainder, interval_s: float
+) -> FoundCause:
+    """Return a cause, refused where much is left: an effect that is alike may take the rest too.
+
+    A delay by less than half a sample interval is where anything is left: what is wrong at each
+    reversal looks so.
+    """
+    if after.complete:
         return cause
-    said = f"is in a model that leaves {100.0 * left:.0f} % of what could be explained"
-    return replace(cause, failed=(*cause.failed, said))
+    failed, left = list(cause.failed), share_left(start, after)
+    if left > MOST_LEFT:
+        failed.append(f"leaves {100.0 * left:.0f} % of what could be explained")
+    if cause.effect == CHANNEL_DELAY.name and all(
+        abs(e.value) < 0.5 * interval_s for e in cause.parameters
+    ):
+        failed.append("is less than half a sample interval, and more is wrong")
+    return replace(cause, failed=tuple(failed))
 
 
 def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:

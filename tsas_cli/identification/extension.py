@@ -163,6 +163,11 @@ class Bench:
         ]
         return max(strokes, default=math.inf)
 
+    @property
+    def sample_interval_s(self) -> float:
+        """The longest usual time between two samples of a run."""
+        return max(float(np.median(np.diff(errors.run.time_s))) for errors in self.closed)
+
     def errors_for(self, trial: HypothesisFit) -> tuple[RunErrors, ...]:
         """Return the residual functions of the runs for a trial's solver."""
         return self.meshed if trial.on_mesh else self.closed
