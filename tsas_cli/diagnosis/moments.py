@@ -13,7 +13,7 @@ from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Indices
 from tsas_cli.support.wording import listed
 
 FEWEST_STROKES = 4
@@ -25,6 +25,10 @@ BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run 
 ABOVE_NOISE = 0.15  # of its square: the mean square of such a run is larger by that
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
+RIPPLE, SHARP, ASIDE = 0.1, 3.0, 1.3  # the same, of a wave over a displacement; times what waves
+# have whose period differs by that factor
+CYCLES = 5.0, 60.0, 0.2  # of a wave within the longest stroke: from, to, step
+MOST = 1000  # errors of a run that are taken
 SAME = 0.1  # relative difference of frequencies that are the same
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
 
@@ -95,6 +99,63 @@ def oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
     names = sorted(set(alike))
     verb = "oscillates" if len(names) == 1 else "oscillate"
     return f"time_s ({listed(names)} {verb} at {frequency:.3g} Hz)"
+
+
+def ripple(bench: Bench, trial: HypothesisFit) -> str | None:
+    """Return a phrase on a period of displacement with which a residual repeats, or None.
+
+    Such periods are shorter than what hat functions follow: the divisions of an encoder, the teeth
+    of a gear. The phase of each run is its own.
+    """
+    runs = bench.errors_for(trial)
+    errors = [run.errors(bench.rig(trial, k)) for k, run in enumerate(runs)]
+    best, phrase = RIPPLE, None
+    for name in bench.channels:
+        parts = [
+            (run, of_run[name]) for run, of_run in zip(runs, errors, strict=True) if name in of_run
+        ]
+        if float(np.mean(np.concatenate([e**2 for _, e in parts]))) < 1.0 + ABOVE_NOISE:
+            continue
+        for column in ("x_in_mm", "x_out_mm"):
+            found = _repeating(
+                [(run.run.channel(column), run.samples[name], e) for run, e in parts]
+            )
+            if found is not None and found[0] > best:
+                best, phrase = found[0], f"{column} ({name} repeats every {found[1]:.3g} mm)"
+    return phrase
+
+
+def _repeating(
+    parts: Sequence[tuple[Floats | None, Indices, Floats]],
+) -> tuple[float, float] | None:
+    """Return the largest share of the squares in one wave over the displacement, and its period.
+
+    Of each run are given the displacement at all samples, the samples, and the errors there. None
+    where it is not recorded, or waves of other periods have as much.
+    """
+    known = [
+        (place[at][:: -(-at.size // MOST)], error[:: -(-at.size // MOST)])
+        for place, at, error in parts
+        if place is not None
+    ]
+    known = [(place, e) for place, e in known if np.isfinite(place).all()]
+    longest = max((float(np.ptp(place)) for place, _ in known), default=0.0)
+    if longest == 0.0:
+        return None
+    per_mm = np.arange(*CYCLES) / longest
+    squares = sum(float(e @ e) for _, e in known)
+    share = (
+        sum(
+            2.0 * np.abs(e @ np.exp(2j * np.pi * np.outer(place, per_mm))) ** 2 / e.size
+            for place, e in known
+        )
+        / squares
+    )
+    at = int(np.argmax(share))
+    apart = np.abs(np.log(per_mm / per_mm[at])) > np.log(ASIDE)
+    if share[at] < SHARP * share[apart].max():
+        return None
+    return float(share[at]), float(1.0 / per_mm[at])
 
 
 def _spread(values: Sequence[float]) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds, in_stretches
-from tsas_cli.diagnosis.moments import at_moments, oscillation
+from tsas_cli.diagnosis.moments import at_moments, oscillation, ripple
 from tsas_cli.diagnosis.regression import hats, regressed
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, tolerances, without_tolerances
@@ -121,7 +121,7 @@ def remainder(
         for signal, squares in part.by_signal.items():
             alone[signal] += squares / float(residual @ residual)
     found = [s for s, part in sorted(alone.items(), key=lambda a: -a[1]) if part > DEPENDS]
-    oscillates = oscillation(bench, trial)
+    oscillates = oscillation(bench, trial) or ripple(bench, trial)
     late, brief = at_moments(bench, bench.errors_for(trial), fitted)
     if late or brief:  # what tolerances do at reversals has no weight in the fit
         rigs = rigs_with_tolerances(bench, trial, tolerated, folds.run)
