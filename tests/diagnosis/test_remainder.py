@@ -6,9 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.moments import _is_brief, _is_late, oscillation
+from tsas_cli.diagnosis.moments import _is_brief, _is_late, oscillation, ripple
 from tsas_cli.diagnosis.remainder import Remainder, SlowPart, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
@@ -25,7 +26,10 @@ class Run:
     def __init__(self, errors, time_s=TIME_S, x=X, reversals=REVERSALS, samples=None):
         drive = SimpleNamespace(values=x, reversals=reversals)
         self.run = SimpleNamespace(
-            time_s=time_s, drive_column="x_in_mm", conditioned={"x_in_mm": drive}
+            time_s=time_s,
+            drive_column="x_in_mm",
+            conditioned={"x_in_mm": drive},
+            channel={"x_in_mm": x}.get,
         )
         everything = np.arange(time_s.size)
         self.samples = dict.fromkeys(errors, everything if samples is None else samples)
@@ -261,6 +265,35 @@ def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
     turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
     swing = np.cos(cycles * turn) + 0.1 * NOISE[0]
     assert (oscillation(bench_of(*[one_stroke({"f_in_N": swing})] * 2), None) is not None) == said
+
+
+@pytest.mark.parametrize(
+    ("period_mm", "size", "said"),
+    [
+        (1.3, 1.0, "x_in_mm (x_out_mm repeats every 1.3 mm)"),
+        (2.7, 1.0, "x_in_mm (x_out_mm repeats every 2.7 mm)"),
+        (1.3, 0.3, None),  # as small as slow noise may be
+        (15.0, 1.0, None),  # what hat functions follow
+    ],
+)
+def test_an_error_that_repeats_with_a_displacement_is_said(period_mm, size, said):
+    """Of a stroke of 20 mm, at a phase of each run's own, beside noise."""
+    made = []
+    for phase in range(3):
+        noise = np.random.default_rng(phase).standard_normal(SIZE)
+        wave = size * np.sin(2.0 * np.pi * X / period_mm + phase)
+        made.append(Run({"x_out_mm": noise + wave, "f_in_N": noise}))
+    assert ripple(bench_of(*made), None) == said
+
+
+def test_slow_noise_does_not_repeat_with_a_displacement():
+    """Of a memory of 1 s and the size of the white noise."""
+    made = []
+    for seed in range(3):
+        fresh = np.random.default_rng(seed).standard_normal((2, SIZE))
+        slow = lfilter([math.sqrt(1.0 - 0.95**2)], [1.0, -0.95], fresh[1])
+        made.append(Run({"x_out_mm": fresh[0] + 1.4 * slow}))
+    assert ripple(bench_of(*made), None) is None
 
 
 def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_none():
