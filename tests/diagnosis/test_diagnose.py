@@ -65,8 +65,8 @@ def test_why_nothing_can_be_diagnosed():
         return d._not_possible(SimpleNamespace(problem=problem, fitted=fitted))
 
     assert reason([1], good) is None
-    assert reason([], good).startswith("no run lasts")
-    assert reason([1], None).startswith("no parameter")
+    assert reason([], good).startswith("No run lasts")
+    assert reason([1], None).startswith("No parameter")
     assert reason([1], bad).endswith("did not converge (steps).")
 
 

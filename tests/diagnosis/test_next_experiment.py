@@ -31,7 +31,7 @@ EXPERIMENT = {e.name: e.experiment for e in EFFECTS}
 def test_the_next_experiment_follows_from_the_verdict():
     undecided = Diagnosis("undecided", "", Model(()), Model(()))
     assert n.next_experiment(undecided).startswith("Record longer runs, at least three")
-    stuck = replace(undecided, reason="the fit of the nominal model did not converge (squares …).")
+    stuck = replace(undecided, converged=False)
     assert n.next_experiment(stuck).startswith("Check units, signs and which end is which")
     told = diagnosis("named", cause(PLAY, gain=20.0), cause(MASS, gain=30.0))
     assert n.next_experiment(told) == EXPERIMENT[MASS]  # what gains most

@@ -75,7 +75,7 @@ def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     [
         ("sufficient", "The nominal model explains these recordings"),
         ("unexplained", "No known effect explains what the model misses"),
-        ("undecided", "These recordings hold too little to decide"),
+        ("undecided", "These recordings lead to no verdict"),
     ],
 )
 def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdict, said):

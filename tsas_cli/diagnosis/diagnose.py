@@ -38,7 +38,6 @@ from tsas_cli.records.diagnosis import INCOMPLETE, RecordingFault, Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Endable, Ended, Steps
 from tsas_cli.support.wording import count_of
 
-NO_MINIMUM = "the fit of the nominal model did not converge"
 FEW_BLOCKS = 6  # fewer are too few for a test
 
 
@@ -50,7 +49,7 @@ class Diagnosis:
     does; `nominal` the one without both, `stand_in_model` that with all effects that gain, proven
     or not, where some are not and no law describes them. `search` has all
     hypotheses, `judged` those fitted with the final weights, among them the nominal model `before`
-    and the `final` one.
+    and the `final` one. `converged` is whether the fit of the nominal model did.
     """
 
     verdict: Verdict
@@ -70,6 +69,7 @@ class Diagnosis:
     stand_in_model: Model | None = None
     law: Law | None = None
     fault: RecordingFault | None = None
+    converged: bool = True
 
     @property
     def unexplained(self) -> bool:
@@ -121,11 +121,14 @@ def diagnose_runs(
     model, cannot_tell = base.model, tuple(base.cannot_tell)
     reason = _not_possible(base)
     if reason is not None:
-        return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
+        converged = base.fitted is None or base.fitted.converged
+        return Diagnosis(
+            "undecided", reason, model, model, cannot_tell=cannot_tell, converged=converged
+        )
     bench = bench_of(base)
     folds = bench_folds(bench)
     if folds.blocks < FEW_BLOCKS:
-        reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
+        reason = f"Only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
     step = Endable(step)
     fits = Fits(bench, folds, step)
@@ -177,7 +180,7 @@ def _ended(fits: Fits, model: Model, cannot_tell: tuple[str, ...]) -> Diagnosis:
     """Return what is known where a person has ended the search."""
     found = fits.so_far()
     fitted = {names for names, _ in found.trials} - {frozenset()}
-    reason = f"the search was ended after {count_of(len(fitted), 'fit')}"
+    reason = f"The search was ended after {count_of(len(fitted), 'fit')}"
     if fits.leads:
         reason += f"; {' + '.join(sorted(fits.leads))} leads, and nothing is tested"
     return Diagnosis("undecided", f"{reason}.", model, model, search=found, cannot_tell=cannot_tell)
@@ -187,11 +190,11 @@ def _not_possible(base: FittedModel) -> str | None:
     """Return the reason why no diagnosis is possible, or None."""
     fitted = base.fitted
     if not base.problem.runs:
-        return "no run lasts beyond its first full slip, before which its history matters."
+        return "No run lasts beyond its first full slip, before which its history matters."
     if fitted is None:
-        return "no parameter of the nominal model is identifiable from these recordings."
+        return "No parameter of the nominal model is identifiable from these recordings."
     if not fitted.converged:
-        return f"{NO_MINIMUM} ({fitted.message})."
+        return f"The fit of the nominal model did not converge ({fitted.message})."
     return None
 
 

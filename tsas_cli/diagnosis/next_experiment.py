@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from tsas_cli.diagnosis.diagnose import NO_MINIMUM, Diagnosis
+from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
 from tsas_cli.diagnosis.proof import BY_NAME
 from tsas_cli.identification.extension import Bench
@@ -39,7 +39,7 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
         )
     if result.verdict == "undecided" and result.search is not None:
         return "Repeat the call and let the search end; fewer runs (--runs) take less time."
-    if result.reason.startswith(NO_MINIMUM):
+    if not result.converged:
         return (
             "Check units, signs and which end is which; state in dataset.toml what is known: "
             "load_stiffness_N_per_mm, preload_N, a second tendon by antagonist_preload_N."

@@ -33,7 +33,7 @@ _NO_CAUSE = {
     "described": "A law of unnamed origin describes what the model misses",
     "stand_in": "No known effect explains what the model misses",
     "unexplained": "No known effect explains what the model misses",
-    "undecided": "These recordings hold too little to decide",
+    "undecided": "These recordings lead to no verdict",
 }
 _FAULT = "A fault of the recordings explains what the model misses"
 
