@@ -131,6 +131,7 @@ def test_a_tendon_that_is_stiffer_than_its_data_sheet_is_a_fault_of_the_manifest
     ratio = float(fault.sentence.partition("the tendon is ")[2].partition(" times")[0])
     assert ratio == pytest.approx(6.895, rel=0.1)
     again = diagnose(folder, despite="tendon-stiffness")
+    assert "does not seek the fault tendon-stiffness" in again.record.cannot_tell[0]
     assert again.verdict == "sufficient"
 
 

@@ -209,6 +209,11 @@ def diagnose(
             residual_map=found.residual_maps_of(result),
             evidence=found.evidence_of(result),
             cannot_tell=(
+                *(
+                    f"The diagnosis does not seek the fault {code} of the recordings (--despite)."
+                    for code in listed(despite)
+                    if code in CODES
+                ),
                 *counted.notes,
                 *unknown_conditions(prepared),
                 *contradictions(data.manifest, result.model, [c.effect for c in result.causes]),
