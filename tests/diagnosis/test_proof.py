@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.proof import failures, may_be_zero, of_one_size, split_in_words
+from tsas_cli.diagnosis.proof import BY_NAME, failures, may_be_zero, of_one_size, split_in_words
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.identification.estimate import Estimate
 
@@ -45,7 +45,16 @@ def test_one_size_that_is_not_neutral_and_a_gain_are_enough():
 def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
     zero = estimate("force_sensor_offset.f_in_offset_N", 0.05, -0.01, 0.11)
     (said,) = of(zero, OFFSETS[1])
-    assert said.startswith("may be zero: f_in_offset_N 0.05 [-0.01, 0.11] N")
+    assert said.startswith("may not be there: f_in_offset_N 0.05 [-0.01, 0.11] N")
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_a_size_of_which_nothing_is_known_is_not_listed(known):
+    parameter = BY_NAME["force_sensor_offset"].parameters[0]
+    ends = (-0.01, 0.11) if known else (parameter.lower, parameter.upper)
+    (said,) = of(estimate("force_sensor_offset.f_in_offset_N", 0.05, *ends))
+    assert ("f_in_offset_N" in said) == known
+    assert ("nothing is known" in said) != known
 
 
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():

@@ -118,8 +118,9 @@ def failures(
         if _reaches_a_limit(e, parameters[name])
     ]
     if zero:
-        values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
-        out.append(f"may be zero: {', '.join(values)}")
+        known = {n: e for n, e in sizes.items() if not _is_unknown(e, parameters[n])}
+        values = [f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in known.items()]
+        out.append(f"may not be there: {', '.join(values) or 'nothing is known of its size'}")
     out += [
         f"has a period of {e.value:.3g} mm, longer than the strokes of {stroke_mm:.3g} mm"
         for name, e in own.items()
@@ -235,6 +236,12 @@ def _reaches_a_limit(e: Estimate, parameter: Parameter) -> bool:
     ends = (e.interval_low, parameter.lower), (e.interval_high, parameter.upper)
     touches = any(end is not None and math.isclose(end, limit) for end, limit in ends)
     return touches and not e.at_bound and not e.holds(parameter.neutral)
+
+
+def _is_unknown(e: Estimate, parameter: Parameter) -> bool:
+    """Return whether all that is plausible is in the interval, as of an unrecorded channel."""
+    ends = (e.interval_low, parameter.lower), (e.interval_high, parameter.upper)
+    return all(end is not None and math.isclose(end, limit) for end, limit in ends)
 
 
 def _is_near_neutral(value: float, parameter: Parameter) -> bool:
