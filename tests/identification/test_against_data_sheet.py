@@ -167,6 +167,17 @@ def test_what_the_recordings_do_not_tell_is_no_contradiction():
     assert contradictions(sheet(), given) == []
 
 
+@pytest.mark.parametrize(("stated", "said"), [(1e-6, 0), (1e-2, 1)])
+def test_a_load_softer_than_a_fit_can_end_at_is_no_contradiction(stated, said):
+    """A drive alone is a tendon on a spring of nothing."""
+    soft = sheet()
+    soft = soft.model_copy(
+        update={"rig": soft.rig.model_copy(update={"load_stiffness_N_per_mm": stated})}
+    )
+    found = contradictions(soft, fitted(load_stiffness_N_per_mm=1e-4 / 1.579))
+    assert len(found) == said
+
+
 def test_a_soft_tendon_has_sheath_and_data_sheet_as_rivals():
     (said,) = contradictions(sheet(), fitted(tendon_stiffness_N=0.5), ["sheath_compression"])
     assert "(3.39e+04 for 6.79e+04 N) is 0.5 times that of the data sheet: sheath_comp" in said

@@ -13,6 +13,7 @@ import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.records.base import TWO_SIDED
 from tsas_cli.support.wording import listed
@@ -122,8 +123,9 @@ def contradictions(manifest: Manifest, model: Model, named: Collection[str] = ()
 def _deviations(stated: Model, model: Model) -> Iterator[_Deviation]:
     """Yield what was estimated and is stated; of what each run has its own of, the mean."""
     for name in STATED_SD:
+        plausible = QUANTITIES[name].lower, QUANTITIES[name].upper  # where a fit ends
         pairs = [
-            (e, known)
+            (e, float(np.clip(known, *plausible)))
             for e in model.estimates
             if e.name == name and (known := stated.value(name, e.run)) and _estimated(e, model)
         ]

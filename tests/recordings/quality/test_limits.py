@@ -157,6 +157,14 @@ def test_a_tension_is_negative_beyond_what_a_slack_tendon_reads(low, high, noise
         assert "negative in 25 % of the samples" in told[0].sentence
 
 
+@pytest.mark.parametrize(("rig", "found"), [({}, 1), ({"antagonist_preload_N": 20.0}, 0)])
+def test_a_difference_of_two_tendons_may_be_negative(rig, found):
+    time_s = np.arange(N) / 100.0
+    values = {"time_s": time_s, "x_in_mm": time_s, "f_in_N": 2.0 + 7.0 * np.sin(time_s)}
+    told = motion.negative_tension(trial(values, rig))
+    assert sum(isinstance(one, Finding) for one in told) == found
+
+
 X = np.interp(np.arange(N), [0, 100, 200, 300, 399], [0.0, 10.0, 0.0, 10.0, 0.0])
 WAY = np.sign(np.gradient(X))
 

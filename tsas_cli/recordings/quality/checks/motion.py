@@ -56,7 +56,11 @@ def negative_tension(trial: RunSignals) -> Findings:
 
     A tendon cannot push. Most often the sensor was zeroed under preload, so that the column holds
     the change of the tension; or it reads the difference of two tendons; or its zero has drifted.
+    With a second tendon the load's force, and what the drive feels, may push.
     """
+    if trial.rig.antagonist_preload_N is not None:
+        yield NotChecked("the rig has a second tendon, so that a force may be negative")
+        return
     for name in trial.mechanical:
         if not name.startswith("f_"):
             continue
