@@ -331,3 +331,10 @@ def test_every_result_is_known_by_itself_and_prints_its_tables():
     for kind in kinds:
         assert (kind.__eq__, kind.__hash__) == (object.__eq__, object.__hash__)
         assert kind.__repr__ is Result.__repr__
+
+
+def test_a_table_of_parameters_is_of_the_runs_that_were_taken():
+    """The model has the data sheet's values for the others too."""
+    result = tsas.calibrate("datasets/paper-groups", runs=["a", "d"])
+    (rows,) = [rows for title, _, rows in result.tables() if title.startswith("parameters")]
+    assert {run for _, run, *_ in rows} == {"all", "a", "d"}

@@ -67,14 +67,15 @@ class CalibrationResult(Result):
         if transfer:
             about = "tension passed on in full slip, f_in = ratio f_out + intercept"
             yield about, ("runs", "name", "value [95 %]", "unit"), transfer
+        taken = [p for p in self.record.parameters if p.run in (None, *self.record.channels)]
         of_runs: dict[str, list[float | None]] = {}
-        for p in self.record.parameters:
+        for p in taken:
             of_runs.setdefault(p.name, []).append(p.value)
         parameters = dict.fromkeys(  # of many runs one row: the file holds each
             (p.name, p.run or "all", p.text(), p.unit)
             if len(of := of_runs[p.name]) <= FEW
             else (p.name, f"{len(of)} runs", span_text(of), p.unit)
-            for p in self.record.parameters
+            for p in taken
         )
         yield (
             self.titled("parameters", records.MODEL_FILE),
