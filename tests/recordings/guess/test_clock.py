@@ -70,3 +70,12 @@ def test_a_number_of_the_stroke_is_no_clock(path):
     columns[0] = np.arange(columns[0].size) // 100
     write_csv(path, [("", values) for values in columns])
     assert propose([path]).channels[0].entry == {"rate_Hz": "?"}
+
+
+@pytest.mark.parametrize("name", ["tout", "Tout", "T out"])
+def test_a_tension_by_its_name_that_rises_evenly_is_a_clock(path, name):
+    columns = [(n, v) for n, v in run().items() if n in ("x_in_mm", "f_in_N")]
+    write_csv(path, [(name, run()["time_s"]), *columns])
+    proposal = propose([path])
+    assert proposal.channels[0].entry["source"] == name
+    assert "f_out_N" not in {c.name for c in proposal.channels}

@@ -35,7 +35,7 @@ def clock(columns: Sequence[FileColumn]) -> Proposed:
         return _with_unit(named[0], columns, named=True)
     if named:
         return _which(named, "several columns are named as a time")
-    even = [c for c in even if c.words.quantity is None and c.words.end is None]
+    even = [c for c in even if (c.words.quantity or c.words.end) is None or _is_t(c)]
     if len(even) == 1:
         return _with_unit(even[0], columns, named=False)
     if even:
@@ -72,6 +72,11 @@ def like_a_clock(column: FileColumn) -> bool:
     if 0 < repeats(values) <= _MOST_REPEATS * values.size:
         values = np.unique(values)
     return may_be and increases(values) and is_even(values)
+
+
+def _is_t(column: FileColumn) -> bool:
+    """Return whether a tension by its name may be a time, such as Simulink's `tout`."""
+    return column.words.matched.get("quantity") == "t"
 
 
 def _which(found: Sequence[FileColumn], why: str) -> Proposed:
