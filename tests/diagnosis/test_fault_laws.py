@@ -263,6 +263,13 @@ def test_a_time_constant_is_found_between_those_that_are_tried():
     assert best.amount == pytest.approx(3.2, rel=0.05)
 
 
+def test_a_tension_that_is_the_only_channel_and_fades_may_be_that_of_a_load(monkeypatch):
+    lost = {(k, F): passed(T, values_of(k, F), 3.2) - values_of(k, F) for k in (0, 1)}
+    monkeypatch.setattr("tsas_cli.diagnosis.faults.candidates._common", lambda reads: (F,))
+    found = told(lost)
+    assert found is None or found.found[0].code != "ac-coupled"
+
+
 @pytest.mark.parametrize(("friction", "found"), [(0.055, False), (0.065, True), (-0.065, True)])
 def test_a_friction_of_a_runs_own_is_beyond_three_deviations(friction, found):
     """One is a fiftieth; of two runs, each differs by half of it from their mean."""

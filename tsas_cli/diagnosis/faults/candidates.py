@@ -131,8 +131,11 @@ def _of_size(found: Iterator[Candidate], size: float) -> Iterator[Candidate]:
 
 
 def of_amplifiers(reads: Sequence[ReadRun], left: Beside, constant_s: float) -> Iterator[Candidate]:
-    """Yield a coupling to AC of a tension in all runs, of about the size that it has."""
-    for name in _tensions(reads):
+    """Yield a coupling to AC of a tension in all runs, of about the size that it has.
+
+    A tension that is the only channel and fades may be that of a load that relaxes.
+    """
+    for name in _tensions(reads) if len(_common(reads)) > 1 else ():
         columns = []
         for read in reads:
             values = read.values(name)
