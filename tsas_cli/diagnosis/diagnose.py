@@ -218,8 +218,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     law, whole = None, proven.whole if stand_ins else None
     if not only_noise:
         unproven = None if whole is None else whole.judged.trial(whole.judged.named)
-        of_causes = [estimate for cause in causes for estimate in cause.parameters]
-        law = describe(bench, final, predicted_folds(final, folds), step, unproven, of_causes)
+        law = describe(bench, final, predicted_folds(final, folds), step, unproven)
     if law is not None:  # one number of one name: before the law is after the causes
         law = replace(law, before=proven.held_out[named])
     verdict = verdict_of(

@@ -1,8 +1,7 @@
 """A law of unnamed origin: what describes the residual that no proven cause explains.
 
 The laws (`effects/laws`) act at an end of the tendon, and are fitted together with the nominal
-parameters and the proven effects, which stay within their intervals, each channel's residual over
-its RMS without a law. A law is
+parameters and the proven effects, each channel's residual over its RMS without a law. A law is
 taken where it predicts held-out runs: it lowers the squares significantly, by a good part of what
 exceeds the noise, and makes no run and no channel worse. Nothing of it is a cause.
 """
@@ -89,16 +88,14 @@ def describe(
     folds: Folds,
     step: Steps = NO_PROGRESS,
     unproven: HypothesisFit | None = None,
-    proven: Sequence[Estimate] = (),
 ) -> Law | None:
     """Return the laws that describe the residual of a trial on held-out data, or None.
 
-    The parameters of effects that are `proven` stay within their intervals. `unproven` is the trial
-    with further effects that gain and are not proven: the laws act beside these where that predicts
-    better.
+    `unproven` is the trial with further effects that gain and are not proven: the laws act beside
+    these where that predicts better.
     """
     ranges = ranges_of([run.run for run in bench.closed])
-    bench = replace(in_channel_units(bench, trial, ranges), intervals=_intervals(proven))
+    bench = in_channel_units(bench, trial, ranges)
     found = _found(bench, _without_slopes(trial), folds, ranges, step)
     if found is None:
         return None
@@ -113,7 +110,7 @@ def describe(
     return Law(
         best.names,
         rivals,
-        tuple(_estimates(bench, best.trial, folds, ranges, best.names, proven)),
+        tuple(_estimates(bench, best.trial, folds, ranges, best.names)),
         best.before,
         best.after,
         bench,
@@ -208,16 +205,6 @@ def _at_lower_cost(
     return bench, best
 
 
-def _intervals(proven: Sequence[Estimate]) -> dict[str, tuple[float, float]]:
-    return {
-        e.name: (e.interval_low, e.interval_high)
-        for e in proven
-        if e.interval_low is not None
-        and e.interval_high is not None
-        and e.interval_low < e.interval_high
-    }
-
-
 def _without_slopes(trial: HypothesisFit) -> HypothesisFit:
     """Return a trial as a start for fits with other weights: its values alone."""
     unknown = np.full_like(trial.solution.jacobian, np.nan)
@@ -258,12 +245,8 @@ def _estimates(
     folds: Folds,
     ranges: Mapping[str, Mapping[str, float]],
     taken: Sequence[str],
-    proven: Sequence[Estimate],
 ) -> list[Estimate]:
-    """Return the estimates of all free parameters, and the given ones of the laws.
-
-    One that ends where its interval does keeps that.
-    """
+    """Return the estimates of all free parameters, and the given ones of the laws."""
     counted = folds.blocks_of_runs(len(bench.rigs))
     fitted = with_errors(trial.unknowns, trial.solution, counted, by_run=True)
     given = [
@@ -271,9 +254,4 @@ def _estimates(
         for law in taken
         for name, value in ranges[law].items()
     ]
-    known = {e.name: e for e in proven}
-    estimates = [
-        replace(known[e.name], value=e.value) if e.at_bound and e.name in known else e
-        for e in estimates_of(trial.unknowns, fitted, bench.base.problem.ids)
-    ]
-    return [*estimates, *given]
+    return [*estimates_of(trial.unknowns, fitted, bench.base.problem.ids), *given]

@@ -33,8 +33,7 @@ class Bench:
     `free` are the free parameters of the base fit, with its estimates as initial values, `rigs`
     those of its runs. The residuals of the runs, with the weights and samples of the base fit, are
     `closed` by the solver that each rig needs, `meshed` and `coarse` by the slip chain. `priors`
-    are those of effects' parameters that have one (`Unknown.prior`), `intervals` the ends between
-    which others stay, in their units.
+    are those of effects' parameters that have one (`Unknown.prior`).
     """
 
     base: FittedModel
@@ -45,7 +44,6 @@ class Bench:
     coarse: tuple[RunErrors, ...]
     never_closed: bool
     priors: Mapping[str, float] = field(default_factory=dict)
-    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
         """Return whether a hypothesis needs the slip chain."""
@@ -85,7 +83,7 @@ class Bench:
             value = known.get((name, None))
             if initial is not None and name in initial:
                 value = quantity.scaled(initial[name])
-            freed.append(self._freed(name, value))
+            freed.append(replace(unknown_of(name, value), prior=self.priors.get(name, 0.0)))
         unknowns = (*base, *freed)
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
@@ -109,15 +107,6 @@ class Bench:
             solution = solved(inside, known=solution.jacobian)
         sizes = tuple(run.count for run in errors)
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
-
-    def _freed(self, name: str, value: float | None) -> Unknown:
-        """Return the unknown of an effect's parameter, from a scaled value or its neutral one."""
-        unknown = replace(unknown_of(name, value), prior=self.priors.get(name, 0.0))
-        if name not in self.intervals:
-            return unknown
-        lower, upper = map(QUANTITIES[name].scaled, self.intervals[name])
-        initial = min(max(unknown.initial, lower), upper)
-        return replace(unknown, initial=initial, lower=lower, upper=upper)
 
     def errors_at(self, trial: HypothesisFit, changes: Mapping[str, float]) -> Floats:
         """Return all residuals at a trial's values with some effects' parameters set.
