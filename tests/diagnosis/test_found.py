@@ -194,3 +194,15 @@ def test_errors_of_a_model_that_lacks_something_are_no_slow_noise():
         "unexplained", "", Model(()), Model(()), remainder=left, judged=judged_with(1)
     )
     assert f.remainder_of(wrong).slow_noise == {}
+
+
+@pytest.mark.parametrize(("moved", "said"), [(0.05, 1), (0.11, 0), (None, 0)])
+def test_a_cause_that_a_law_moves_out_of_its_interval_is_said(moved, said):
+    play = Estimate("backlash.play_mm", 0.1, "mm", "fitted", None, 0.01, 0.08, 0.12)
+    cause = FoundCause("backlash", (), (play,), 40.0, (30.0, 50.0))
+    model = Model(() if moved is None else (Estimate(play.name, moved, "mm", "fitted"),))
+    result = Diagnosis("partly", "", model, model, (cause,), law=SimpleNamespace())
+    sentences = list(f.beside_a_law(result))
+    assert len(sentences) == said
+    assert all("is 0.05 in model-extended.toml, and 0.1 [0.08, 0.12]" in s for s in sentences)
+    assert list(f.beside_a_law(Diagnosis("named", "", model, model, (cause,)))) == []

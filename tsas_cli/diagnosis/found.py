@@ -1,5 +1,7 @@
 """Records of a diagnosis for its files (docs/formats.md)."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
@@ -11,7 +13,7 @@ from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
-from tsas_cli.records.base import Evidence, Value
+from tsas_cli.records.base import Evidence, Value, number_text
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
 
@@ -33,6 +35,19 @@ def cause_of(cause: FoundCause) -> records.NamedCause:
         failed=cause.failed,
         law_differs=cause.law_differs,
     )
+
+
+def beside_a_law(result: Diagnosis) -> Iterator[str]:
+    """Yield a sentence for each parameter of a cause that a law has moved out of its interval."""
+    if result.law is None:
+        return
+    for e in (estimate for cause in result.causes for estimate in cause.parameters):
+        moved = result.model.value(e.name)
+        if moved is not None and e.interval_low is not None and not e.holds(moved):
+            yield (
+                f"{e.name} is {number_text(moved)} in {records.EXTENDED_MODEL}, and {e.text()} "
+                f"without the law of unnamed origin, which takes a part of what it does."
+            )
 
 
 def held_out_of(result: Diagnosis) -> dict[str, records.HeldOut]:

@@ -215,6 +215,7 @@ def diagnose(
                     if code in CODES
                 ),
                 *counted.notes,
+                *found.beside_a_law(result),
                 *unknown_conditions(prepared),
                 *contradictions(data.manifest, result.model, [c.effect for c in result.causes]),
                 *result.cannot_tell,
