@@ -213,6 +213,18 @@ def test_harmonics_of_a_stroke_that_repeats_are_no_noise_behind_a_filter(first):
     assert "filtered" not in complaints({"time_s": time, **positions, **forces})
 
 
+@pytest.mark.parametrize("rows", [0, 200])
+def test_a_corner_of_the_force_where_the_drive_reverses_is_no_burst(rows):
+    """A stretch and its return, whose force jumps in a few rows; the same later is a burst."""
+    time = np.arange(1600) / 50.0
+    x = np.interp(time, [0.0, 16.0, 32.0], [0.0, 40.0, 0.0])
+    noise = 0.002 * np.random.default_rng(5).standard_normal(time.size)
+    f_in = 0.05 * x + noise
+    f_in[780 + rows : 812 + rows] += 0.05 * np.tile([1.0, -1.0], 16)
+    found = complaints({"time_s": time, "x_in_mm": x, "f_in_N": f_in})
+    assert ("bursts" in found) == (rows > 0)
+
+
 def test_a_stroke_that_hardly_leaves_the_dead_band_is_not_clipped():
     """The tension rises no further once the whole tendon slips against a soft load."""
     time = np.arange(1200) / 100.0

@@ -92,8 +92,9 @@ def bursts(trial: RunSignals) -> Findings:
     """The noise of a channel rises manifold for short times.
 
     A radio, a welder, a motor's brake or a loose plug. Reported where a few short stretches have
-    four times the noise of the rest of the run. Not reported: noise that grows with the speed or
-    lasts as long as the motion. A tendon that is shaken, or sticks and slips, has such bursts too.
+    four times the noise of the rest of the run. Not reported: a corner where the drive reverses,
+    noise that grows with the speed or lasts as long as the motion. A tendon that is shaken, or
+    sticks and slips, has such bursts too.
     """
     if float(trial.repeats.mean()) > _REPEATS:
         yield NotChecked("rows repeat")
@@ -106,8 +107,12 @@ def bursts(trial: RunSignals) -> Findings:
         level = np.median(np.abs(third), axis=1)
         alternates = np.mean(third[:, 1:] * third[:, :-1] < 0.0, axis=1) > 0.5  # noise, no motion
         loud = alternates & (level > _TIMES * np.median(level))
+        turns = np.array([stroke.stop for stroke in trial.strokes], int) // _BLOCK
+        beside = np.abs(np.arange(loud.size)[:, None] - turns).min(axis=1, initial=loud.size) <= 1
         edges = np.flatnonzero(np.diff(loud.astype(int), prepend=0, append=0))
-        bursts = [(a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW]
+        bursts = [
+            (a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW and not beside[a:b].all()
+        ]
         if bursts and float(loud.mean()) < _MOST:
             start = _BLOCK * int(bursts[0][0])
             more = float(np.median(level[loud]) / np.median(level))
