@@ -1,7 +1,8 @@
-"""Errors of little weight in a mean square: at reversals, at a few moments, at one frequency.
+"""Errors that neither the mean square nor a regression on the signals shows.
 
 An error with the shape of a misplaced reversal has no weight in a fit, so its mean over the strokes
-is tested by itself; so are errors at a few moments of a run.
+is tested by itself; so are errors at a few moments of a run, at one frequency, and waves over a
+displacement.
 """
 
 import math
@@ -25,10 +26,10 @@ BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run 
 ABOVE_NOISE = 0.15  # of its square: the mean square of such a run is larger by that
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
-RIPPLE, SHARP, ASIDE = 0.1, 3.0, 1.3  # the same, of a wave over a displacement; times what waves
-# have whose period differs by that factor
-CYCLES = 5.0, 60.0, 0.2  # of a wave within the longest stroke: from, to, step
-MOST = 1000  # errors of a run that are taken
+RIPPLE = 0.1  # share of a channel's squares in a wave over a displacement that is none of noise,
+SHARP, ASIDE = 3.0, 1.3  # so many times that of any wave whose period differs by that factor
+CYCLES = 5.0, 60.0, 0.2  # of such a wave within the longest stroke: from, to, step
+MOST = 1000  # errors of a run that are taken for it
 SAME = 0.1  # relative difference of frequencies that are the same
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
 

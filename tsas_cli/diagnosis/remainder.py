@@ -46,7 +46,7 @@ class Remainder:
     all of the excess where that is too large for noise; `depends_on` the
     signals that explain most of it; `slow` what of a channel repeats with no signal; `late` the
     channels in which each stroke lags behind the model; `brief` those that deviate at a few moments
-    of a run; `oscillates` a phrase on a dominant frequency, if any.
+    of a run; `oscillates` a phrase on a dominant frequency or period of displacement, if any.
     """
 
     mean_square: float

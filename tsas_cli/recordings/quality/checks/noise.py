@@ -108,7 +108,7 @@ def bursts(trial: RunSignals) -> Findings:
         alternates = np.mean(third[:, 1:] * third[:, :-1] < 0.0, axis=1) > 0.5  # noise, no motion
         loud = alternates & (level > _TIMES * np.median(level))
         turns = np.array([stroke.stop for stroke in trial.strokes], int) // _BLOCK
-        beside = np.abs(np.arange(loud.size)[:, None] - turns).min(axis=1, initial=loud.size) <= 1
+        beside = np.isin(np.arange(loud.size), np.concatenate((turns - 1, turns, turns + 1)))
         edges = np.flatnonzero(np.diff(loud.astype(int), prepend=0, append=0))
         bursts = [
             (a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW and not beside[a:b].all()
