@@ -27,9 +27,10 @@ def clock(columns: Sequence[FileColumn]) -> Proposed:
     if len(named) > 1:
         named = [c for c in named if c.kind == "time" and increases(c.values)] or named
     even = [c for c in columns if like_a_clock(c)]
-    if len(named) == 1 and not increases(named[0].values) and even:
+    others = [c for c in even if c not in named]
+    if len(named) == 1 and not increases(named[0].values) and others:
         return _which(
-            [*named, *even], "the column named as a time does not increase, another one does"
+            [*named, *others], "the column named as a time does not increase, another one does"
         )
     if len(named) == 1:
         return _with_unit(named[0], columns, named=True)
