@@ -21,6 +21,9 @@ from tsas_cli.support.wording import listed
 
 Numbers = tuple[float, ...]
 
+NOTHING = 0.01  # of the larger curve of a law: a smaller one is not drawn
+WIDEST_BAND = 1.5  # spans of a curve to either side, that are drawn of its band
+
 
 def parts(causes: Iterable[NamedCause], inputs: Inputs, said: str = "") -> Iterator[Section]:
     """Yield one part for each named cause or stand-in, without failures that are `said` above."""
@@ -82,7 +85,7 @@ def law_parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
                     key=law.law,
                     alt=law.sentence,
                     caption="After a reversal, at the mean tension; and along the stroke. "
-                    "Bands: 95 % intervals.",
+                    "Bands: 95 % intervals, cut at the frame.",
                 ),
             ),
             closing=(
@@ -101,17 +104,26 @@ def law_parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
 
 
 def _draw_law(figure: Any, law: DescribedLaw) -> None:
-    left, right = figure.subplots(1, 2)
-    _with_band(left, law.travel_mm, law.after_reversal, law.after_reversal_margin)
-    left.set(xlabel="travel since reversal [mm]", ylabel=law.what)
-    left.set_xlim(0.0, max(law.travel_mm))
-    _with_band(right, law.place_mm, law.along_stroke, law.along_stroke_margin, marker="o")
-    right.set_xlabel("displacement [mm]")
+    """Draw what a law does after a reversal and along the stroke, without what does nothing."""
+    reversal = law.travel_mm, law.after_reversal, law.after_reversal_margin
+    stroke = law.place_mm, law.along_stroke, law.along_stroke_margin
+    curves = [("travel since reversal [mm]", "", reversal), ("displacement [mm]", "o", stroke)]
+    spans = [float(np.ptp(curve[1])) if curve[1] else 0.0 for _, _, curve in curves]
+    shown = [c for c, span in zip(curves, spans, strict=True) if span > NOTHING * max(spans)]
+    for axes in figure.subplots(1, 2):
+        axes.set_visible(bool(shown))
+        if shown:
+            label, marker, curve = shown.pop(0)
+            axes.set(xlabel=label, ylabel=law.what)
+            _with_band(axes, *curve, marker)
 
 
-def _with_band(axes: Any, x: Numbers, y: Numbers, margin: Numbers, marker: str = "") -> None:
-    """Draw a curve with its 95 % interval; older files have none."""
+def _with_band(axes: Any, x: Numbers, y: Numbers, margin: Numbers, marker: str) -> None:
+    """Draw a curve with its 95 % interval, cut where it would hide the curve; older files: none."""
     axes.plot(x, y, color=STAND_IN["after"], marker=marker, markersize=3.0)
+    axes.set_xlim(min(x), max(x))
     if margin:
         low, high = np.subtract(y, margin), np.add(y, margin)
         axes.fill_between(x, low, high, color=STAND_IN["after"], alpha=0.2, linewidth=0.0)
+        around = WIDEST_BAND * np.ptp(y)
+        axes.set_ylim(max(min(low), min(y) - around), min(max(high), max(y) + around))
