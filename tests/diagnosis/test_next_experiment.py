@@ -47,6 +47,14 @@ def test_what_is_left_asks_for_the_run_that_shows_the_signal_it_depends_on(verdi
     assert n.next_experiment(diagnosis(verdict, *causes, depends_on=("time_s",))) == n.REPEAT
 
 
+@pytest.mark.parametrize(("preload_N", "first"), [(25.0, "at another preload"), (None, "at half")])
+def test_another_preload_is_asked_for_where_there_is_one(preload_N, first):
+    run = SimpleNamespace(run=SimpleNamespace(run=SimpleNamespace(preload_N=preload_N)))
+    judged = SimpleNamespace(bench=SimpleNamespace(closed=(run,)))
+    left = diagnosis("unexplained", depends_on=("f_in_N", "speed_mm_per_s"), judged=judged)
+    assert n.next_experiment(left).startswith(f"Repeat one run {first}")
+
+
 @pytest.mark.parametrize("run", [None, CANDIDATES[1]])
 def test_rivals_are_named_with_the_experiment_that_distinguishes_them(monkeypatch, run):
     asked = []

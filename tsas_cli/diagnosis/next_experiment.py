@@ -57,11 +57,18 @@ def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
         return f"To distinguish {this} from {listed(others, ' or ')}: {how[0].lower()}{how[1:]}"
     if result.unexplained:
         signals = () if result.remainder is None else result.remainder.depends_on
-        return next((OF_REMAINDER[s] for s in signals if s in OF_REMAINDER), REPEAT)
+        asked = [s for s in signals if s in OF_REMAINDER and (s != "f_in_N" or _preloaded(result))]
+        return OF_REMAINDER[asked[0]] if asked else REPEAT
     if result.causes:
         first = max(result.causes, key=lambda cause: cause.gain_percent)
         return BY_NAME[first.effect].experiment
     return "No effect is missing here; runs at other loads, speeds and bends would test more."
+
+
+def _preloaded(result: Diagnosis) -> bool:
+    """Return whether a run states a preload, so that there may be another."""
+    bench = None if result.judged is None else result.judged.bench
+    return bench is None or any(run.run.run.preload_N is not None for run in bench.closed)
 
 
 def _experiment(bench: Bench, final: HypothesisFit, among: Sequence[str], step: Steps) -> str:
