@@ -82,6 +82,15 @@ def test_a_row_of_units_a_decimal_comma_a_preamble_and_an_old_encoding(tmp_path)
     assert proposal.questions == {}
 
 
+def test_chinese_names_in_the_encoding_of_windows_are_understood(path):
+    write_lab(path, "chinese")
+    path.write_bytes(path.read_text(encoding="utf-8").encode("gbk"))
+    proposal = propose([path])
+    assert proposal.read["encoding"][0] == "gb18030"
+    assert proposal.questions == {}
+    assert {c.name for c in proposal.channels} == set(CHANNELS)
+
+
 @pytest.mark.parametrize(
     ("channels", "names", "asked"),
     [

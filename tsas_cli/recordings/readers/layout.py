@@ -92,16 +92,22 @@ def detect(path: Path, options: ReadOptions) -> Layout:
 
 
 def encoding_of(path: Path) -> str:
-    """Return UTF-16, UTF-8, or where the head is neither, that of Windows in Western Europe."""
+    """Return UTF-16, UTF-8, or where the head is neither, that of Windows in Western Europe.
+
+    Where all that is not ASCII are Chinese characters of two bytes, it is that of Windows there: a
+    letter with an accent is one byte, and seldom stands beside another one.
+    """
     with path.open("rb") as stream:
         head = stream.read(1 << 20)
     if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "utf-16"
-    try:
-        getincrementaldecoder("utf-8")().decode(head)
-    except UnicodeError:
-        return "cp1252"
-    return "utf-8-sig"
+    for encoding, known_by in (("utf-8-sig", "utf-8"), ("gb18030", "gb2312")):
+        try:
+            getincrementaldecoder(known_by)().decode(head)
+        except UnicodeError:
+            continue
+        return encoding
+    return "cp1252"
 
 
 def fields(text: str, delimiter: str) -> list[str]:
