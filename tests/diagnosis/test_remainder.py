@@ -61,6 +61,11 @@ def bench_of(*runs):
     )
 
 
+def phrase(of, *runs):
+    """Return what a function says of the errors of some runs."""
+    return of(runs, [run.errors(None) for run in runs])
+
+
 def left_of(*errors, made=Run):
     """Return what is left where a residual is the error of one sample."""
     bench = bench_of(*map(made, errors))
@@ -229,7 +234,7 @@ NOISE = np.random.default_rng(1).standard_normal((8, ROWS))
 def test_half_of_the_runs_have_to_swing_and_two_at_the_least(runs, of, said):
     made = [one_stroke({"f_in_N": swing(5.0, 3.0) + NOISE[k]}) for k in range(runs)]
     made += [one_stroke({"f_in_N": NOISE[4 + k % 4]}) for k in range(of - runs)]
-    assert (oscillation(bench_of(*made), None) is not None) == said
+    assert (phrase(oscillation, *made) is not None) == said
 
 
 def test_the_frequency_is_the_median_and_the_channels_are_named():
@@ -239,7 +244,7 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
         one_stroke({"f_in_N": NOISE[0]}),
     ]
     # 400 samples of 20 ms: a bin is 1/7.98 Hz wide.
-    assert oscillation(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
+    assert phrase(oscillation, *made) == "time_s (f_in_N and x_out_mm oscillate at 5.01 Hz)"
 
 
 @pytest.mark.parametrize(("strokes", "said"), [((1, 1), True), ((8, 9), False), ((9, 9), True)])
@@ -251,12 +256,12 @@ def test_a_frequency_that_goes_with_the_strokes_of_each_run_is_none_of_the_rig(s
         edges = np.linspace(0, ROWS - 1, count + 1).astype(int)
         errors = {"f_in_N": np.sin(periods * turn) + 0.1 * noise}
         made.append(Run(errors, SHORT_S, np.arange(float(ROWS)), edges))
-    assert (oscillation(bench_of(*made), None) is not None) == said
+    assert (phrase(oscillation, *made) is not None) == said
 
 
 def test_runs_that_swing_at_frequencies_far_apart_have_none_in_common():
     made = [one_stroke({"f_in_N": swing(f, 3.0) + NOISE[0]}) for f in (3.0, 5.0, 9.0)]
-    assert oscillation(bench_of(*made), None) is None
+    assert phrase(oscillation, *made) is None
 
 
 @pytest.mark.parametrize(("cycles", "said"), [(1, False), (2, True)])
@@ -264,7 +269,7 @@ def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
     """The drive makes one stroke, half a cycle: 2.5 of that is more than one cycle."""
     turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
     swing = np.cos(cycles * turn) + 0.1 * NOISE[0]
-    assert (oscillation(bench_of(*[one_stroke({"f_in_N": swing})] * 2), None) is not None) == said
+    assert (phrase(oscillation, *[one_stroke({"f_in_N": swing})] * 2) is not None) == said
 
 
 @pytest.mark.parametrize(
@@ -283,7 +288,7 @@ def test_an_error_that_repeats_with_a_displacement_is_said(period_mm, size, said
         noise = np.random.default_rng(phase).standard_normal(SIZE)
         wave = size * np.sin(2.0 * np.pi * X / period_mm + phase)
         made.append(Run({"x_out_mm": noise + wave, "f_in_N": noise}))
-    assert ripple(bench_of(*made), None) == said
+    assert phrase(ripple, *made) == said
 
 
 def test_slow_noise_does_not_repeat_with_a_displacement():
@@ -293,7 +298,7 @@ def test_slow_noise_does_not_repeat_with_a_displacement():
         fresh = np.random.default_rng(seed).standard_normal((2, SIZE))
         slow = lfilter([math.sqrt(1.0 - 0.95**2)], [1.0, -0.95], fresh[1])
         made.append(Run({"x_out_mm": fresh[0] + 1.4 * slow}))
-    assert ripple(bench_of(*made), None) is None
+    assert phrase(ripple, *made) is None
 
 
 def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_none():

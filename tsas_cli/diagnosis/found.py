@@ -46,7 +46,7 @@ def beside_a_law(result: Diagnosis) -> Iterator[str]:
         if moved is not None and e.interval_low is not None and not e.holds(moved):
             yield (
                 f"{e.name} is {number_text(moved)} in {records.EXTENDED_MODEL}, and {e.text()} "
-                f"without the law of unnamed origin, which takes a part of what it does."
+                "without the law of unnamed origin, which takes a part of what it does."
             )
 
 

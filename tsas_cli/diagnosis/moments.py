@@ -6,16 +6,17 @@ displacement.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from tsas_cli.identification.extension import Bench
-from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats, Indices
 from tsas_cli.support.wording import listed
+
+Errors = Mapping[str, Floats]  # of one run, by channel
 
 FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
@@ -71,18 +72,19 @@ def _is_late(delays: Floats) -> bool:
     return abs(float(delays.mean())) > max(LATE, LATE_CRITICAL * scatter)
 
 
-def oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
+def oscillation(runs: Sequence[RunErrors], errors: Sequence[Errors]) -> str | None:
     """Return a phrase on a dominant frequency of the residuals of half of the runs, or None.
 
-    It is the same in all of them; one that is a multiple of each run's strokes is the motion's.
+    `errors` are the weighted residuals of each run. The frequency is the same in all of them; one
+    that is a multiple of each run's strokes is the motion's.
     """
     found, multiples = [], []
-    for k, run in enumerate(bench.errors_for(trial)):
+    for run, of_run in zip(runs, errors, strict=True):
         strokes = run.run.conditioned[run.run.drive_column].reversals.size - 1
-        for name, errors in run.errors(bench.rig(trial, k)).items():
+        for name, own in of_run.items():
             time_s = run.run.time_s[run.samples[name]]
-            even = np.linspace(time_s[0], time_s[-1], errors.size)
-            power = np.abs(np.fft.rfft(np.interp(even, time_s, errors - errors.mean()))) ** 2
+            even = np.linspace(time_s[0], time_s[-1], own.size)
+            power = np.abs(np.fft.rfft(np.interp(even, time_s, own - own.mean()))) ** 2
             peak = int(np.argmax(power))
             band = power[max(peak - 1, 0) : peak + 2].sum() / power.sum()
             if band > PEAK and peak > OWN * 0.5 * strokes:
@@ -95,23 +97,22 @@ def oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
         return None
     frequency = float(np.median(frequencies))
     alike = [name for name, f in found if abs(f - frequency) <= SAME * frequency]
-    if len(alike) < max(2, len(bench.rigs) // 2):
+    if len(alike) < max(2, len(runs) // 2):
         return None
     names = sorted(set(alike))
     verb = "oscillates" if len(names) == 1 else "oscillate"
     return f"time_s ({listed(names)} {verb} at {frequency:.3g} Hz)"
 
 
-def ripple(bench: Bench, trial: HypothesisFit) -> str | None:
+def ripple(runs: Sequence[RunErrors], errors: Sequence[Errors]) -> str | None:
     """Return a phrase on a period of displacement with which a residual repeats, or None.
 
-    Such periods are shorter than what hat functions follow: the divisions of an encoder, the teeth
-    of a gear. The phase of each run is its own.
+    `errors` are the weighted residuals of each run. Such periods are shorter than what hat
+    functions follow: the divisions of an encoder, the teeth of a gear. The phase of each run is its
+    own.
     """
-    runs = bench.errors_for(trial)
-    errors = [run.errors(bench.rig(trial, k)) for k, run in enumerate(runs)]
     best, phrase = RIPPLE, None
-    for name in bench.channels:
+    for name in sorted({name for of_run in errors for name in of_run}):
         parts = [
             (run, of_run[name]) for run, of_run in zip(runs, errors, strict=True) if name in of_run
         ]

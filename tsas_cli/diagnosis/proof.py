@@ -233,15 +233,19 @@ def _unit(unit: str) -> str:
 
 def _reaches_a_limit(e: Estimate, parameter: Parameter) -> bool:
     """Return whether an interval without the neutral value ends at a limit, and the value not."""
-    ends = (e.interval_low, parameter.lower), (e.interval_high, parameter.upper)
-    touches = any(end is not None and math.isclose(end, limit) for end, limit in ends)
+    touches = any(_ends_at_limits(e, parameter))
     return touches and not e.at_bound and not e.holds(parameter.neutral)
 
 
 def _is_unknown(e: Estimate, parameter: Parameter) -> bool:
     """Return whether all that is plausible is in the interval, as of an unrecorded channel."""
+    return all(_ends_at_limits(e, parameter))
+
+
+def _ends_at_limits(e: Estimate, parameter: Parameter) -> list[bool]:
+    """Return whether the lower and the upper end of an interval are limits of what is plausible."""
     ends = (e.interval_low, parameter.lower), (e.interval_high, parameter.upper)
-    return all(end is not None and math.isclose(end, limit) for end, limit in ends)
+    return [end is not None and math.isclose(end, limit) for end, limit in ends]
 
 
 def _is_near_neutral(value: float, parameter: Parameter) -> bool:

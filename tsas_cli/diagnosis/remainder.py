@@ -111,8 +111,9 @@ def remainder(
     of the residuals by one standard deviation of tolerances, shape (n, m).
     """
     fitted = [bench.rig(trial, k) for k in range(len(bench.rigs))]
-    runs = [e.errors(rig) for e, rig in zip(bench.errors_for(trial), fitted, strict=True)]
-    errors = {n: [run[n] for run in runs if n in run] for n in bench.channels}
+    runs = bench.errors_for(trial)
+    by_run = [run.errors(rig) for run, rig in zip(runs, fitted, strict=True)]
+    errors = {n: [of_run[n] for of_run in by_run if n in of_run] for n in bench.channels}
     residual = without_tolerances(trial, tolerated, folds.run)
     by_channel = _by_channel(trial, folds, at_residuals, residual, errors)
     count = sum(part.samples for part in by_channel.values())
@@ -121,8 +122,8 @@ def remainder(
         for signal, squares in part.by_signal.items():
             alone[signal] += squares / float(residual @ residual)
     found = [s for s, part in sorted(alone.items(), key=lambda a: -a[1]) if part > DEPENDS]
-    oscillates = oscillation(bench, trial) or ripple(bench, trial)
-    late, brief = at_moments(bench, bench.errors_for(trial), fitted)
+    oscillates = oscillation(runs, by_run) or ripple(runs, by_run)
+    late, brief = at_moments(bench, runs, fitted)
     if late or brief:  # what tolerances do at reversals has no weight in the fit
         rigs = rigs_with_tolerances(bench, trial, tolerated, folds.run)
         late, brief = at_moments(bench, bench.meshed, rigs)

@@ -99,6 +99,8 @@ def bursts(trial: RunSignals) -> Findings:
     if float(trial.repeats.mean()) > _REPEATS:
         yield NotChecked("rows repeat")
         return
+    turns = np.array([stroke.stop for stroke in trial.strokes], int) // _BLOCK
+    corners = np.concatenate((turns - 1, turns, turns + 1))
     for name, values in trial.noisy.items():
         third = np.diff(values, 3)
         third = third[: third.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
@@ -107,8 +109,7 @@ def bursts(trial: RunSignals) -> Findings:
         level = np.median(np.abs(third), axis=1)
         alternates = np.mean(third[:, 1:] * third[:, :-1] < 0.0, axis=1) > 0.5  # noise, no motion
         loud = alternates & (level > _TIMES * np.median(level))
-        turns = np.array([stroke.stop for stroke in trial.strokes], int) // _BLOCK
-        beside = np.isin(np.arange(loud.size), np.concatenate((turns - 1, turns, turns + 1)))
+        beside = np.isin(np.arange(loud.size), corners)
         edges = np.flatnonzero(np.diff(loud.astype(int), prepend=0, append=0))
         bursts = [
             (a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW and not beside[a:b].all()
