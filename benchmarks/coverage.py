@@ -8,6 +8,7 @@ the model lacks them, says so, and widens its intervals by what a missing effect
 import os
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import cache, partial
 from multiprocessing import get_context
 
@@ -18,7 +19,7 @@ from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
-from tsas_studies.challenge.rig.make_datasets import FREE_TENDON, GROUPS, SENSORS
+from tsas_studies.challenge.rig.make_datasets import GROUPS, RIG, SENSORS
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
 from tsas_studies.challenge.rig.sensors import measure as measured
@@ -26,6 +27,10 @@ from tsas_studies.challenge.rig.tendon import CleanRun, Rig, simulate
 
 SEEDS = int(os.environ.get("TSAS_COVERAGE_SEEDS", "200"))
 FIRST_SEED = 50_000  # apart from the shipped data's and the tests' seeds
+FREE_TENDON = {
+    "proximal_length_mm": RIG.proximal_length_mm,
+    "distal_length_mm": RIG.distal_length_mm,
+}
 TRUTH = {
     "friction_coefficient": 0.125,
     "load_stiffness_N_per_mm": 1.579,
@@ -38,7 +43,7 @@ TRUTH = {
 def rig(group: str) -> Rig:
     """Return the rig of one group of Table 2 (Yang 2025)."""
     _, radius, bend = GROUPS[group]
-    return Rig(total_bend_rad=bend, sheath_length_mm=radius * bend, **FREE_TENDON)
+    return replace(RIG, total_bend_rad=bend, sheath_length_mm=radius * bend)
 
 
 @cache

@@ -21,7 +21,7 @@ def part(blocks=BLOCKS, each=EACH):
 
 
 def test_what_is_everywhere_has_to_take_the_telling_part_of_the_squares():
-    """Many blocks: squares s² d² n beside n of noise; their part is TELLING."""
+    """Many blocks: squares s² d² n beside n of noise; their part is LEAST_REDUCTION."""
     found = part(blocks=400).smallest(np.full(400 * EACH, 0.5))
     assert found == pytest.approx(
         math.sqrt(LEAST_REDUCTION / (1.0 - LEAST_REDUCTION)) / 0.5, rel=1e-6

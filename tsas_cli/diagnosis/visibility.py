@@ -1,10 +1,11 @@
 """Smallest size at which an effect would be detected and distinguished: linearised, in advance.
 
 The free parameters are projected out of a signature. The remainder, times the size, has to pass the
-criteria of a diagnosis (`evidence`): a reduction of the squares, with noise, by the share TELLING,
-and the critical value SURE of the test statistic over the blocks. With E_b the squares of the
-signature of size 1 in block b, which has n_b residuals of noise, the expected relative reduction by
-a size s is log(1 + s² E_b / n_b) there, with a scatter of 2 s √E_b / (n_b + s² E_b) by noise.
+criteria of a diagnosis (`evidence`): a reduction of the squares, with noise, by the share
+LEAST_REDUCTION, and the critical value of the test statistic over the blocks. With E_b the squares
+of the signature of size 1 in block b, which has n_b residuals of noise, the expected relative
+reduction by a size s is log(1 + s² E_b / n_b) there, with a scatter of 2 s √E_b / (n_b + s² E_b)
+by noise.
 """
 
 import math
