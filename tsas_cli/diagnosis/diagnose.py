@@ -142,23 +142,36 @@ def diagnose_runs(
         found = _concluded(proven_effects(find_effects(fits), step), base, step)
     except Ended:
         return _ended(fits, model, cannot_tell)
-    if fault is not None and found.verdict == "sufficient":
-        return _of_a_fault(fault, base)  # by a friction of its own, which a tolerance takes
-    if fault is not None and found.unexplained:
+    if fault is not None:
         by_fault = _of_a_fault(fault, base)
-        named = frozenset(cause.effect for cause in found.causes)
-        of_other_laws = all(cause.law_differs for cause in found.causes)
-        if named and of_other_laws and not leaves_noise(fits, named, fault):
+        if _accounts_for(fault, found, fits):
             return by_fault
-        gaining = {one.effect for one in found.stand_ins}
-        of_a_friction = gaining and fault.found[0].code == OWN_FRICTION
-        explained = of_a_friction and not gaining.isdisjoint(effects_as_good(fits, fault))
-        if not (found.causes or explained):
+        if found.unexplained and not found.causes and not _explained(fault, found, fits):
             found = replace(found, fault=by_fault.fault, reason=f"{found.reason} {by_fault.reason}")
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model
     whole = None if whole is None else with_preload_correction(whole, runs)
     return replace(found, model=extended, nominal=nominal, stand_in_model=whole)
+
+
+def _accounts_for(fault: FoundFault, found: Diagnosis, fits: Fits) -> bool:
+    """Return whether a fault of the recordings comes before what the search has found.
+
+    It does where that is nothing, since a tolerance takes a friction of one run's own, and where
+    all causes are of other laws than the catalogue's and leave more than noise.
+    """
+    if found.verdict == "sufficient":
+        return True
+    named = frozenset(cause.effect for cause in found.causes)
+    of_other_laws = bool(named) and all(cause.law_differs for cause in found.causes)
+    return found.unexplained and of_other_laws and not leaves_noise(fits, named, fault)
+
+
+def _explained(fault: FoundFault, found: Diagnosis, fits: Fits) -> bool:
+    """Return whether the fault is a friction of one run that an effect that gains explains."""
+    gaining = {one.effect for one in found.stand_ins}
+    of_a_friction = bool(gaining) and fault.found[0].code == OWN_FRICTION
+    return of_a_friction and not gaining.isdisjoint(effects_as_good(fits, fault))
 
 
 def _of_a_fault(fault: FoundFault, base: FittedModel) -> Diagnosis:

@@ -65,31 +65,26 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     the others are fitted again, until none fails. What is negligible is no stand-in; nor, where
     nothing is left without it, what may be zero or gains too little.
     """
-    stand_ins: list[FoundCause] = []
-    first: Proven | None = None
-    while True:
-        judged = reweighted_hypotheses(search, step) if search.named else search
-        proven = _judged(search, judged, tuple(stand_ins))
-        first = first or proven
-        failing = [cause for cause in proven.causes if cause.failed]
-        if failing:
-            weakest = min(failing, key=lambda cause: cause.gain_percent)
-            instead = _with_a_rival(search, weakest, tuple(stand_ins), step)
-            if instead is not None:
-                proven, failing = instead, []
-        if not failing:
-            if proven.after.complete:
-                kept = [
-                    cause
-                    for cause in stand_ins
-                    if cause.convincing and not may_be_zero(cause.effect, cause.parameters)
-                ]
-                proven = replace(proven, stand_ins=tuple(kept))
-            return replace(proven, whole=first)
+    stand_ins: tuple[FoundCause, ...] = ()
+    proven = whole = _judged(search, stand_ins, step)
+    while failing := [cause for cause in proven.causes if cause.failed]:
+        weakest = min(failing, key=lambda cause: cause.gain_percent)
+        instead = _with_a_rival(search, weakest, stand_ins, step)
+        if instead is not None:
+            proven = instead
+            break
         if not weakest.negligible:
-            stand_ins.append(weakest)
+            stand_ins = (*stand_ins, weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
         search = replace(search, named=frozenset(rest), rivals=rest)
+        proven = _judged(search, stand_ins, step)
+    if proven.after.complete:
+        stand_ins = tuple(
+            cause
+            for cause in stand_ins
+            if cause.convincing and not may_be_zero(cause.effect, cause.parameters)
+        )
+    return replace(proven, stand_ins=stand_ins, whole=whole)
 
 
 def _with_a_rival(
@@ -103,15 +98,16 @@ def _with_a_rival(
         rivals = {name: r for name, r in search.rivals.items() if name != failing.effect}
         rivals[other] = tuple(name for name in failing.rivals if name != other)
         instead = replace(search, named=frozenset(rivals), rivals=rivals)
-        proven = _judged(instead, reweighted_hypotheses(instead, step), stand_ins)
+        proven = _judged(instead, stand_ins, step)
         doubtful = any(cause.failed or cause.law_differs for cause in proven.causes)
         if proven.after.complete and not doubtful:
             return proven
     return None
 
 
-def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause, ...]) -> Proven:
-    """Return the effects of a set with what each does not prove, from the final weights."""
+def _judged(search: Hypotheses, stand_ins: tuple[FoundCause, ...], step: Steps) -> Proven:
+    """Return the effects of a set with what each does not prove, fitted with the final weights."""
+    judged = reweighted_hypotheses(search, step) if search.named else search
     bench, named = judged.bench, judged.named
     mesh = bench.on_mesh(named)
     final = judged.trial(named)
