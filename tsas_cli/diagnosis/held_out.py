@@ -16,6 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from tsas_cli.identification.fit import Unknown
+from tsas_cli.numerics.covariance import numbered_on
 from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
@@ -64,8 +65,7 @@ def folds_of(blocks: Sequence[Indices]) -> Folds:
     """Return the folds for runs whose residuals have these blocks, each counted from 0."""
     sizes = [b.size for b in blocks]
     run = np.repeat(np.arange(len(blocks)), sizes)
-    offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
-    block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
+    block = numbered_on(blocks)
     if len(blocks) >= FEWEST_RUNS:
         return Folds(run, block, run, by_run=True)
     return in_stretches(Folds(run, block, run, by_run=False))

@@ -19,6 +19,7 @@ from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals, signals_at_residu
 from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, tolerances, without_tolerances
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.numerics.covariance import autocovariance
 from tsas_cli.support.arrays import Floats
 
 DEPENDS = 0.02  # least share of the squares that a signal alone explains
@@ -209,9 +210,7 @@ def _memory_s(bench: Bench, name: str, errors: list[Floats]) -> float:
     times = []
     recorded = [run for run in bench.closed if name in run.samples]
     for run, part in zip(recorded, errors, strict=True):
-        centred = part - part.mean()
-        power = np.abs(np.fft.rfft(centred, 2 * part.size)) ** 2
-        covariance = np.fft.irfft(power)[1 : part.size]
+        covariance = autocovariance(part)[1:]
         lost = np.flatnonzero(covariance < covariance[0] / math.e)
         step_s = float(np.median(np.diff(run.run.time_s[run.samples[name]])))
         times.append(step_s * (1 + (int(lost[0]) if lost.size else covariance.size)))

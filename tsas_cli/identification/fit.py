@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.numerics.covariance import inverse_gram, jackknife
+from tsas_cli.numerics.covariance import inverse_gram, jackknife, numbered_on
 from tsas_cli.numerics.least_squares import Solution, least_squares
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -180,8 +180,7 @@ def with_errors(
     determines, whose scatter from run to run nothing shows.
     """
     J, residual, runs = solution.jacobian, solution.residual, len(blocks)
-    offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
-    block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
+    block = numbered_on(blocks)
     stderr, t = _errors(J, residual, block)
     if (by_run or np.mean(residual**2) > WRONG) and runs >= FEWEST_RUNS:
         own = np.repeat(np.arange(runs), [b.size for b in blocks])

@@ -8,6 +8,7 @@ the degrees of freedom of the blocks.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,16 +19,19 @@ MEMORIES_PER_BLOCK = 4.0
 DETERMINED = 1e-4  # least singular value of columns of length one: their differences' accuracy
 
 
+def autocovariance(values: Floats) -> Floats:
+    """Return the sums of the products of values, less their mean, at lags 0 to n − 1."""
+    power = np.abs(np.fft.rfft(values - values.mean(), 2 * values.size)) ** 2
+    return np.asarray(np.fft.irfft(power)[: values.size])
+
+
 def memory(residual: Floats) -> float:
     """Return the integrated autocorrelation time of a residual in samples, at least 1.
 
     The sum of the autocorrelation is truncated where it is first lost in its own scatter (Geyer's
     initial positive sequence).
     """
-    n = residual.size
-    centred = residual - residual.mean()
-    power = np.abs(np.fft.rfft(centred, 2 * n)) ** 2
-    covariance = np.fft.irfft(power)[:n]
+    n, covariance = residual.size, autocovariance(residual)
     if n < 4 or covariance[0] <= 0.0:
         return 1.0
     pairs = (covariance[0 : n - 1 : 2] + covariance[1:n:2]) / covariance[0]
@@ -55,6 +59,12 @@ def block_numbers(sizes: list[int], length: int) -> Indices:
         out.append(start + np.arange(size) * count // size)
         start += count
     return np.concatenate(out)
+
+
+def numbered_on(blocks: Sequence[Indices]) -> Indices:
+    """Return the block numbers of all runs, each counted from 0, counted on from run to run."""
+    offsets = np.cumsum([0, *(block.max() + 1 for block in blocks[:-1])])
+    return np.concatenate([block + k for block, k in zip(blocks, offsets, strict=True)])
 
 
 def inverse_gram(jacobian: Floats) -> Floats:

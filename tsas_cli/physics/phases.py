@@ -9,4 +9,4 @@ import numpy.typing as npt
 Phases = npt.NDArray[np.int8]
 
 SLACK, UNCONVERGED = 2, 3
-SLIDING_SHARE = 0.99  # of its friction limit, from which an element with presliding slips
+SLIDING_SHARE = 0.99  # of its friction limit, from which a node or element with presliding slips

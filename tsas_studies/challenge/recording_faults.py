@@ -67,7 +67,6 @@ def _of_a_run(
     function: str,
     what: str,
     channels: tuple[str, ...],
-    right: tuple[str, ...] = OF_A_RUN,
     **parts: tuple[float, float],
 ) -> RecordingFault:
     """Return a fault of one channel in one run; `parts` are bounds of shares of its time."""
@@ -79,7 +78,7 @@ def _of_a_run(
         shares = {name: float(rng.uniform(*bounds)) for name, bounds in parts.items()}
         return {"run": _one_of(rng, RUNS), "channel": channel, what: value, **shares}
 
-    return RecordingFault(function, values, right)
+    return RecordingFault(function, values, OF_A_RUN)
 
 
 def _late(size: float, rng: np.random.Generator) -> dict[str, Any]:

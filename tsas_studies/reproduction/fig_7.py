@@ -6,8 +6,6 @@ makes recordings of the same rig, and `tsas calibrate`'s fit is made of them.
 
 import numpy as np
 
-from tsas_cli.effects import Effects
-from tsas_cli.effects.free_tendon import FreeTendon
 from tsas_cli.paper import Paper, Printed
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
@@ -34,7 +32,6 @@ _BESIDE = (
     f"and third period, 1 kHz, noise of {NOISE.tension_N:g} N and "
     f"{1e3 * NOISE.displacement_mm:g} µm."
 )
-LONGEST_MM = 5000.0  # of tendon outside of the sheath that is tried
 
 
 def fig_7(paper: Paper) -> Group:
@@ -53,7 +50,6 @@ def fig_7(paper: Paper) -> Group:
         (_BESIDE,),
         tuple(rows),
         tuple(_figure(paper, name, bands[name]) for name in ("f_b", "c_e")),
-        (_closing(paper, bands),),
     )
 
 
@@ -204,34 +200,4 @@ def _figure(paper: Paper, name: str, band: DeadBand) -> Figure:
             ),
             Line(f"measured, {measured:.0f} N/mm", ends, line(measured), "before", True),
         ),
-    )
-
-
-def free_length_for(paper: Paper, slope: float) -> float | None:
-    """Return the free tendon at the drive [mm] with which the line of f-b has a slope [N/mm]."""
-    from scipy.optimize import brentq
-
-    def off(length_mm: float) -> float:
-        return bands_of(_with_free(paper, length_mm), paper)["f_b"].slope() - slope
-
-    if off(0.0) < 0.0 or off(LONGEST_MM) > 0.0:
-        return None
-    return float(brentq(off, 0.0, LONGEST_MM, xtol=1e-3))
-
-
-def _with_free(paper: Paper, length_mm: float) -> Rig:
-    return bench_rig(paper)._replace(effects=Effects(free_tendon=FreeTendon(length_mm, 0.0)))
-
-
-def _closing(paper: Paper, bands: dict[str, DeadBand]) -> str:
-    """Say what tendon outside of the sheath would do to the lines of both bands."""
-    length = free_length_for(paper, _measured(paper, "f_b").value)
-    if length is None:
-        return "No length of tendon outside of the sheath gives the measured slope of f-b."
-    other = bands_of(_with_free(paper, length), paper)["c_e"].slope()
-    return (
-        f"{length:.0f} mm of tendon between drive and sheath turn the line of f-b from "
-        f"{bands['f_b'].slope():.1f} into the measured {_measured(paper, 'f_b').value:g} N/mm; the "
-        f"line of c-e then falls from {bands['c_e'].slope():.1f} to {other:.1f} N/mm, away from "
-        f"the measured {_measured(paper, 'c_e').value:g}."
     )

@@ -6,7 +6,7 @@ from functools import cache
 import pytest
 
 from tsas_cli.paper import yang2025
-from tsas_studies.reproduction.fig_7 import fig_7, free_length_for
+from tsas_studies.reproduction.fig_7 import fig_7
 from tsas_studies.reproduction.recording import Noise, fitted_stiffness
 
 PAPER = yang2025()
@@ -62,13 +62,6 @@ def test_a_measurement_that_fits_agrees():
     paper = PAPER.with_value("stiffness.measured.km_f_b", 165.0)
     found = {row.what: row.verdict for row in fig_7(paper).rows}
     assert found["km measured, f-b (dead band up), against the same fit on the model"] == "agrees"
-
-
-def test_a_free_length_turns_one_line_into_the_measured_one():
-    """A line through the band with more compliance: near EA (1/101.96 − 1/146.9), not quite it."""
-    length = free_length_for(PAPER, 101.96)
-    assert length == pytest.approx(67858.0 * (1.0 / 101.96 - 1.0 / 146.9), rel=0.15)
-    assert free_length_for(PAPER, 200.0) is None
 
 
 def test_the_figures_hold_the_bands():

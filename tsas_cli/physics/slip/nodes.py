@@ -15,13 +15,13 @@ from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
+from tsas_cli.physics.phases import SLIDING_SHARE
 from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.state import BALANCED, TOLERANCE, Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
 MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions by a tangent
-SLIDING_SHARE = 0.99  # of its friction limit, from which a node with presliding slips
 
 
 @kernel
