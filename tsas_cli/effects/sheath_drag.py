@@ -10,7 +10,8 @@ Mistaken for: drive_friction (its jump at a reversal is at once, and x_out does 
 load_friction (the sheath enlarges it on a pull and reduces it on a release); a larger friction
 coefficient, load_dependent_friction (grow or fall with the tension); viscous_friction (grows with
 speed); force_sensor_offset of both sensors by −D/(μθ) (indistinguishable at one bend).
-Not validated: drag that is not even along the sheath, or not the same in sheaths of other lengths.
+Not validated: drag that is not even along the sheath, or not the same in sheaths of other lengths;
+a tendon that the drive lets go of for long.
 """
 
 from typing import NamedTuple

@@ -9,7 +9,7 @@ Mistaken for: drive_friction, a larger friction coefficient (indistinguishable a
 not grow with it); stribeck_friction (less friction when fast); channel_delay (also in dead bands,
 where f_in is steep); load_inertia (proportional to the acceleration).
 Not validated: lubricants that thin with speed or temperature; points of the tendon that slide
-slower than the drive's end.
+slower than the drive's end; a tendon that the drive lets go of for long.
 """
 
 from typing import NamedTuple

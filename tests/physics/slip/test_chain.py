@@ -18,7 +18,7 @@ from tests.physics.references import (
 )
 from tests.physics.slip.laws_by_hand import SPRINGY, N, gives, hold_everywhere
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.phases import UNCONVERGED
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_studies.challenge.rig import tendon
 from tsas_studies.challenge.rig.motions import Motion
 
@@ -137,3 +137,21 @@ def test_friction_that_fades_while_nothing_moves_is_that_of_the_rig():
     np.testing.assert_allclose(f_out, expected["f_out_N"], atol=0.05)
     np.testing.assert_allclose(x_out, expected["x_out_mm"], atol=0.05)
     assert (phase[110:200] == 1).all()
+
+
+def test_drag_holds_the_load_where_the_drive_has_let_go():
+    """In a straight sheath, released: f_out − f_in is the drag until the load has no tension."""
+    drag, rig = 6.0, GROUP_A
+    x_in = through(-20.0)
+    _, x_out, f_in, f_out, phase = follow(x_in, rig=rig, pulled=0.0, released=0.0, drag=drag)
+    stretch_mm_per_N = rig.sheath_length_mm / rig.tendon_stiffness_N
+    slope = 1.0 / (1.0 / rig.load_stiffness_N_per_mm + stretch_mm_per_N)
+    tension = np.maximum(rig.preload_N + slope * (x_in + 0.5 * drag * stretch_mm_per_N), 0.0)
+    slides = x_in < -1.0
+    np.testing.assert_allclose(f_out[slides], tension[slides], atol=1e-9)
+    np.testing.assert_allclose(f_in[slides], np.maximum(tension[slides] - drag, 0.0), atol=1e-9)
+    at_load = (tension - rig.preload_N) / rig.load_stiffness_N_per_mm
+    np.testing.assert_allclose(x_out[slides], at_load[slides], atol=1e-9)
+    assert set(phase[slides & (f_in > 0.0)]) == {-1}
+    assert set(phase[slides & (f_in == 0.0)]) == {SLACK}
+    assert (f_out[f_in == 0.0] > 0.0).any()

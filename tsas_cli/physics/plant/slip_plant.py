@@ -13,7 +13,7 @@ from tsas_cli.physics.plant.turntable import (
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import state as at
-from tsas_cli.physics.slip.chain import advance, go_slack
+from tsas_cli.physics.slip.chain import advance, go_slack, pulls_at_neither_end
 from tsas_cli.physics.slip.ends import drive_tangent, update_end_speeds
 from tsas_cli.physics.slip.state import Moment, SlipLaws, with_drive
 from tsas_cli.support.arrays import Floats
@@ -38,7 +38,7 @@ def step_plant(
         stiffness = drive.spring_N_per_mm + spring.stiffness + step.beside.slope
         driven = with_drive(laws, with_spring(drive, drive.given, stiffness, step.beside.ahead))
         converged = advance(chain, before, now, driven)
-        if chain[at.TENSION] < 0.0:
+        if pulls_at_neither_end(chain, now, laws):
             go_slack(chain, now, laws)
             chain[at.POSITION_BEFORE], chain[at.SPEED_BEFORE] = p, mass_speed
             slope, value = drive_tangent(chain, now, driven)

@@ -150,10 +150,12 @@ def follow_sample(
         chain[at.SLIP + last] = 1 if now.load > before.load else -1
     converged = advance(chain, before, now, laws)
     phase = phase_of(chain, laws) if converged else UNCONVERGED
+    f_in = now.drive if laws.drive.given == FORCE else tension_at_drive(chain, laws)
     if laws.antagonist.preload_N == 0.0 and laws.load.given != FORCE and chain[at.TENSION] < 0.0:
         phase = SLACK
-        go_slack(chain, now, laws)
-    f_in = now.drive if laws.drive.given == FORCE else tension_at_drive(chain, laws)
+        f_in = now.drive if laws.drive.given == FORCE else 0.0
+        if pulls_at_neither_end(chain, now, laws):
+            go_slack(chain, now, laws)
     f_out = tension_at_sensor(chain, now, laws)
     return phase, ChainEnds(chain[at.POSITION], chain[at.POSITION + last], f_in, f_out)
 
@@ -220,6 +222,17 @@ def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
         losses_between(start.losses, end.losses, part),
         step_s,
     )
+
+
+@kernel
+def pulls_at_neither_end(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
+    """Return whether a tendon without tension at the drive has none at the load either.
+
+    Drag in the sheath still holds the load where the drive has let go: then the tendon is taken to
+    follow the drive, pressed by no more than the drag.
+    """
+    held = now.losses.drag_N > 0.0 and chain[at.TENSION + laws.n] > 0.0
+    return chain[at.TENSION] < 0.0 and not held
 
 
 @kernel
