@@ -17,6 +17,9 @@ TINY = 1e-9
 class Candidate:
     """A fault by one unknown: what it is, where, the amount, and the squares that it takes away.
 
+    The `amount` of an offset and of steps is in the unit of the channel, of a gain and of a clock a
+    share, of a delay and of a lag in s, of an amplifier its time constant [s], of a friction and of
+    a stiffness the logarithm of a factor, of a swing its frequency [Hz], of a saturation its level.
     `run` is None for a fault of all runs; `edges` counts the ends of the part of the run that it
     is in, from `first_s` to `last_s`. A run is `alone` if no other has its bend. `steps` are the
     times and amounts of several steps of a zero.
