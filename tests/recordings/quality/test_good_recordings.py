@@ -288,3 +288,15 @@ def test_a_commanded_speed_may_jump_and_be_back_as_no_sensor_may():
     assert complaints(measured) == []
     measured["x_out_mm"][500] += np.ptp(measured["x_out_mm"])
     assert complaints(measured) == ["outlier"]
+
+
+@pytest.mark.parametrize(("hump_N", "expected"), [(0.0, True), (12.0, False)])
+def test_a_force_that_was_higher_within_its_strokes_is_not_clipped(hump_N, expected):
+    """A knot in the tendon passes a bend before the end of each stroke."""
+    time = np.arange(1200) / 100.0
+    x = 10.0 - 10.0 * np.cos(np.pi * time)
+    noise = np.random.default_rng(5).normal(scale=0.05, size=(2, x.size))
+    pulled = np.minimum(20.0 + 2.0 * x, 54.0) + hump_N * np.exp(-((x - 15.0) ** 2))
+    f_in = np.where(np.diff(x, prepend=-1.0) > 0.0, pulled, 15.0 + 1.5 * x) + noise[0]
+    found = complaints({"time_s": time, "x_in_mm": x, "f_in_N": f_in, "x_out_mm": x + noise[1]})
+    assert ("clipped" in found) == expected

@@ -19,6 +19,7 @@ _FLAT = 0.25  # slope at the end over that before
 _NEAR, _FEWEST_STROKES, _MOST_OF_THEM = 2.0, 2, 0.7
 _MOVES_LATE = 3.0  # times as far as before it moves what the drive sets into motion at last
 _DEGREE = 5  # of the path over time in the second half of a stroke
+_OUTLIERS = 0.01  # share of all samples, that may lie beyond the end of the range
 _STRAIGHT = 1.0 / 3.0  # of what is visible: the RMS about a line, twice the noise
 _CLIPPED_REMEDY = "raise the sensor's range or lower its gain, check for a stop, and record again"
 
@@ -74,6 +75,9 @@ def _saturation(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[F
     if not flat:
         return
     level = sign * max(sign * level for level, _ in flat)
+    beyond = sign * (trial.channels[name] - level) > trial.visible(name)
+    if np.mean(beyond) > _OUTLIERS:  # no sensor reads more than the end of its range
+        return
     near = [e for e in filter(None, ends) if abs(e[0] - level) < _NEAR * trial.visible(name)]
     lacks = [e[1] for e in near if e[2]]
     if len(lacks) >= max(_FEWEST_STROKES, _MOST_OF_THEM * len(near)):
