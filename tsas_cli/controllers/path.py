@@ -13,10 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tsas_cli.effects import Effects
-from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.laws.drive_law import DriveLaw, drive_law_force
 from tsas_cli.effects.laws.tendon_law import tendon_law_factor
-from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.stops import ELEMENTS, GAPS
@@ -24,6 +22,7 @@ from tsas_cli.numerics.wave import Wave, rippled
 from tsas_cli.physics.course import PULLED, RELEASED
 from tsas_cli.physics.ends import (
     NO_TENDON_LAW,
+    force_at_drive,
     force_of_motion,
     last_direction,
     losses_over,
@@ -98,11 +97,9 @@ def follow(
             (np.zeros(ahead), smooth, np.zeros(padded.size - ahead - smooth.size))
         )
     geared = smoothed(geared_at(end, rig.effects), width, step_s)
-    direction = last_direction(end)
+    of_motion = force_of_motion(rate_of(end, time_s), time_s, rig.effects)
     force = tension - rig.preload_N
-    force += drive_friction_force(1.0, rig.effects.drive_friction.friction_N) * direction
-    force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
-    force += force_of_motion(rate_of(end, time_s), time_s, rig.effects)
+    force += force_at_drive(end, last_direction(end), of_motion, rig.effects)
     force += law_force(end, speed, force + rig.preload_N, rig.effects.drive_law)
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)

@@ -64,6 +64,12 @@ def drive_end(rig: Rig, given: int) -> DriveEnd:
 
 
 @kernel
+def free_drive(given: int) -> DriveEnd:
+    """Return a proximal end with nothing in parallel to the tendon."""
+    return DriveEnd(given, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
 def with_spring(
     drive: DriveEnd, given: int, spring_N_per_mm: float, spring_N: float = 0.0
 ) -> DriveEnd:

@@ -11,11 +11,13 @@ from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.bend_drift import BendDrift, drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
 from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.friction_drift import FrictionDrift, friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import PreloadLoss, lost_preload
+from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.sheath_drag import drag_over
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
@@ -149,6 +151,17 @@ def force_of_motion(speed: Floats, time_s: Floats | None, effects: Effects) -> F
         return np.zeros(speed.size)
     damped: Floats = drive_damper_force(1.0, damping) * speed
     return damped + drive_inertia_force(1.0, mass_kg) * rate_of(speed, time_s)
+
+
+def force_at_drive(x: Floats, direction: Floats, of_motion: Floats, effects: Effects) -> Floats:
+    """Return the force beside the tendon that the drive's sensor reads too, shape (n,) [N].
+
+    `x` is the displacement of the tendon's end, `direction` that of its motion, 1 or −1, and
+    `of_motion` that of `force_of_motion`.
+    """
+    friction = drive_friction_force(effects.drive_friction.friction_N, 1.0)
+    stiffness = proximal_spring_force(1.0, effects.proximal_spring.stiffness_N_per_mm)
+    return friction * direction + stiffness * x + of_motion
 
 
 def boundary_of(drive: DriveInput) -> Boundary:

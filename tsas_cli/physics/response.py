@@ -8,8 +8,6 @@ from typing import Literal, TypedDict, Unpack
 import numpy as np
 
 from tsas_cli.effects import EFFECTS, LAWS, Effects
-from tsas_cli.effects.drive_friction import drive_friction_force
-from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.closed_form.branches import (
     BranchState,
@@ -19,7 +17,7 @@ from tsas_cli.physics.closed_form.branches import (
 )
 from tsas_cli.physics.closed_form.static import StaticState, follow_static
 from tsas_cli.physics.course import DIRECTION, MOTION, Output, samples_of
-from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
+from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of, force_at_drive
 from tsas_cli.physics.frames import Frames, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.mesh import MOST_NODES
@@ -222,13 +220,10 @@ def advanced(
 
 def at_drive_sensor(rig: Rig, ends: EndInputs, output: Output) -> Output:
     """Return an output with the force beside the tendon added to f_in, unless f_in is given."""
-    friction = rig.effects.drive_friction.friction_N
-    stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-    nothing = friction == 0.0 and stiffness == 0.0 and not ends.course[MOTION].any()
-    if nothing or ends.boundary.drive == FORCE:
+    if ends.boundary.drive == FORCE:
         return output
-    beside = drive_friction_force(friction, 1.0) * ends.course[DIRECTION]
-    beside = beside + proximal_spring_force(1.0, stiffness) * ends.drive + ends.course[MOTION]
+    direction, of_motion = ends.course[DIRECTION], ends.course[MOTION]
+    beside = force_at_drive(ends.drive, direction, of_motion, rig.effects)
     return output._replace(f_in=output.f_in + beside)
 
 

@@ -12,7 +12,7 @@ set, in between which all tensions are affine.
 
 from tsas_cli.effects.antagonist import is_taut, net_force
 from tsas_cli.numerics.compiled import kernel, seldom_kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, DriveEnd, moving_friction
+from tsas_cli.physics.boundary import DISPLACEMENT, free_drive, moving_friction
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.slip import state as at
 from tsas_cli.physics.slip.ends import (
@@ -93,7 +93,7 @@ def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int, revers
 @kernel
 def set_both_in_motion(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set positions and tensions of both tendons for their active sets."""
-    driven = with_drive(laws, DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0, 0.0))
+    driven = with_drive(laws, free_drive(DISPLACEMENT))
     if laws.drive.given == DISPLACEMENT:
         sweep_both(chain, now.drive, now, driven)
         return

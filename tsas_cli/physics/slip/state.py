@@ -15,6 +15,7 @@ from tsas_cli.physics.boundary import (
     DriveEnd,
     LoadEnd,
     drive_end,
+    free_drive,
     load_end,
     with_given,
 )
@@ -166,7 +167,7 @@ def laws_of_second(laws: SlipLaws) -> SlipLaws:
         PulleyFriction(laws.pulleys.load_loss, laws.pulleys.drive_loss),
         laws.presliding_mm,
         laws.stribeck,
-        DriveEnd(DISPLACEMENT, 0.0, 0.0, 0.0, 0.0, 0.0),
+        free_drive(DISPLACEMENT),
         with_given(laws.load, DISPLACEMENT),
         laws.antagonist,
     )
