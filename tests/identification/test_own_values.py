@@ -7,6 +7,7 @@ import pytest
 
 from tests.identification.recorded import TRUE, VALUES, clean, ran
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.fit_problem import prepare_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.own_values import _median, _zeros_by_laws, with_own_values
 from tsas_cli.identification.quantities import QUANTITIES
@@ -110,3 +111,25 @@ def test_a_fit_that_ends_far_off_gives_way_to_one_from_the_values_of_the_other_r
     known = Model((*model().estimates, *others))
     of_run = with_own_values(known, ran(columns, **conditions(TRUE) | {"preload_N": None}))
     assert of_run.value("x_in_zero_mm", "a") == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_preload_that_other_runs_have_and_this_one_is_not_fitted_moves_no_zero(
+    columns, monkeypatch
+):
+    """With a load by displacement a preload is as good as a zero: that of the manifest is fixed."""
+    starts = []
+
+    def prepared(start, *given, **options):
+        starts.append({e.name: e.value for e in start.estimates if e.run == "a"})
+        return prepare_fit(start, *given, **options)
+
+    monkeypatch.setattr("tsas_cli.identification.own_values.prepare_fit", prepared)
+    of_others = (
+        Estimate("preload_N", 9.0, "N", "data sheet", "b"),
+        Estimate("x_in_zero_mm", 0.2, "mm", "fitted", "b"),
+    )
+    run = ran(columns, **conditions(TRUE) | {"load": "displacement"})
+    own = with_own_values(Model((*model().estimates, *of_others)), run)
+    assert own.value("x_in_zero_mm", "a") == pytest.approx(0.0, abs=0.01)
+    assert starts[1]["x_in_zero_mm"] == 0.2
+    assert not any("preload_N" in start for start in starts)

@@ -8,7 +8,7 @@ from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET
 from tsas_cli.effects.laws import FOLLOWS
 from tsas_cli.identification.base_fit import read_off, slopes_of
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit_problem import prepare_fit
+from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
 from tsas_cli.identification.joint_fit import FittedModel, solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import segment
@@ -31,14 +31,18 @@ def with_own_values(model: Model, run: Prepared) -> Model:
     initial = read_off(model, [run], [parts], [slopes_of(run, parts)])
     own = Model(tuple(e for e in initial.estimates if e.run is not None))
     offsets = [e.name for e in model.estimates if e.name in FORCE_ZEROS and e.value != 0.0]
-    others = (_zeros_by_laws(model, run), _median(model, run))
-    starts = (own, *(first.over(own) for first in others if first.estimates))
-    fits = [
-        solve_fit(
-            prepare_fit(start.over(model), model.over(own), [run], shared=False, further=offsets)
-        )
-        for start in starts
-    ]
+
+    def problem_from(start: Model) -> FitProblem:
+        known = model.over(own)
+        return prepare_fit(start.over(model), known, [run], shared=False, further=offsets)
+
+    problems = [problem_from(own)]
+    free = {u.name for u in problems[0].unknowns}
+    for first in (_zeros_by_laws(model, run), _median(model, run)):
+        values = tuple(e for e in first.estimates if e.name in free)
+        if values:
+            problems.append(problem_from(Model(values).over(own)))
+    fits = [solve_fit(problem) for problem in problems]
     with_samples = [fit for fit in fits if fit.problem.runs]
     if len(with_samples) < 2:
         return (with_samples or fits)[0].model
