@@ -193,3 +193,45 @@ def test_a_wave_of_half_the_period_of_a_larger_one_is_no_cause(period_mm, gains,
     assert failed == (
         ("may be a harmonic of ripple of the drive's gear, or of its encoder",) * refused
     )
+
+
+def sensor_error(effect, **values):
+    """Return an error of sensors, by parameter whether it differs from none."""
+    return FoundCause(
+        *(effect, ()),
+        tuple(
+            estimate(f"{effect}.{name}", v, *sorted((0.9 * v, 1.1 * v)), unit="1")
+            if v
+            else estimate(f"{effect}.{name}", 0.0, -0.1, 0.1, unit="1")
+            for name, v in values.items()
+        ),
+        *(40.0, (30.0, 50.0)),
+    )
+
+
+@pytest.mark.parametrize(("third", "refused"), [("f_out", True), ("f_in", False)])
+def test_three_errors_of_one_sensor_may_be_one_law_of_it(third, refused):
+    """A force sensor that creeps passes for one with a gain, hysteresis and a low pass."""
+    gain = sensor_error("force_sensor_gain", f_out_gain=1.2)
+    hysteresis = sensor_error("force_sensor_hysteresis", f_in_share=0.0, f_out_share=0.1)
+    lag = sensor_error("sensor_lag", **{f"{third}_lag_s": 0.02})
+    plain = FoundCause("backlash", (), (CLEAR_PLAY,), 50.0, (40.0, 60.0))
+    for cause in (gain, hysteresis, lag, plain):
+        failed = p._beside_others_of_its_sensor(cause, (gain, hysteresis, lag, plain)).failed
+        of_it = refused and cause is not plain
+        assert failed == (
+            ("is one of 3 errors of the f_out sensor, which may be one law of it",) * of_it
+        )
+
+
+@pytest.mark.parametrize(
+    ("delay_s", "lag_s", "refused"),
+    [(-0.031, 0.030, True), (0.031, 0.030, False), (-0.005, 0.030, False), (-0.031, 0.0, False)],
+)
+def test_a_channel_that_leads_by_as_much_as_it_lags_does_neither(delay_s, lag_s, refused):
+    delay = sensor_error("channel_delay", f_in_delay_s=delay_s, x_out_delay_s=0.0)
+    lag = sensor_error("sensor_lag", f_in_lag_s=lag_s, x_out_lag_s=0.0)
+    for cause in (delay, lag):
+        assert bool(p._beside_its_opposite(cause, (delay, lag)).failed) == refused
+    gain = sensor_error("force_sensor_gain", f_out_gain=1.2)
+    assert p._beside_its_opposite(gain, (delay, lag, gain)) == gain

@@ -30,6 +30,8 @@ LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refu
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 MOST_PARTS = 4  # of a split that a sentence lists
 HARMONIC = 0.1  # relative, of the ratio of two periods
+SENSORS = ("f_in", "f_out", "x_out")
+MOST_OF_A_SENSOR = 2  # errors of one sensor; more are a law of it that the catalogue lacks
 ALIKE = 0.1  # relative difference of two sensors' errors within which they are alike
 
 # What adds to both forces alike is something else: a law of friction μ(T + c) is the capstan's with
@@ -81,6 +83,15 @@ class FoundCause:
     law_differs: str = ""
     convincing: bool = True
     negligible: bool = False
+
+
+def sensors_of(cause: FoundCause) -> set[str]:
+    """Return the sensors that a cause is an error of, by its parameters that differ from none."""
+    if BY_NAME[cause.effect].acts_on != "sensor":
+        return set()
+    there = [e for e in cause.parameters if not e.holds(QUANTITIES[e.name].default)]
+    names = [e.name.partition(".")[2] for e in there]
+    return {sensor for sensor in SENSORS if any(n.startswith(f"{sensor}_") for n in names)}
 
 
 def failures(

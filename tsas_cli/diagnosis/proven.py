@@ -14,12 +14,14 @@ from tsas_cli.diagnosis.intervals import Tolerated, estimates_with_tolerances
 from tsas_cli.diagnosis.proof import (
     ANOTHER_LAW,
     BY_NAME,
+    MOST_OF_A_SENSOR,
     FoundCause,
     failures,
     is_harmonic,
     may_be_of_the_law_of,
     may_be_zero,
     of_one_size,
+    sensors_of,
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
@@ -27,6 +29,7 @@ from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of, sha
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
 from tsas_cli.effects.channel_delay import CHANNEL_DELAY
+from tsas_cli.effects.sensor_lag import SENSOR_LAG
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
@@ -34,6 +37,8 @@ from tsas_cli.support.steps import Steps
 SEED = 1  # of the resampling of blocks
 MOST_RIVALS = 2  # of an effect that fails, which are tried in its place
 MOST_LEFT = 0.1  # of what could be explained, by all causes together
+TIMES = (CHANNEL_DELAY.name, SENSOR_LAG.name)
+OPPOSITE = 0.3  # of a lag, that a lead differs from it by at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +130,9 @@ def _judged(search: Hypotheses, stand_ins: tuple[FoundCause, ...], step: Steps) 
     causes = tuple(_cause(last, name) for name in judged.rivals)
     causes = tuple(_beside_another_law(cause, causes) for cause in causes)
     causes = tuple(_beside_a_wave(cause, causes) for cause in causes)
+    causes = tuple(_beside_its_opposite(cause, causes) for cause in causes)
+    gaining = (*causes, *stand_ins)
+    causes = tuple(_beside_others_of_its_sensor(cause, gaining) for cause in causes)
     start = after
     if named:
         start = remainder_of(bench, judged.trial(frozenset(), on_mesh=mesh), judged.folds)
@@ -201,6 +209,34 @@ def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> Foun
         if other.law_differs and alike and other.gain_percent > cause.gain_percent:
             title = BY_NAME[other.effect].title.lower()
             said = f"acts where {title} does, whose law differs from the catalogue's"
+            return replace(cause, failed=(*cause.failed, said))
+    return cause
+
+
+def _beside_its_opposite(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
+    """Return a delay or a low pass, refused where a channel leads by as much as it lags.
+
+    Together they round its corners alone, which is another effect's.
+    """
+    if cause.effect not in TIMES:
+        return cause
+    times = {e.name.partition(".")[2]: e.value for one in causes for e in one.parameters}
+    for sensor in sorted(sensors_of(cause)):
+        delay_s, lag_s = (times.get(f"{sensor}_{kind}_s", 0.0) for kind in ("delay", "lag"))
+        if lag_s > 0.0 and abs(delay_s + lag_s) < OPPOSITE * lag_s:
+            said = (
+                f"is undone in {sensor}, which leads by {-delay_s:.2g} s and lags by {lag_s:.2g} s"
+            )
+            return replace(cause, failed=(*cause.failed, said))
+    return cause
+
+
+def _beside_others_of_its_sensor(cause: FoundCause, gaining: Sequence[FoundCause]) -> FoundCause:
+    """Return a cause, refused where many effects that gain are errors of the same sensor."""
+    for sensor in sorted(sensors_of(cause)):
+        errors = sum(sensor in sensors_of(other) for other in gaining)
+        if errors > MOST_OF_A_SENSOR:
+            said = f"is one of {errors} errors of the {sensor} sensor, which may be one law of it"
             return replace(cause, failed=(*cause.failed, said))
     return cause
 
