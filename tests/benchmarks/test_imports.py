@@ -1,4 +1,4 @@
-"""What a benchmark takes from the program and its studies is there, though no other test runs it."""
+"""What a benchmark takes from the program and its studies is there: no other test imports it."""
 
 from importlib import import_module
 from pkgutil import walk_packages
