@@ -4,7 +4,8 @@ from html import unescape
 import pytest
 
 from tests.reporting.conftest import no_curves
-from tests.reporting.made_folders import REASONS, edited, make_dataset, make_diagnosis
+from tests.reporting.made_diagnoses import REASONS, make_diagnosis
+from tests.reporting.made_folders import edited, make_dataset
 from tests.reporting.test_page import Outline, headings, rows
 from tsas_cli.effects import EFFECTS
 from tsas_cli.reporting.inputs import read_inputs

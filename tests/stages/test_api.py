@@ -24,7 +24,7 @@ RIG = Rig(friction_coefficient=0.16, proximal_length_mm=150.0, distal_length_mm=
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    return dataset_of(RIG, tmp_path_factory.mktemp("api") / "dataset", a=recorded(RIG, 50.0))
+    return dataset_of(RIG, tmp_path_factory.mktemp("api") / "dataset", a=recorded(RIG, 25.0))
 
 
 @pytest.fixture(scope="module")
