@@ -83,7 +83,7 @@ def tsas(warm: Warm | None) -> Callable[..., subprocess.CompletedProcess[str]]:
         simple = keywords.keys() <= {"cwd"} and heeded in ("", "error")
         if warm is not None and simple and warm.environment == environment():
             cwd = Path(str(keywords.get("cwd", Path.cwd())))
-            return warm.run(words, cwd, strict=heeded == "error")
+            return warm.run(words, cwd, strict=heeded == "error")[0]
         call = [sys.executable, "-m", "tsas_cli", *words]
         return subprocess.run(call, capture_output=True, text=True, check=False, **keywords)  # type: ignore[call-overload]
 

@@ -8,7 +8,7 @@ import pytest
 import tsas_cli as tsas
 from tests.collection.collected import ROWS, RATE_Hz, write
 from tests.counted import Counted
-from tests.reporting.made_folders import make_diagnosis
+from tests.reporting.made_diagnoses import make_diagnosis
 from tsas_cli.collection import COLUMNS, query
 from tsas_cli.collection.entries import entry_of
 from tsas_cli.collection.query import connected

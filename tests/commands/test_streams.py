@@ -42,7 +42,7 @@ with progress("fit", quiet={quiet}) as step:
     step.ahead(2)
     step.say("f_in is not recorded")
     for k in range(4):
-        time.sleep(0.4)
+        time.sleep({pause_s})
         if k == 1:
             step.ahead(2)
         step()
@@ -132,12 +132,13 @@ def on_terminal(call, code=0, **environment):
     return said, printed.decode()
 
 
-def bar(quiet, **environment):
-    return on_terminal([sys.executable, "-c", BAR.format(quiet=quiet)], **environment)
+def bar(quiet, pause_s=0.05, **environment):
+    program = BAR.format(quiet=quiet, pause_s=pause_s)
+    return on_terminal([sys.executable, "-c", program], **environment)
 
 
 def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
-    output, printed = bar(quiet=False)
+    output, printed = bar(quiet=False, pause_s=0.4)
     assert COLOUR.search(output)
     assert not COLOUR.search(bar(quiet=False, NO_COLOR="1")[0])
     assert printed == "the result\n"

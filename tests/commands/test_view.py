@@ -1,9 +1,7 @@
 import json
 import os
-import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 from urllib.parse import parse_qs, urlsplit
@@ -73,13 +71,6 @@ def test_the_page_is_served_here_alone_and_ends_without_a_trace(stream, tmp_path
         assert (code, out) == (0, "")
         assert err.endswith("- Ctrl-C ends it\n")
         assert alive(processes) == set()
-
-
-def test_a_taken_port_is_refused(stream, refused):
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        line = refused(stream, "--web", "--port", port)
-    assert re.match(rf"tsas: --port: port {port} cannot be had \(.*\); choose", line)
 
 
 def test_analytics_are_reported_and_the_port_can_be_chosen(stream, tmp_path):

@@ -82,3 +82,8 @@ def seen(fits, at, *parts, signatures=None):
         screened(name, part, None if signatures is None else signatures[name])
         for name, part in parts
     ]
+
+
+def pairs(count):
+    """Return orthogonal directions, so that each pair's part is what it is given."""
+    return np.linalg.qr(np.random.default_rng(1).standard_normal((SIZE, count)))[0].T

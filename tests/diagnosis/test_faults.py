@@ -30,9 +30,9 @@ def simulated_once():
         yield
 
 
-def made(folder, kind, *hidden, runs="ab"):
+def made(folder, kind, *hidden, runs="ab", rate_Hz=RATE_HZ):
     case = Case("made for a test", kind, 1.0, hidden, seed=3, number=77)
-    return recordings(folder, case, rate_Hz=RATE_HZ, runs=runs)
+    return recordings(folder, case, rate_Hz=rate_Hz, runs=runs)
 
 
 def of_three(folder, hidden):
@@ -120,7 +120,7 @@ def test_a_mechanism_is_not_accused(tmp_path):
 
 def test_a_tendon_that_is_stiffer_than_its_data_sheet_is_a_fault_of_the_manifest(tmp_path):
     """A modulus in 10^6 psi that is stated as GPa: the tendon is 6.9 times as stiff."""
-    folder = made(tmp_path, "nothing")
+    folder = made(tmp_path, "nothing", rate_Hz=20.0)
     manifest = folder / "dataset.toml"
     stated = tomllib.loads(manifest.read_text())["rig"]["tendon_modulus_GPa"]
     wrong = f"tendon_modulus_GPa = {stated / 6.895}"

@@ -1,8 +1,10 @@
 """A reader whose library may crash: asked in its own process first, and then here as well."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
-from typing import Protocol
+from tempfile import TemporaryDirectory
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -30,6 +32,7 @@ class Offering:
 
     def __init__(self, module: str) -> None:
         self.of = (f"{offered.__package__}.{module}", "a file")
+        import_module(self.of[0])  # while it is instrumented
 
     def names(self, path: Path, options: ReadOptions) -> Sequence[str]:
         return offered.names(path, *self.of, options)
@@ -60,6 +63,19 @@ def whole_file(reader: Reader, name: str) -> Callable[[bytes], None]:
     """Return the target whose input is a file of one format."""
     scratch = Scratch()
     return lambda data: ask(reader, scratch.file(name, data), PLAIN)
+
+
+def files_of(name: str, *writers: Callable[[Path], Any]) -> Callable[[], Iterator[bytes]]:
+    """Return the seeds of a target: what each of the writers makes of a file of this name."""
+
+    def seeds() -> Iterator[bytes]:
+        for write in writers:
+            with TemporaryDirectory() as folder:
+                path = Path(folder) / name
+                write(path)
+                yield path.read_bytes()
+
+    return seeds
 
 
 def _raise(error: InputError) -> None:

@@ -8,14 +8,9 @@ from typing import Any
 import pyarrow as pa
 
 from tests.hostile.case import Make, cases, columns
-from tests.reporting.made_folders import (
-    make_calibration,
-    make_check,
-    make_dataset,
-    make_diagnosis,
-    make_simulation,
-    make_tracking,
-)
+from tests.reporting.made_diagnoses import make_diagnosis
+from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
+from tests.reporting.made_loops import make_tracking
 from tsas_cli.recordings.writing import write_parquet
 
 MAKERS: dict[str, Callable[[Path, Path], Path]] = {

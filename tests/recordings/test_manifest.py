@@ -82,10 +82,6 @@ def test_writing_and_reading_gives_the_same_manifest(tmp_path):
     assert manifest.model_extra == {"lab": {"room": "3.14"}}
 
 
-def test_a_byte_order_mark_is_no_obstacle(tmp_path):
-    assert read(tmp_path, "\ufeff" + TEXT).name == "bench-42"
-
-
 def test_an_unknown_key_travels_along_and_names_its_nearest(tmp_path):
     manifest = read(tmp_path, TEXT.replace("preload_N", "preload_n"))
     assert manifest.run[0].unknown_keys() == {"preload_n": "did you mean preload_N?"}

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from tests.drives import SPRUNG, drive_dataset
+from tests.reporting import made_diagnoses, made_loops
 from tests.reporting import made_folders as by_hand
 from tests.studies.reproduction import test_page as test_reproduction
 from tsas_cli.reporting.inputs import read_inputs
@@ -18,7 +19,7 @@ from tsas_cli.support.errors import InputError
 from tsas_studies.reproduction.page import reproduction_page
 
 
-def pipeline(root: Path, ids=("a", "b"), wrong=by_hand.off_at_the_end, **more) -> list[Path]:
+def pipeline(root: Path, ids=("a", "b"), wrong=made_diagnoses.off_at_the_end, **more) -> list[Path]:
     """Write what the whole pipeline would; return the folders."""
     dataset = by_hand.make_dataset(root / "dataset", ids, **more)
     return [
@@ -26,8 +27,8 @@ def pipeline(root: Path, ids=("a", "b"), wrong=by_hand.off_at_the_end, **more) -
         by_hand.make_check(dataset, root / "check"),
         by_hand.make_calibration(dataset, root / "calibrate", ["The sheath is silent."]),
         by_hand.make_simulation(dataset, root / "simulate"),
-        by_hand.write_predictions(
-            dataset, by_hand.make_diagnosis(dataset, root / "diagnose", "named"), wrong
+        made_diagnoses.write_predictions(
+            dataset, made_diagnoses.make_diagnosis(dataset, root / "diagnose", "named"), wrong
         ),
     ]
 
@@ -45,12 +46,12 @@ def _dataset(root: Path, *ids: str) -> Path:
 FOLDERS: dict[str, Callable[[Path], list[Path]]] = {
     "pipeline": lambda root: pipeline(root, samples=400),
     "diagnosis": lambda root: [
-        by_hand.make_diagnosis(_dataset(root, "a"), root / "diagnose", "ambiguous")
+        made_diagnoses.make_diagnosis(_dataset(root, "a"), root / "diagnose", "ambiguous")
     ],
     "prediction": lambda root: [by_hand.make_prediction(_dataset(root, "a", "b"), root / "out")],
-    "tracking": lambda root: [by_hand.make_tracking(root / "tracked")],
+    "tracking": lambda root: [made_loops.make_tracking(root / "tracked")],
     "drive": lambda root: [_drive(root)],
-    "closing": lambda root: [by_hand.make_closing(root / "loop")],
+    "closing": lambda root: [made_loops.make_closing(root / "loop")],
 }
 KINDS = (*FOLDERS, "reproduction")
 

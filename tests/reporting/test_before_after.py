@@ -8,11 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 from matplotlib.figure import Figure
 
-from tests.reporting.made_folders import (
-    make_diagnosis,
-    off_at_the_end,
-    write_predictions,
-)
+from tests.reporting.made_diagnoses import make_diagnosis, off_at_the_end, write_predictions
 from tsas_cli.reporting import before_after
 from tsas_cli.reporting.before_after import ShownFit, draw_before_after, pictures
 from tsas_cli.reporting.colours import STAND_IN

@@ -7,6 +7,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.reporting import made_folders as by_hand
+from tests.reporting import made_loops
 from tests.reporting.test_page import Outline, cells, commands_of, headings
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.reporting import colours, repeat
@@ -20,7 +21,7 @@ from tsas_studies.closing.close_loop import chosen
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    return by_hand.make_closing(tmp_path_factory.mktemp("closing") / "loop")
+    return made_loops.make_closing(tmp_path_factory.mktemp("closing") / "loop")
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +34,8 @@ def points(text):
 
 
 def page_of(folder, case):
-    """Return a page with one case of `by_hand.CASES`."""
-    return page(read_inputs([by_hand.make_closing(folder, {case: by_hand.CASES[case]})]))
+    """Return a page with one case of `made_loops.CASES`."""
+    return page(read_inputs([made_loops.make_closing(folder, {case: made_loops.CASES[case]})]))
 
 
 def test_the_page_is_well_formed_says_its_numbers_and_holds_nothing_of_a_dataset(whole):
@@ -97,13 +98,13 @@ def test_each_model_has_a_mark_at_its_error_in_its_own_colour_and_form(folder):
     assert [axes.get_title(loc="left") for axes in figure.axes] == list(controllers)
     for axes, name in zip(figure.axes, controllers, strict=True):
         assert axes.get_xscale() == "log"
-        assert [label.get_text() for label in axes.get_yticklabels()] == list(by_hand.CASES)
+        assert [label.get_text() for label in axes.get_yticklabels()] == list(made_loops.CASES)
         marks = {line.get_label(): line for line in axes.lines if line.get_marker() != "None"}
         assert len({line.get_marker() for line in marks.values()}) == len(MODELS)
         for place, (role, (label, _, _)) in enumerate(MODELS.items()):
             line = marks[label]
             assert to_hex(line.get_color()) == STAND_IN[role]
-            expected = [case[3][name][place] for case in by_hand.CASES.values()]
+            expected = [case[3][name][place] for case in made_loops.CASES.values()]
             assert list(line.get_xdata()) == expected
             assert list(line.get_ydata()) == [0, 1, 2]
 
@@ -121,14 +122,14 @@ def test_the_models_are_those_that_the_stage_tracks_with(whole):
 )
 def test_the_command_asks_for_the_same_cases(tmp_path, hide, option):
     names = ["backlash"] if hide else ["backlash", "free_tendon"]
-    made = {("hidden" if hide else name): by_hand.CASES[name] for name in names}
-    inputs = read_inputs([by_hand.make_closing(tmp_path / "loop", made)])
+    made = {("hidden" if hide else name): made_loops.CASES[name] for name in names}
+    inputs = read_inputs([made_loops.make_closing(tmp_path / "loop", made)])
     options = list(repeat.closing_options(inputs.get(ClosingFile)))
     assert options == [*option, "--seeds", "5", "--seed", "3"]
     again = chosen(None, [option[1]]) if hide else chosen(option[1].split(","), [])
     assert [case.name for case in again] == list(made)
     if hide:
-        assert again[0].hidden == by_hand.CASES["backlash"][1]
+        assert again[0].hidden == made_loops.CASES["backlash"][1]
     where = str(tmp_path / "loop")
     assert [shlex.split(command) for command in commands_of(page(inputs)).splitlines()] == [
         ["tsas", "close-loop", *options, "--out", where],
@@ -138,7 +139,7 @@ def test_the_command_asks_for_the_same_cases(tmp_path, hide, option):
 
 def test_settings_that_are_not_the_defaults_are_said(tmp_path, whole):
     assert "--settings" not in whole
-    changed = by_hand.make_closing(tmp_path / "loop")
+    changed = made_loops.make_closing(tmp_path / "loop")
     with by_hand.edited(changed / "closing.json") as content:
         content["settings"]["sensor"]["noise_mm"] = 0.5
     text = page(read_inputs([changed]))
@@ -156,6 +157,6 @@ def test_beside_recordings_and_tracked_runs_the_page_shows_all(folder, tmp_path)
     assert headings(text, 2)[:2] == [first, "Recordings"]
     assert "No diagnosis was given" not in text
     assert f"tsas report {dataset} {calibrated} {folder} --out" in text
-    tracked = by_hand.make_tracking(tmp_path / "tracked", ("pid",))
+    tracked = made_loops.make_tracking(tmp_path / "tracked", ("pid",))
     titles = headings(page(read_inputs([tracked, folder])), 2)
     assert titles[:3] == [first, "Tracking", "Recordings"]

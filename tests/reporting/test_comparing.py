@@ -3,7 +3,8 @@ from dataclasses import replace
 
 import pytest
 
-from tests.reporting.made_folders import make_dataset, make_diagnosis, make_simulation, source
+from tests.reporting.made_diagnoses import make_diagnosis
+from tests.reporting.made_folders import make_dataset, make_simulation, source
 from tests.reporting.test_page import Outline, without_script
 from tsas_cli.comparing.compare import compare
 from tsas_cli.comparing.stage import record_of

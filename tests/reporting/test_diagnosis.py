@@ -2,16 +2,12 @@ import re
 from html import unescape
 
 import pytest
-from matplotlib.figure import Figure
 
 from tests.reporting.conftest import no_curves
-from tests.reporting.made_folders import REASONS, edited, make_dataset, make_diagnosis
+from tests.reporting.made_diagnoses import REASONS, make_diagnosis
+from tests.reporting.made_folders import edited, make_dataset
 from tests.reporting.test_page import Outline, headings, rows
 from tsas_cli.effects import EFFECTS
-from tsas_cli.records.diagnosis import Bin, HeldOut
-from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.diagnosis.maps import Panel, draw_residual_map
-from tsas_cli.reporting.diagnosis.section import draw_gains
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.page import page
@@ -249,38 +245,6 @@ def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
     text = written(folder)
     law = next(e.equation for e in EFFECTS if e.name == "free_tendon")
     assert all(f"<code>{line}</code>" in text for line in law.split(",  "))
-
-
-def test_the_bar_after_is_as_long_as_the_error_after():
-    channel = HeldOut(
-        unit="N", rmse_before=0.91, rmse_after=0.11, noise_floor=0.1, attainable=0.105
-    )
-    figure = Figure()
-    draw_gains(figure, {"f_in_N": channel}, named=True)
-    (axes,) = figure.axes
-    assert {bar.get_label(): bar.patches[0].get_width() for bar in axes.containers} == {
-        "nominal model": 0.91,
-        "extended model": 0.11,
-    }
-    marks = {line.get_label(): line.get_xdata()[0] for line in axes.lines}
-    assert marks == {"attainable": 0.105, "noise level": 0.1}
-
-
-def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
-    bins = [
-        tuple(
-            Bin.model_validate({"from": a, "to": a + 1, "mean": sign * a, "sd": 2, "samples": 9})
-            for a in (1.0, 3.0)
-        )
-        for sign in (1, -1)
-    ]
-    figure = Figure()
-    draw_residual_map(figure, [Panel("f_in_N", "x_in_mm", *bins)], label="x")
-    drawn = {bar.get_label(): bar.lines[0] for bar in figure.axes[0].containers}
-    assert drawn["nominal model"].get_color() == STAND_IN["before"]
-    assert list(drawn["nominal model"].get_ydata()) == [1.0, 3.0]
-    assert list(drawn["extended model"].get_ydata()) == [-1.0, -3.0]
-    assert drawn["extended model"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)
 
 
 def test_a_loss_is_no_reduction(of):

@@ -5,6 +5,7 @@ from html import unescape
 
 import pytest
 
+from tests.reporting import made_diagnoses, made_loops
 from tests.reporting import made_folders as by_hand
 from tests.studies.reproduction.test_page import GROUPS, PAPER
 from tsas_cli.reporting.glance import glance
@@ -27,7 +28,7 @@ def facts(it):
 
 
 def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp_path):
-    folder = by_hand.make_diagnosis(dataset, tmp_path / "d", "named")
+    folder = made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "named")
     it, noise = of(folder), read_inputs([folder]).noise
     assert noise["f_in_N"] == pytest.approx(by_hand.NOISE, rel=0.2)
     f_in, f_out = (
@@ -52,20 +53,20 @@ def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp
 def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
     cause = {"effect": "backlash", "gain_percent": 7.25, "parameters": {}}
     named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
-    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "named", named=named))
+    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "named", named=named))
     assert it.verdict == "Backlash and own thing"
     assert facts(it)["normalised residual by mine"] == ("", "7.25 % lower", "")
 
 
 def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
     named = [{"effect": "backlash", "title": "Backlash", "parameters": {}}]
-    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "partly", named=named))
+    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "partly", named=named))
     assert it.kind == "Cause found, and something unknown beside it"
     assert it.verdict == "Backlash"
 
 
 def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
-    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
+    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
     assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")
     assert it.verdict == "Tendon outside the sheath (or compliance of the drive)"
 
@@ -79,7 +80,7 @@ def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     ],
 )
 def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdict, said):
-    it = of(by_hand.make_diagnosis(dataset, tmp_path / "d", verdict))
+    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", verdict))
     assert it.verdict == said
     assert "after" not in it.numbers
     assert not any(fact.before or fact.label == "normalised residual" for fact in it.facts)
@@ -87,19 +88,19 @@ def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdi
 
 
 def test_tracking_says_who_follows_best_and_under_which_condition(tmp_path):
-    it = of(by_hand.make_tracking(tmp_path / "t"))
+    it = of(made_loops.make_tracking(tmp_path / "t"))
     assert it.verdict == "Pid follows best"
     assert it.numbers == "Root mean square error of the force, undisturbed"
     assert facts(it)["adaptive-sliding-mode"] == ("", "0.800 N", "disturbed: 0.800 N")
-    assert of(by_hand.make_tracking(tmp_path / "one", ("pid",))).verdict == "Followed by pid"
+    assert of(made_loops.make_tracking(tmp_path / "one", ("pid",))).verdict == "Followed by pid"
 
 
 def test_a_closed_loop_shows_the_median_with_the_poor_the_better_and_the_true_model(tmp_path):
-    it = of(by_hand.make_closing(tmp_path / "c"))
+    it = of(made_loops.make_closing(tmp_path / "c"))
     assert it.verdict == "A cause is named in 2 of 3 cases"
     assert "median of 3 cases" in it.numbers
     assert facts(it)["disturbance-observer"] == ("0.90", "0.10 N", "with the true model: 0.10 N")
-    one = of(by_hand.make_closing(tmp_path / "one", {"bend": by_hand.CASES["bend"]}))
+    one = of(made_loops.make_closing(tmp_path / "one", {"bend": made_loops.CASES["bend"]}))
     assert one.verdict == "A cause is not named"
     assert "median" not in one.numbers
 
@@ -118,7 +119,7 @@ def test_recordings_alone_have_no_verdict(dataset):
 
 @pytest.mark.usefixtures("undrawn")
 def test_it_stands_above_everything_else(dataset, tmp_path):
-    text = page(read_inputs([by_hand.make_diagnosis(dataset, tmp_path / "d", "named")]))
+    text = page(read_inputs([made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "named")]))
     assert text.index('class="verdict">Tendon outside') < text.index("<nav")
     shown = unescape(re.sub("<[^>]*>", "", text[text.index("<dl>") : text.index("</dl>")]))
     assert "0.910 → 0.110 N" in shown
@@ -137,7 +138,7 @@ def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
     law |= {"travel_mm": [0.0, 1.0], "after_reversal": [0.0, 2.0]}
     law |= {"place_mm": [0.0, 10.0], "along_stroke": [1.0, 1.1]}
     law["parameters"] = {"size_N": length, "x_out_size_mm": length}
-    folder = by_hand.make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
+    folder = made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
     with by_hand.edited(folder / "diagnosis.json") as content:
         content["verdict"] = "described"
     it = of(folder)

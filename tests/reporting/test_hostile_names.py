@@ -9,6 +9,7 @@ from html import unescape
 import pyarrow as pa
 import pytest
 
+from tests.reporting import made_diagnoses, made_loops
 from tests.reporting import made_folders as by_hand
 from tests.reporting.pages import chromium
 from tests.reporting.test_page import Outline, commands_of, without_script
@@ -87,7 +88,7 @@ def hostile(tmp_path_factory):
         cleaned = {"method": EVIL, "window_s": 1, "noise": 1, "unit": EVIL, "reversals": 1}
         for run in content["runs"].values():
             run |= {"solver": EVIL, "start": EVIL, "conditioning": {EVIL: cleaned}}
-    diagnose = by_hand.make_diagnosis(dataset, root / "diagnose", "named")
+    diagnose = made_diagnoses.make_diagnosis(dataset, root / "diagnose", "named")
     keys = ("unit", "reason", "next_experiment", "sentence", "label", "version")
     with spoil(diagnose / "diagnosis.json", *keys) as content:
         (cause,) = content["named"]
@@ -133,7 +134,7 @@ def test_commands_are_quoted_for_the_shell(hostile):
 
 
 def test_a_page_of_tracking_and_of_closing_is_harmless_too(tmp_path):
-    tracked = by_hand.make_tracking(tmp_path / "tracked")
+    tracked = made_loops.make_tracking(tmp_path / "tracked")
     keys = ("file", "origin", "quantity", "shape", "version")
     with spoil(tracked / "tracking.json", *keys) as content:
         content["notes"] = [EVIL]
@@ -142,11 +143,11 @@ def test_a_page_of_tracking_and_of_closing_is_harmless_too(tmp_path):
             result["condition"] += EVIL
         content["conditions"] = {k + EVIL: v for k, v in content["conditions"].items()}
     assert SHOWN in harmless(page(read_inputs([tracked])))
-    title, hidden, _, rows = by_hand.CASES["bend"]
+    title, hidden, _, rows = made_loops.CASES["bend"]
     cases = {EVIL: (EVIL + title, {EVIL: 1.0} | hidden, [{"effect": EVIL, "rivals": [EVIL]}], {
         name + EVIL: rmse for name, rmse in rows.items()
     })}  # fmt: skip
-    loop = by_hand.make_closing(tmp_path / "loop", cases, version=EVIL)
+    loop = made_loops.make_closing(tmp_path / "loop", cases, version=EVIL)
     assert SHOWN in harmless(page(read_inputs([loop])))
 
 

@@ -1,36 +1,31 @@
 import re
+import shutil
 
 import pytest
 
 import tsas_cli as tsas
-from tests.comparing.made import NOMINAL, ROUGH, SENSORS, calibrated, clean
 from tests.reporting.made_folders import edited, make_dataset, make_prediction
 from tests.reporting.test_page import Outline, without_script
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.model_file import write_model
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.reporting.prediction import section
-from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
-from tsas_studies.challenge.rig.sensors import measure
 
 HOSTILE = "<script>$x$"
 
 
 @pytest.fixture(scope="module")
-def predicted(tmp_path_factory):
-    """Two models, each of one of two rigs, that predict a run of both."""
+def folder(tmp_path_factory):
+    """What two models predict of two runs."""
     root = tmp_path_factory.mktemp("prediction")
-    models = [calibrated(root, rig, seed=seed) for seed, rig in ((1, NOMINAL), (2, ROUGH))]
-    runs = [
-        Run(name, measure(clean(rig, 1.0), SENSORS, seed=20 + k), conditions(rig))
-        for k, (name, rig) in enumerate((("a", NOMINAL), (HOSTILE, ROUGH)))
-    ]
-    write_dataset(root / "new", runs, name="bench & <b>")
-    return tsas.predict(models, root / "new", out=root / "predicted")
-
-
-@pytest.fixture(scope="module")
-def folder(predicted):
-    return predicted.out
+    dataset = make_dataset(root / "new", ("a", HOSTILE), name="bench & <b>", samples=1000)
+    for name, friction in (("smooth", 0.125), ("rough", 0.2)):
+        estimates = (Estimate("friction_coefficient", friction, "1", "given"),)
+        write_model(root / f"{name}.toml", Model(estimates), version="0", dataset={})
+    models = [root / "smooth.toml", root / "rough.toml"]
+    return tsas.predict(models, dataset, out=root / "predicted", fit_own=False).out
 
 
 @pytest.fixture(scope="module")
@@ -47,21 +42,25 @@ def test_the_loops_are_drawn_under_the_tables(folder, text):
     assert captions == ["Models", "Predictions", "Ranges that the models were fitted to"]
 
 
-def test_the_run_whose_predictions_differ_most_comes_first(predicted, folder):
-    """Each model is right in one run; the other one then misses more."""
-    ratios = {
-        row.run: max(row.ratio, 1.0 / row.ratio)
-        for row in predicted.record.channels
-        if (row.channel, row.model) == ("f_in_N", "B")
-    }
-    first = max(ratios, key=ratios.get)
-    assert section(read_inputs([folder])).groups[0].name == f"Run {first}"
+@pytest.mark.usefixtures("undrawn")
+def test_the_run_whose_predictions_differ_most_comes_first(folder, tmp_path):
+    """Whichever model it is that misses more."""
+    for first, ratios in ((HOSTILE, (0.5, 0.4)), (HOSTILE, (2.0, 3.0)), ("a", (0.4, 2.0))):
+        changed = tmp_path / f"{ratios}"
+        shutil.copytree(folder, changed / "predicted")
+        shutil.copytree(folder.parent / "new", changed / "new")
+        with edited(changed / "predicted" / "predict.json") as content:
+            for row in content["channels"]:
+                if row["model"] == "B":
+                    row["ratio"] = ratios[row["run"] == HOSTILE]
+        made = section(read_inputs([changed / "predicted"]))
+        assert made.groups[0].name == f"Run {first}"
 
 
 def test_names_from_files_show_as_text_and_the_call_is_repeated(text):
     assert not re.search(r"https?://(?!www\.w3)|@import|<script", without_script(text))
     assert "&lt;script&gt;$x$" in text
-    assert re.search(r"tsas predict \S+calibrated-1 \S+calibrated-2 \S+new --out", text)
+    assert re.search(r"tsas predict \S+smooth.toml \S+rough.toml \S+new .*--out", text)
     assert "B predicts best" in text or "A predicts best" in text
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.reporting import made_diagnoses
 from tests.reporting import made_folders as by_hand
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -17,13 +18,13 @@ from tsas_cli.support.files import sha256_of
 
 @pytest.fixture
 def diagnosed(dataset, tmp_path):
-    folder = by_hand.make_diagnosis(dataset, tmp_path / "diagnose", "named")
+    folder = made_diagnoses.make_diagnosis(dataset, tmp_path / "diagnose", "named")
     length = Estimate(
         "free_tendon.proximal_length_mm", 152.0, "mm", "fitted", None, 3.1, 145.9, 158.1
     )
     fixed = Estimate("x_out_zero_mm", 0.0, "mm", "given", "a")
     write_model(folder / EXTENDED_MODEL, Model((length, fixed)), version="0.1.0", dataset={})
-    return by_hand.write_predictions(dataset, folder, by_hand.off_at_the_end)
+    return made_diagnoses.write_predictions(dataset, folder, made_diagnoses.off_at_the_end)
 
 
 def test_nominal_and_extended_model_stand_beside_the_simulation(dataset, diagnosed, tmp_path):

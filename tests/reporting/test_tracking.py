@@ -8,7 +8,8 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from tests.reporting.made_folders import edited, make_tracking
+from tests.reporting.made_folders import edited
+from tests.reporting.made_loops import make_tracking
 from tests.reporting.test_page import Outline, cells, commands_of, headings
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.reporting.colours import STAND_IN, of_controller

@@ -23,7 +23,7 @@ def broken(wire, bucket, monkeypatch):
     """The wire before the storage, with short limits; the bucket is there."""
     monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     assert not location_of(f"{bucket}/opened").is_file()  # its libraries take their time
-    monkeypatch.setenv(TIMEOUT, "1")
+    monkeypatch.setenv(TIMEOUT, "0.5")
     return wire
 
 

@@ -37,6 +37,7 @@ def test_no_credentials(bucket, monkeypatch):
 
 
 def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
+    monkeypatch.setattr(storage, "PAUSE_S", 0.05)
     monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{free_port()}")
     before = time.monotonic()
     assert "s3://a/b/dataset.toml: the storage cannot be reached" in line_of("s3://a/b")

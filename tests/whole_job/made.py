@@ -9,7 +9,7 @@ from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
 RATE_HZ = 30.0
-RIG = Rig(friction_coefficient=0.14, proximal_length_mm=250.0, cells=30)
+RIG = Rig(friction_coefficient=0.14, proximal_length_mm=400.0, cells=30)
 MAP = """
 [dataset]
 name = "bench-42"

@@ -6,19 +6,11 @@ from tempfile import TemporaryDirectory
 from tests.fuzz.foreign import Offering, whole_file
 from tests.fuzz.rules import chosen
 from tests.recordings.readers.bags import save_mcap, save_ros1, save_ros2
-from tsas_cli.recordings.readers import bags  # noqa: F401 # instrumented
 
 FORMATS = [whole_file(Offering("bags"), f"a.{suffix}") for suffix in ("mcap", "bag", "db3")]
 SHARE = 0.1
 MOST_BYTES = 50_000
-WORDS = (
-    b"#ROSBAG V2.0",
-    b"SQLite format 3",
-    b"MCAP0\r\n",
-    b"float64[] a",
-    b"msg/Force",
-    b"cdr",
-)
+WORDS = (b"#ROSBAG V2.0", b"SQLite format 3", b"MCAP0\r\n", b"float64[] a", b"msg/Force", b"cdr")
 
 
 def one(data):

@@ -1,13 +1,11 @@
 """Files of LabVIEW: the first byte chooses between TDMS and LVM."""
 
-import io
+from functools import partial
 
-import numpy as np
-from nptdms import ChannelObject, TdmsWriter
-
-from tests.fuzz.foreign import Offering, whole_file
+from tests.fuzz.foreign import Offering, files_of, whole_file
 from tests.fuzz.rules import Scratch, read_all
-from tsas_cli.recordings.readers import labview, tdms  # noqa: F401 # instrumented
+from tests.recordings.readers.test_labview import TIME, lvm, tdms
+from tsas_cli.recordings.readers import labview  # noqa: F401 # instrumented
 
 SHARE = 0.3
 MOST_BYTES = 4000
@@ -24,13 +22,8 @@ def one(data):
 
 
 def seeds():
-    for said in ({}, {"wf_increment": 0.1, "wf_start_offset": 0.0}):
-        stream = io.BytesIO()
-        with TdmsWriter(stream) as file:
-            file.write_segment([ChannelObject("a", n, np.arange(4.0), said) for n in ("f", "x")])
-        yield b"\0" + stream.getvalue()
-    for kind, first in (("One", "0.5"), ("No", "")):
-        end = "***End_of_Header***\t\n"
-        head = f"LabVIEW Measurement\nX_Columns\t{kind}\n{end}\nChannels\t1\nDelta_X\t0.1\n{end}"
-        text = f"{head}X_Value\tf\tComment\n{first}\t1\tgo\n{first}\t2\n"
-        yield b"\xff" + text.encode()
+    groups = {"a": {"f": (TIME, {}), "x": (TIME, {})}}
+    clock = {"wf_increment": 0.1, "wf_start_offset": 0.0}
+    written = (partial(tdms, groups=groups), partial(tdms, groups=groups, **clock))
+    yield from (b"\0" + content for content in files_of("a.tdms", *written)())
+    yield from (b"\xff" + content for content in files_of("a.lvm", lvm, partial(lvm, x="No"))())

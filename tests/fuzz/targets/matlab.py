@@ -3,15 +3,14 @@
 import random
 import struct
 import zlib
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from functools import partial
 
 import numpy as np
 from scipy.io import savemat
 
-from tests.fuzz.foreign import Offering, whole_file
+from tests.fuzz.foreign import Offering, files_of, whole_file
 from tests.recordings.readers.matlab_files import controldesk
-from tsas_cli.recordings.readers import matlab as _reader  # noqa: F401 # instrumented
+from tests.recordings.readers.test_matlab import T, one_channel_5, plain_5
 
 SHARE = 0.12
 WORDS = tuple(struct.pack("<I", kind) for kind in (*range(1, 19), 0x10001, 0x40006))
@@ -53,26 +52,15 @@ def _closed(part: bytes) -> bytes:
 
 
 def seeds():
-    time_s = np.arange(4) / 10
-    plain = {
-        "t": time_s,
-        "i": np.arange(4, dtype=np.int16),
-        "m": np.c_[time_s, time_s],
-        "s": {"a": time_s, "b": {"c": 3.0}},
-        "w": "50 mm",
-    }
-    cells = np.array(["a", time_s], dtype=object)
-    channels = [("force", time_s, "N", 1), ("speed", time_s[:2], "rpm", 2)]
-    with TemporaryDirectory() as name:
-        path = Path(name) / "a.mat"
-        for content in (
-            plain,
-            {"c": cells, "z": np.array([1 + 2j]), "e": np.empty(0), "b": time_s > 0},
-            {"rec": controldesk([time_s, time_s[:2]], channels)},
-            {"rec": controldesk([time_s], channels[:1])},
-        ):
-            for compressed in (False, True):
-                savemat(path, content, do_compression=compressed)
-                yield path.read_bytes()
-        savemat(path, {"t": time_s, "m": np.c_[time_s, time_s]}, format="4")
-        yield path.read_bytes()
+    cells = {"c": np.array(["a", T], dtype=object), "z": np.array([1 + 2j]), "e": np.empty(0)}
+    rasters = {"rec": controldesk([T, T[:2]], [("force", T, "N", 1), ("speed", T[:2], "rpm", 2)])}
+    others = [
+        partial(savemat, mdict=content, do_compression=packed)
+        for content in (cells, rasters)
+        for packed in (False, True)
+    ]
+    others += [
+        partial(savemat, mdict={"t": T, "s": {"a": T}, "w": "50 mm"}, do_compression=True),
+        partial(savemat, mdict={"t": T, "m": np.c_[T, T]}, format="4"),
+    ]
+    yield from files_of("a.mat", plain_5, one_channel_5, *others)()

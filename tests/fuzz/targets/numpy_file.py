@@ -1,11 +1,11 @@
-"""NumPy's files: the first byte chooses between `.npy` and `.npz`."""
+"""Arrays of NumPy: the first byte chooses between `.npy` and `.npz`."""
 
 import io
 
 import numpy as np
 
-from tests.fuzz.foreign import Offering, whole_file
-from tsas_cli.recordings.readers import numpy_file as _reader  # noqa: F401 # instrumented
+from tests.fuzz.foreign import Offering, files_of, whole_file
+from tests.recordings.readers.test_offered import DATES, FORCE, TIME, npz
 
 MOST_BYTES = 6000
 SHARE = 0.12
@@ -18,13 +18,10 @@ def one(data):
 
 
 def seeds():
-    t = np.arange(4) / 10
-    records = np.array(list(zip(t, t, strict=True)), [("t", "f8"), ("f", "f4")])
-    for array in (np.c_[t, t], records, t.astype("datetime64[s]")):
+    records = np.array(list(zip(TIME, TIME, strict=True)), [("t", "f8"), ("f", "f4")])
+    for array in (np.c_[TIME, FORCE], records, DATES):
         stream = io.BytesIO()
         np.save(stream, array)
         yield b"\0" + stream.getvalue()
-    for save in (np.savez, np.savez_compressed):
-        stream = io.BytesIO()
-        save(stream, t=t, m=np.c_[t, t], o=np.array([{}, 1], dtype=object))
-        yield b"\xff" + stream.getvalue()
+    packed = files_of("a.npz", npz, lambda path: np.savez_compressed(path, t=TIME))
+    yield from (b"\xff" + content for content in packed())

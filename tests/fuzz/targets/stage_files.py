@@ -7,6 +7,7 @@ from typing import Any
 
 from tests.fuzz.documents import after_a_byte, json_document
 from tests.fuzz.rules import Scratch, answer
+from tests.reporting import made_diagnoses, made_loops
 from tests.reporting import made_folders as made
 from tsas_cli.comparing.sides import STAGES as COMPARED
 from tsas_cli.comparing.sides import read_side
@@ -51,10 +52,10 @@ def seeds():
         made.make_check(data, folder / "check")
         made.make_calibration(data, folder / "calibrate")
         made.make_simulation(data, folder / "simulate")
-        made.make_diagnosis(data, folder / "diagnose", "named")
+        made_diagnoses.make_diagnosis(data, folder / "diagnose", "named")
         made.make_prediction(data, folder / "predict")
-        made.make_tracking(folder / "track")
-        made.make_closing(folder / "close")
+        made_loops.make_tracking(folder / "track")
+        made_loops.make_closing(folder / "close")
         for path in sorted(folder.glob("*/*.json")):
             content = json.dumps(_short(json.loads(path.read_text(encoding="utf-8"))))
             yield bytes([FILES.index(path.name)]) + content.encode()

@@ -9,7 +9,8 @@ import pyarrow as pa
 from rerun.blueprint import View
 from rerun.chunk import RrdReader
 
-from tests.reporting.made_folders import make_diagnosis, play
+from tests.reporting.made_diagnoses import make_diagnosis
+from tests.reporting.made_folders import play
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.reporting.inputs import read_inputs

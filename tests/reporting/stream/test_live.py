@@ -5,7 +5,8 @@ import pyarrow.parquet as pq
 import pytest
 from rerun.chunk import RrdReader
 
-from tests.reporting.made_folders import make_dataset, make_simulation, make_tracking
+from tests.reporting.made_folders import make_dataset, make_simulation
+from tests.reporting.made_loops import make_tracking
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording

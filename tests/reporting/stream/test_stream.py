@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.reporting import made_folders as by_hand
+from tests.reporting import made_loops
 from tests.reporting.stream.streams import make_diagnosed, stream
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.reporting.colours import dark
@@ -196,7 +197,7 @@ def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
 
 def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_path):
     """The made force is missed by 1 N undisturbed, and by 2 N disturbed."""
-    found = stream(tmp_path, by_hand.make_tracking(tmp_path / "tracked"))
+    found = stream(tmp_path, made_loops.make_tracking(tmp_path / "tracked"))
     for condition, missed_N in (("undisturbed", 1.0), ("disturbed", 2.0)):
         run = f"/run/pid-{condition}"
         assert found[f"{run}/tracking_error_N"].scalars == pytest.approx(missed_N)

@@ -1,6 +1,7 @@
 """What the viewer opens with."""
 
 from tests.reporting import made_folders as by_hand
+from tests.reporting import made_loops
 from tests.reporting.stream.streams import make_diagnosed, read, shown, views
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import stream_of, write_stream
@@ -26,7 +27,7 @@ def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
         by_hand.make_calibration(dataset, tmp_path / "calibrate"): ["Overview"],
         by_hand.make_simulation(dataset, tmp_path / "simulate"): ["Overview", "Residuals"],
         make_diagnosed(dataset, tmp_path / "diagnose"): ["Overview", "Residuals"],
-        by_hand.make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
+        made_loops.make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
     }
     for folder, names in made.items():
         found, opens = tabs(folder)
@@ -40,7 +41,7 @@ def test_every_view_shows_something_that_was_recorded(dataset, tmp_path):
         by_hand.make_simulation(dataset, tmp_path / "simulate"),
         make_diagnosed(dataset, tmp_path / "diagnose"),
     ]
-    for number, given in enumerate([folders, [by_hand.make_tracking(tmp_path / "track")]]):
+    for number, given in enumerate([folders, [made_loops.make_tracking(tmp_path / "track")]]):
         inputs, path = read_inputs(given), tmp_path / f"{number}.rrd"
         write_stream(inputs, path)
         recorded = set(read(path))

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
+from tests.reporting import made_diagnoses
 from tests.reporting import made_folders as by_hand
 from tests.reporting.stream.streams import stream
 from tsas_cli.identification.estimate import Estimate
@@ -56,7 +57,7 @@ def answer(recording, one, samples=None):
 def made(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("tendon")
     dataset = by_hand.make_dataset(folder / "dataset", ids=("a",), samples=1500)
-    out = by_hand.make_diagnosis(dataset, folder / "diagnose", "named")
+    out = made_diagnoses.make_diagnosis(dataset, folder / "diagnose", "named")
     for name, one in (("model-nominal.toml", NOMINAL), ("model-extended.toml", EXTENDED)):
         write_model(out / name, MODELS[one], version="0.1.0", dataset=by_hand.source(dataset, out))
     (out / "runs").mkdir()
@@ -172,7 +173,7 @@ def test_a_simulation_shows_its_one_model(made, tmp_path):
 def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
     dataset = made / "dataset"
     assert view_in(by_hand.make_simulation(dataset, tmp_path / "simulate")) is None
-    assert view_in(by_hand.make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
+    assert view_in(made_diagnoses.make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
     out = tmp_path / "static"
     tsas.simulate(dataset, dynamics="static", out=out)
     assert json.loads((out / "simulation.json").read_text())["dynamics"] == "static"

@@ -24,5 +24,6 @@ def test_ports_asked_for_follow_each_other_up_to_the_last():
 def test_a_port_in_use_is_refused_whoever_it_is_bound_to(address):
     with socket.create_server((address, 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(InputError, match=rf"port {port} cannot be had .*in use"):
+        told = rf"^--port: port {port} cannot be had \(.*in use.*\); choose"
+        with pytest.raises(InputError, match=told):
             free_ports(1, port)
