@@ -223,6 +223,9 @@ def test_friction_at_the_drive_that_differs_with_the_speed_is_said():
     text = said("drive_law", friction_1_N=1.0, speed_2=-0.1, speed_3=-0.2)
     assert "; friction changes from 0 to -20 % from 1 to 10 mm/s" in text
     assert "mm/s" not in said("drive_law", friction_1_N=1.0, speed_3=0.02)
+    text = said("drive_law", friction_1_N=1.0, place_3=0.3, place_5=-0.2)
+    assert "; it changes between -20 and 30 % along the stroke" in text
+    assert "stroke" not in said("drive_law", friction_1_N=1.0, place_4=0.02)
 
 
 def test_a_gap_is_said_where_it_carries_most():

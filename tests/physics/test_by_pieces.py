@@ -38,6 +38,7 @@ REMEMBERED = {
     "drive_law.share_3": 0.1,
     "drive_law.gap_friction_2_N": 0.7,
     "drive_law.speed_3": 0.3,
+    "drive_law.place_3": 0.4,
     "load_law.lost_1_mm": 0.3,
     "tendon_law.start_1": 0.4,
 }

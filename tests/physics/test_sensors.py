@@ -121,10 +121,13 @@ def test_the_laws_of_an_end_act_where_its_quantity_is_not_given():
     values = {"drive_law.travel_mm": 4.0, "drive_law.friction_1_N": 2.0, "drive_law.speed_2": 0.25}
     values |= {"drive_law.slow_mm_per_s": 0.1, "drive_law.fast_mm_per_s": 100.0}
     values |= {"drive_law.speed_3": 0.5, "load_law.travel_mm": 4.0, "load_law.lost_1_mm": 0.3}
+    values |= {"drive_law.low_mm": 5.0, "drive_law.high_mm": 25.0, "drive_law.place_2": 0.2}
+    values |= {"drive_law.place_3": 0.4, "drive_law.place_4": 0.6, "drive_law.place_5": 0.8}
     time_s, moved = np.array([0.0, 0.1, 0.6, 0.8, 1.8]), np.array([5.0, 6.0, 8.0, 28.0, 27.0])
     share = np.array([0.0, 0.25, 0.75, 1.0, 0.75])  # of the element, which yields after 4 mm
     fast = np.log10([0.1, 10.0, 4.0, 100.0, 1.0]) + 1.0  # decades over the slow speed
-    force, memory = 2.0 * share * (1.0 + 0.5 * fast / 3.0), new_memory()
+    place = np.array([0.0, 0.04, 0.12, 0.8, 0.8])  # 0.04 for each mm, up to 25 mm
+    force, memory = 2.0 * share * (1.0 + 0.5 * fast / 3.0 + place), new_memory()
 
     def answer(part=slice(None), memory=None, boundary=DRIVEN, **how):
         x = moved[part]
@@ -134,7 +137,8 @@ def test_the_laws_of_an_end_act_where_its_quantity_is_not_given():
     parts = [answer(part, memory) for part in (slice(0, 2), slice(2, None))]
     np.testing.assert_allclose(np.concatenate([part.f_in for part in parts]), force)
     np.testing.assert_allclose(np.concatenate([part.x_out for part in parts]), moved - 0.3 * share)
-    np.testing.assert_allclose(answer(motor_mm=moved, x_in=0.0 * moved).f_in, force)
-    np.testing.assert_allclose(answer(time_s=None).f_in, 2.0 * share)
+    by_motor = answer(motor_mm=moved, x_in=5.0 + 0.0 * moved).f_in  # the place is the drive's
+    np.testing.assert_allclose(by_motor, 2.0 * share * (1.0 + 0.5 * fast / 3.0))
+    np.testing.assert_allclose(answer(time_s=None).f_in, 2.0 * share * (1.0 + place))
     given = answer(boundary=Boundary(FORCE, DISPLACEMENT))
     np.testing.assert_array_equal((given.f_in, given.x_out), (0.0 * moved, moved))

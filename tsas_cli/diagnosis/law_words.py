@@ -29,7 +29,7 @@ from tsas_cli.support.arrays import Floats
 
 BUILT_UP = 0.9  # share of the change after a reversal from which it is built up
 POINTS = 200  # of a drawn curve
-SPEED = 0.03  # share of the friction, below which its change with the speed is not said
+SPEED = 0.03  # share of the friction, below which its change with speed or place is not said
 LEAST = 0.1  # of the largest part of a law, below which a part is not worth a clause
 WHAT = {  # what each law changes, and its unit in the names of its parameters
     "drive_law": ("f_in [N]", "_N"),
@@ -147,7 +147,8 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         parts[-1] += exponential(travel, change)
         gap = _gap(name, value, float(np.mean(tensions)))
         parts[-1] += f", hardly over a gap of {_two(gap)} mm in its middle" if gap > 0.0 else ""
-        parts += _over_speed(value, SPEED) if name == "drive_law" else []
+        if name == "drive_law":
+            parts += [*_over_speed(value, SPEED), *_over_place(value)]
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
@@ -186,6 +187,14 @@ def _over_speed(value: Mapping[str, float], least: float) -> list[str]:
     speeds = np.geomspace(value["slow_mm_per_s"], value["fast_mm_per_s"], 3)
     form = power(speeds, 1.0 + shares)
     return [f"friction changes {_along(100.0 * shares)} % from {ends}{form}"]
+
+
+def _over_place(value: Mapping[str, float]) -> list[str]:
+    """Return the clause on a friction that differs along the stroke by more than a share of it."""
+    shares = np.array([0.0, *(value[f"place_{k}"] for k in range(2, KNOTS + 1))])
+    if np.ptp(shares) <= SPEED:
+        return []
+    return [f"it changes {_along(100.0 * shares)} % along the stroke{straight_line(shares)}"]
 
 
 def _two(value: float) -> str:

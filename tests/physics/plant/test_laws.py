@@ -25,7 +25,7 @@ STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=5e5))
 RANGES = {"travel_mm": 3.0, "low_mm": 0.0, "high_mm": 10.0, "fast_mm_per_s": 20.0}
 AT_DRIVE = RANGES | {
     "friction_1_N": 2.0, "friction_4_N": 1.0, "share_2": 0.05, "gap_friction_1_N": 1.0,
-    "curve_4_N": 1.5, "speed_3": 0.2,
+    "curve_4_N": 1.5, "speed_3": 0.2, "place_3": 0.3,
 }  # fmt: skip
 ON_TENDON = RANGES | {"start_1": 0.3, "start_3": 0.3, "curve_4": 0.2, "speed_3": -0.2}
 

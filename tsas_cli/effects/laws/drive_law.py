@@ -2,12 +2,13 @@
 
 What one sees: a residual of f_in that repeats with the displacement of the drive: with its place,
 and with the travel since its reversals; f_out and x_out have none of it.
-Equation: f_in = T + (1 + speed(ln|v|))·(Σ (friction_k + share_k·T)·s_k + Σ (gap_friction_k +
-gap_share_k·T)·g_k) + curve(x), T the tension of the tendon, s_k the stop operator of width
-travel·4^(1−k) on the displacement of the motor where its angle was recorded, else of the drive, g_k
-that of width travel·2^(1−k) whose spring is loose over half of it, v the speed of that
-displacement: generalised Maxwell slip (Al-Bender, Lampaert and Swevers 2005). With weights that are
-not negative its elements only dissipate at a steady speed. The paper has none.
+Equation: f_in = T + (1 + speed(ln|v|) + place(x))·(Σ (friction_k + share_k·T)·s_k +
+Σ (gap_friction_k + gap_share_k·T)·g_k) + curve(x), T the tension of the tendon, s_k the stop
+operator of width travel·4^(1−k) on the displacement of the motor where its angle was recorded, else
+of the drive, g_k that of width travel·2^(1−k) whose spring is loose over half of it, v the speed of
+that displacement, place 0 at the low end of the stroke: generalised Maxwell slip (Al-Bender,
+Lampaert and Swevers 2005). With weights that are not negative its elements only dissipate at a
+steady speed and an even place. The paper has none.
 Mistaken for: a cause. A law describes what no proven cause explains: friction, lost motion or
 springs at the drive, and whatever else acts there.
 Not validated: displacements, tensions and speeds beyond those that it was fitted to.
@@ -69,10 +70,16 @@ class DriveLaw(NamedTuple):
     curve_5_N: float = 0.0
     speed_2: float = 0.0
     speed_3: float = 0.0
+    place_2: float = 0.0
+    place_3: float = 0.0
+    place_4: float = 0.0
+    place_5: float = 0.0
 
 
 FIRST = 5  # of the weights
 LAST = FIRST + 2 * (ELEMENTS + GAPS)
+SPEEDS = LAST + KNOTS  # of the factor of the elements, from the middle speed on
+PLACES = SPEEDS + 2  # and over the place, from the second height on
 
 
 def drive_law_widths(law: DriveLaw) -> Floats:
@@ -112,7 +119,7 @@ def _forces(
 def drive_law_at(law: Floats, memory: Floats, x: float, speed: float, tension: float) -> float:
     """Return the force beside the tendon at one moment [N].
 
-    `law` are the fields of `DriveLaw` in a row, shape (32,): as a record they would take a minute
+    `law` are the fields of `DriveLaw` in a row, shape (36,): as a record they would take a minute
     to compile. `memory` is that of the elements at this moment.
     """
     force = 0.0
@@ -121,9 +128,10 @@ def drive_law_at(law: Floats, memory: Floats, x: float, speed: float, tension: f
     for k in range(GAPS):
         at = FIRST + 2 * ELEMENTS + k
         force += (law[at] + law[at + GAPS] * tension) * beyond_gap(memory[1 + ELEMENTS + k])
-    force *= 1.0 + speed_curve_at(
-        speed, law[SLOW], law[FAST], law[LAST + KNOTS], law[LAST + KNOTS + 1]
-    )
+    factor = 1.0 + speed_curve_at(speed, law[SLOW], law[FAST], law[SPEEDS], law[SPEEDS + 1])
+    heights = (0.0, law[PLACES], law[PLACES + 1], law[PLACES + 2], law[PLACES + 3])
+    factor += curve_at(x, law[LOW], law[HIGH], heights)
+    force *= max(factor, 0.0)
     return force + curve_at(x, law[LOW], law[HIGH], law[LAST : LAST + KNOTS])
 
 
@@ -132,7 +140,7 @@ DRIVE_LAW = Effect(
     title="Force at the drive, of unnamed origin",
     acts_on="drive",
     closed_form=True,
-    equation="f_in = T + (1 + speed(ln|v|))·(Σ (friction_k + share_k·T)·s_k + "
+    equation="f_in = T + (1 + speed(ln|v|) + place(x))·(Σ (friction_k + share_k·T)·s_k + "
     "Σ (gap_friction_k + gap_share_k·T)·g_k) + curve(x)",
     doc=__doc__,
     parameters=(
@@ -147,6 +155,7 @@ DRIVE_LAW = Effect(
         *(Parameter(f"gap_share_{k}", "1", 0.0, 0.1, 0.0, 1.0) for k in range(1, 5)),
         *(Parameter(f"curve_{k}_N", "N", 0.0, 1.0, -1e6, 1e6) for k in range(1, 6)),
         *(Parameter(f"speed_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(2, 4)),
+        *(Parameter(f"place_{k}", "1", 0.0, 0.1, -1.0, 10.0) for k in range(2, 6)),
     ),
     experiment="Nested strokes of the drive without the tendon: what f_in reads is this law alone.",
 )
