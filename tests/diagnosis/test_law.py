@@ -101,6 +101,8 @@ def test_a_parameter_that_does_as_much_as_the_residual_costs_a_tenth_of_a_block(
 
     assert cost("drive_law.friction_3_N", 2.0) == pytest.approx(2.5)
     assert cost("drive_law.gap_share_1", 0.1) == pytest.approx(2.5)
+    assert cost("drive_law.place_2", 0.1) == pytest.approx(2.5)
+    assert cost("drive_law.speed_2", 0.3) == pytest.approx(2.5)
     assert cost("load_law.lost_2_mm", 0.05) == pytest.approx(2.5)
     assert cost("load_law.compliance_mm_per_N", 0.0025) == pytest.approx(2.5)
     assert cost("tendon_law.start_1", -0.3) == pytest.approx(2.5)

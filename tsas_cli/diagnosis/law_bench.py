@@ -28,7 +28,8 @@ CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"
 WIDEST = {"drive_law": 0.25, "tendon_law": 0.125, "load_law": 0.25}
 REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
 PRIOR = 0.1  # of a block's squares, the cost of a parameter that does as much as the residual
-PLAUSIBLE_FACTOR = 0.3  # of a law that changes the friction
+PLAUSIBLE_FACTOR = 0.3  # of a law that changes the friction,
+PLAUSIBLE_PLACE = 0.1  # along the stroke of the drive: 0.3 predicts a damper at twice the error
 
 
 def ranges_of(runs: Sequence[Prepared]) -> dict[str, dict[str, float]]:
@@ -101,6 +102,7 @@ def priors_of(bench: Bench, without: HypothesisFit, folds: Folds) -> dict[str, f
         rms = next(float(e.weights[channel][0]) for e in bench.closed if channel in e.samples)
         of_tension = "share" in parameter or quantity.unit == "mm/N"
         factor = PLAUSIBLE_FACTOR if quantity.unit == "1" else rms
+        factor = PLAUSIBLE_PLACE if parameter.startswith("place_") else factor
         size = rms / tension if of_tension else factor
         priors[name] = math.sqrt(PRIOR * block) * quantity.size / size
     return priors
