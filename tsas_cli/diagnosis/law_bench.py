@@ -101,9 +101,10 @@ def priors_of(bench: Bench, without: HypothesisFit, folds: Folds) -> dict[str, f
             continue
         rms = next(float(e.weights[channel][0]) for e in bench.closed if channel in e.samples)
         of_tension = "share" in parameter or quantity.unit == "mm/N"
-        factor = PLAUSIBLE_FACTOR if quantity.unit == "1" else rms
-        factor = PLAUSIBLE_PLACE if parameter.startswith("place_") else factor
-        size = rms / tension if of_tension else factor
+        of_place = parameter.startswith("place_")
+        factor = PLAUSIBLE_PLACE if of_place else PLAUSIBLE_FACTOR
+        size = factor if quantity.unit == "1" else rms
+        size = rms / tension if of_tension else size
         priors[name] = math.sqrt(PRIOR * block) * quantity.size / size
     return priors
 

@@ -29,7 +29,7 @@ from tsas_cli.support.arrays import Floats
 
 BUILT_UP = 0.9  # share of the change after a reversal from which it is built up
 POINTS = 200  # of a drawn curve
-SPEED = 0.03  # share of the friction, below which its change with speed or place is not said
+LEAST_CHANGE = 0.03  # of friction with speed or place, a share, below which it is not said
 LEAST = 0.1  # of the largest part of a law, below which a part is not worth a clause
 WHAT = {  # what each law changes, and its unit in the names of its parameters
     "drive_law": ("f_in [N]", "_N"),
@@ -148,7 +148,7 @@ def sentence_of(name: str, value: Mapping[str, float], tensions: tuple[float, fl
         gap = _gap(name, value, float(np.mean(tensions)))
         parts[-1] += f", hardly over a gap of {_two(gap)} mm in its middle" if gap > 0.0 else ""
         if name == "drive_law":
-            parts += [*_over_speed(value, SPEED), *_over_place(value)]
+            parts += [*_over_speed(value, LEAST_CHANGE), *_over_place(value)]
     if span > LEAST * high:
         subject = "a force changes" if name == "drive_law" else "x_out deviates"
         unit = "N" if name == "drive_law" else "mm"
@@ -192,7 +192,7 @@ def _over_speed(value: Mapping[str, float], least: float) -> list[str]:
 def _over_place(value: Mapping[str, float]) -> list[str]:
     """Return the clause on a friction that differs along the stroke by more than a share of it."""
     shares = np.array([0.0, *(value[f"place_{k}"] for k in range(2, KNOTS + 1))])
-    if np.ptp(shares) <= SPEED:
+    if np.ptp(shares) <= LEAST_CHANGE:
         return []
     return [f"it changes {_along(100.0 * shares)} % along the stroke{straight_line(shares)}"]
 

@@ -95,6 +95,12 @@ def curve_of(values: Floats, low: float, high: float, heights: Sequence[float]) 
 
 
 @kernel
+def place_curve_at(value: float, low: float, high: float, heights: Floats) -> float:
+    """Return `curve_at` that is 0 at the low end; `heights` are the others, shape (KNOTS − 1,)."""
+    return curve_at(value, low, high, (0.0, heights[0], heights[1], heights[2], heights[3]))
+
+
+@kernel
 def speed_curve_at(speed: float, slow: float, fast: float, middle: float, highest: float) -> float:
     """Return a curve over the logarithm of the speed, 0 at the low speed and constant outside.
 

@@ -28,6 +28,7 @@ from tsas_cli.numerics.stops import (
     beyond_gap,
     curve_at,
     move_elements,
+    place_curve_at,
     speed_curve_at,
     widths_of,
     widths_with_gaps,
@@ -129,8 +130,7 @@ def drive_law_at(law: Floats, memory: Floats, x: float, speed: float, tension: f
         at = FIRST + 2 * ELEMENTS + k
         force += (law[at] + law[at + GAPS] * tension) * beyond_gap(memory[1 + ELEMENTS + k])
     factor = 1.0 + speed_curve_at(speed, law[SLOW], law[FAST], law[SPEEDS], law[SPEEDS + 1])
-    heights = (0.0, law[PLACES], law[PLACES + 1], law[PLACES + 2], law[PLACES + 3])
-    factor += curve_at(x, law[LOW], law[HIGH], heights)
+    factor += place_curve_at(x, law[LOW], law[HIGH], law[PLACES : PLACES + KNOTS - 1])
     force *= max(factor, 0.0)
     return force + curve_at(x, law[LOW], law[HIGH], law[LAST : LAST + KNOTS])
 

@@ -20,12 +20,13 @@ import numpy as np
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.effects.laws import FAST, HIGH, LOW, SLOW, TRAVEL
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.stops import RATIO, curve_at, speed_curve_at
+from tsas_cli.numerics.stops import KNOTS, RATIO, place_curve_at, speed_curve_at
 from tsas_cli.support.arrays import Floats
 
 STARTS = 4
 FIRST_START = 5  # of the fields in a row
-HEIGHTS = FIRST_START + STARTS  # of the curve, then those over speed
+HEIGHTS = FIRST_START + STARTS  # of the curve
+SPEEDS = HEIGHTS + KNOTS - 1  # of that over the speed, from the middle one on
 
 
 class TendonLaw(NamedTuple):
@@ -68,11 +69,10 @@ def _factors(law: Floats, x: Floats, travel: Floats, speed: Floats) -> Floats:
 @kernel
 def tendon_law_at(law: Floats, x: float, travel: float, speed: float) -> float:
     """Return the factor at one moment [1]; `law` are the fields of `TendonLaw`, shape (15,)."""
-    heights = (0.0, law[HEIGHTS], law[HEIGHTS + 1], law[HEIGHTS + 2], law[HEIGHTS + 3])
-    factor = 1.0 + curve_at(x, law[LOW], law[HIGH], heights)
+    factor = 1.0 + place_curve_at(x, law[LOW], law[HIGH], law[HEIGHTS:SPEEDS])
     for k in range(STARTS):
         factor += law[FIRST_START + k] * math.exp(-travel / (law[TRAVEL] * RATIO**k))
-    factor += speed_curve_at(speed, law[SLOW], law[FAST], law[HEIGHTS + 4], law[HEIGHTS + 5])
+    factor += speed_curve_at(speed, law[SLOW], law[FAST], law[SPEEDS], law[SPEEDS + 1])
     return max(factor, 0.0)
 
 

@@ -150,12 +150,13 @@ def follow_sample(
         chain[at.SLIP + last] = 1 if now.load > before.load else -1
     converged = advance(chain, before, now, laws)
     phase = phase_of(chain, laws) if converged else UNCONVERGED
-    f_in = now.drive if laws.drive.given == FORCE else tension_at_drive(chain, laws)
+    f_in = tension_at_drive(chain, laws)
     if laws.antagonist.preload_N == 0.0 and laws.load.given != FORCE and chain[at.TENSION] < 0.0:
-        phase = SLACK
-        f_in = now.drive if laws.drive.given == FORCE else 0.0
+        phase, f_in = SLACK, 0.0
         if pulls_at_neither_end(chain, now, laws):
             go_slack(chain, now, laws)
+    if laws.drive.given == FORCE:
+        f_in = now.drive
     f_out = tension_at_sensor(chain, now, laws)
     return phase, ChainEnds(chain[at.POSITION], chain[at.POSITION + last], f_in, f_out)
 
