@@ -45,6 +45,34 @@ def test_a_run_is_predicted_by_the_fit_to_the_others_its_own_offset_fitted_to_it
     np.testing.assert_allclose(held_out_values(trial, folds, 2)[:2], others, rtol=1e-6)
 
 
+def test_of_many_runs_several_are_predicted_together_each_with_its_own_offset():
+    """Eleven runs of one line, each with an offset that the fit to the others leaves alone."""
+    runs, rng = 11, np.random.default_rng(2)
+    folds = folds_of([np.arange(ROWS) // 10 for _ in range(runs)])
+    assert folds.by_run
+    assert folds.blocks == runs * 6
+    of_fold = [set(folds.run[folds.fold == fold].tolist()) for fold in range(8)]
+    assert sorted(map(len, of_fold)) == [1] * 5 + [2] * 3
+    assert set.union(*of_fold) == set(range(runs))
+    shared = rng.standard_normal((runs * ROWS, 1))
+    own, offsets = np.kron(np.eye(runs), np.ones((ROWS, 1))), np.arange(runs, dtype=float)
+    data = shared @ [2.0] + own @ offsets + 0.01 * rng.standard_normal(runs * ROWS)
+    names = [unknown("a"), *(unknown("zero", k) for k in range(runs))]
+    J = np.hstack((shared, own))
+    values = np.linalg.lstsq(J, data, rcond=None)[0]
+    solution = Solution(values, np.zeros(values.size, bool), J @ values - data, J, True, "", 1)
+    trial = HypothesisFit((), tuple(names), solution, (ROWS,) * runs, on_mesh=False)
+    left = folds.fold == folds.fold[folds.run == 9][0]
+    mine = sorted(of_fold[int(folds.fold[left][0])])
+    found = held_out_values(trial, folds, int(folds.fold[left][0]))
+    slope = np.linalg.lstsq(J[~left][:, [0, *(1 + k for k in range(runs) if k not in mine)]],
+                            data[~left], rcond=None)[0][0]  # fmt: skip
+    assert found[0] == pytest.approx(slope, rel=1e-6)
+    for k in mine:
+        here = folds.run == k
+        assert found[1 + k] == pytest.approx(float(np.mean(data[here] - slope * shared[here, 0])))
+
+
 def test_the_squares_of_a_run_are_those_of_its_prediction_by_the_others(linear):
     """Against the density of the run's data itself, with the covariance of its prediction."""
     shared, own, data = linear

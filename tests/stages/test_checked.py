@@ -5,6 +5,8 @@ import pytest
 
 import tsas_cli as tsas
 from tests.rigs import dataset_of, recorded
+from tsas_cli.recordings.quality.finding import Finding
+from tsas_cli.records.base import DatasetSource, OfDataset
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_studies.challenge.rig.tendon import Rig
@@ -91,3 +93,20 @@ def test_errors_of_one_kind_are_said_once(tmp_path, rows, said):
     found = tsas.calibrate(folder, despite=["slow-channel", "hum"]).record.accepted()
     (both,) = (sentence for sentence in found if sentence.endswith("(`slow-channel`)."))
     assert both.startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ([0.5] * 6, "The checks warn of 6 runs: 0.5 N (`noise`)."),
+        ([0.5, 0.4] * 3, "The checks warn of 6 runs (the first: run a): 0.5 N (`noise`)."),
+        ([0.5, 0.5], "The checks warn of run a and run b: 0.5 N (`noise`)."),
+    ],
+)
+def test_of_many_runs_the_number_is_said(values, said):
+    found = [
+        Finding("warning", "f_in_N", f"{value} N", "", code="noise", run=run)
+        for run, value in zip("abcdef", values, strict=False)
+    ]
+    source = DatasetSource(name="bench", hashes={})
+    assert OfDataset(stage="check", dataset=source, warnings=found).warned() == [said]

@@ -1,12 +1,12 @@
 """How well a hypothesis predicts held-out runs, block by block.
 
-A run is predicted by the fit to the others, as uncertain as that fit leaves its parameters: what
-they do not determine, such as a gain and a friction that only another bend tells apart, is no error
-of the prediction. The squares are minus twice the logarithm of the predictive density (Geisser and
-Eddy 1979), but for a constant. Linear: one Gauss-Newton step from the fit to all runs leaves a run
-out; `refitted_values` fits again, for what is reported. Parameters of a single run (its preload,
-its zeros) are fitted to that run for every hypothesis. With fewer than three runs, stretches of the
-runs are held out.
+A run is predicted by the fit to the others (of more than eight runs, several together), and is as
+uncertain as that fit leaves its parameters: what they do not determine, such as a gain and a
+friction that only another bend tells apart, is no error of the prediction. The squares are minus
+twice the logarithm of the predictive density (Geisser and Eddy 1979), but for a constant. Linear:
+one Gauss-Newton step from the fit to all runs leaves a run out; `refitted_values` fits again, for
+what is reported. Parameters of a single run (its preload, its zeros) are fitted to that run for
+every hypothesis. With fewer than three runs, stretches of the runs are held out.
 """
 
 from collections.abc import Sequence
@@ -21,6 +21,7 @@ from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEWEST_RUNS = 3  # of which one can be held out
+MOST_FOLDS = 8  # of more runs, several are held out together
 STRETCHES = 4  # of each run, where runs are too few
 TINY = np.finfo(float).tiny
 
@@ -67,7 +68,7 @@ def folds_of(blocks: Sequence[Indices]) -> Folds:
     run = np.repeat(np.arange(len(blocks)), sizes)
     block = numbered_on(blocks)
     if len(blocks) >= FEWEST_RUNS:
-        return Folds(run, block, run, by_run=True)
+        return Folds(run % MOST_FOLDS, block, run, by_run=True)
     return in_stretches(Folds(run, block, run, by_run=False))
 
 

@@ -157,16 +157,15 @@ class _LastFit:
 
 def _cause(last: _LastFit, name: str) -> FoundCause:
     """Return an effect of the final set, with what it does not prove."""
-    judged, found, held_out, signals = last.judged, last.found, last.held_out, last.signals
-    named, estimates = judged.named, found.estimates
+    judged, held_out, signals = last.judged, last.held_out, last.signals
+    named, estimates = judged.named, last.found.estimates
     fewer, all_of_them = held_out[named - {name}], held_out[named]
     gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
-    at = [k for k, e in enumerate(estimates) if e.name.startswith(f"{name}.")]
-    own, moved = ([of_all[k] for k in at] for of_all in (estimates, found.moved))
+    own = [e for e in estimates if e.name.startswith(f"{name}.")]
     ids = tuple(run.run.run.id for run in judged.bench.closed)
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, last.tolerated)
     again = gain(fewer.squares, all_of_them.squares)
-    zero = may_be_zero(name, moved, found.correlation[np.ix_(at, at)])
+    zero = _may_be_zero(last, name)
     failed = failures(
         *(name, own, again, fewer, all_of_them),
         tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
@@ -191,6 +190,20 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         convincing=again.convincing,
         negligible=negligible,
     )
+
+
+def _may_be_zero(last: _LastFit, name: str) -> bool:
+    """Return whether an effect of the final set may be zero, with its shape held.
+
+    Without a size a shape has no meaning (Davies 1977), and few runs tell little of both.
+    """
+    judged, found = last.judged, last.found
+    shapes = {f"{name}.{p.name}" for p in BY_NAME[name].parameters if p.shape}
+    if shapes:
+        held = judged.trial(judged.named).holding(shapes)
+        found = estimates_with_tolerances(judged, held, last.tolerated)
+    at = [k for k, e in enumerate(found.moved) if e.name.startswith(f"{name}.")]
+    return may_be_zero(name, [found.moved[k] for k in at], found.correlation[np.ix_(at, at)])
 
 
 def _within_interval(split: Split, estimates: Sequence[Estimate]) -> bool:

@@ -7,11 +7,16 @@ from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
 from tsas_cli.diagnosis.search import add, significant_effects
 from tsas_cli.effects import EFFECTS
+from tsas_cli.effects.load_friction import LOAD_FRICTION
+from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS
 from tsas_cli.identification.quantities import QUANTITIES
 
 MODEL_ERROR = 0.1  # of the squares that a wrong model leaves, by which two effects differ by chance
 ONE_CHANNEL = 0.1  # of an effect's reduction: what forms of laws differ by, where one channel tells
+PRESLIDING = 0.01  # of the stroke: a hysteresis that yields within it is friction that slides late
 SIMPLER = LEAST_REDUCTION_PER_COMPLEXITY - LEAST_DIFFERENCE  # that a simpler effect leaves more
+
+FRICTION, HYSTERESIS = LOAD_FRICTION.name, LOAD_HYSTERESIS.name
 
 
 def find_effects(fits: Fits) -> Hypotheses:
@@ -22,6 +27,8 @@ def find_effects(fits: Fits) -> Hypotheses:
     rivals = {
         e.name: rivals_of(fits, named, e.name, unsure, of_forms) for e in EFFECTS if e.name in named
     }
+    if _is_presliding(fits, named):
+        rivals[HYSTERESIS] = tuple(dict.fromkeys((*rivals[HYSTERESIS], FRICTION)))
     screened = tuple(fits.screen(frozenset()))
     for names in judged_sets(named):
         fits.trial(names, on_mesh=fits.bench.on_mesh(named))
@@ -69,6 +76,17 @@ def rivals_of(
         if not worse or (of_forms > 0.0 and fits.gain(fewer, instead).part > alike):
             out.append(other)
     return tuple(out)
+
+
+def _is_presliding(fits: Fits, named: Names) -> bool:
+    """Return whether a named hysteresis of the load may be friction of its guide.
+
+    Dry friction gives way elastically before it slides, by micrometres, which its law leaves out.
+    """
+    if HYSTERESIS not in named or FRICTION in named:
+        return False
+    travel_mm = fits.trial(named).values()[f"{HYSTERESIS}.travel_mm"]
+    return travel_mm < PRESLIDING * fits.bench.longest_stroke_mm
 
 
 def _parameters(fits: Fits, names: Names, name: str) -> int:

@@ -1,6 +1,6 @@
 """A hypothesis fitted: what was freed, its least squares, and what follows from its Jacobian."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -82,6 +82,18 @@ class HypothesisFit:
             jacobian=np.column_stack((solution.jacobian, columns)),
         )
         return replace(self, unknowns=(*self.unknowns, *further), solution=extended)
+
+    def holding(self, names: Collection[str]) -> Self:
+        """Return the fit with some unknowns held at their values."""
+        free = np.array([u.name not in names for u in self.unknowns])
+        solution = replace(
+            self.solution,
+            values=self.solution.values[free],
+            at_bound=self.solution.at_bound[free],
+            jacobian=self.solution.jacobian[:, free],
+        )
+        kept = tuple(u for u in self.unknowns if u.name not in names)
+        return replace(self, unknowns=kept, solution=solution)
 
     def slopes_of(self, unknowns: Sequence[Unknown]) -> Floats:
         """Return the Jacobian by some unknowns, shape (n, p), NaN for those of another fit."""

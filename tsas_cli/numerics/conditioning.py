@@ -158,29 +158,42 @@ def flatten_rests(
 
     To a hysteretic model a drift of a thousandth of a millimetre at rest would be a reversal. A
     rest is a whole piece, or lies inside one where the motion ends without a corner; there its
-    ends are not known, and the error stays that of the fit.
+    ends are not known, and the error stays that of the fit. One that a corner of noise cuts is one
+    rest: else each part would have its own mean, and the tendon would turn between them.
     """
-    for k, (first, end) in enumerate(pairwise(cuts)):
+    rests: list[tuple[int, int]] = []
+    for first, end in pairwise(cuts):
+        parts = [
+            (first + a, first + b) for a, b in still_parts(smooth[first:end], sd[first:end], reach)
+        ]
         if at_rest(time_s[first:end], values[first:end], noise):
-            beyond = cuts[max(k - 1, 0)], cuts[min(k + 2, cuts.size - 1)]
-            _flatten(values, smooth, (first, end), beyond, reach)
+            parts = [(first, end)]
             sd[first:end] = noise / math.sqrt(end - first)
-            continue
-        for a, b in still_parts(smooth[first:end], sd[first:end], reach):
-            rest = slice(first + a, first + b)
-            if at_rest(time_s[rest], values[rest], noise):
-                _flatten(values, smooth, (rest.start, rest.stop), (first, end), reach)
+        for part in parts:
+            begun = rests[-1][0] if rests else part[0]
+            if at_rest(time_s[begun : part[1]], values[begun : part[1]], noise):
+                rests[-1:] = [(begun, part[1])]
+            elif at_rest(time_s[slice(*part)], values[slice(*part)], noise):
+                rests.append(part)
+    for rest in rests:
+        _flatten(values, smooth, rest, cuts, reach)
 
 
 def _flatten(
-    values: Floats, smooth: Floats, rest: tuple[int, int], around: tuple[int, int], reach: int
+    values: Floats, smooth: Floats, rest: tuple[int, int], cuts: Indices, reach: int
 ) -> None:
-    """Set a rest to its mean, in place, and clip what overshoots it within `reach` samples."""
+    """Set a rest to its mean, in place, and clip what overshoots it beside, up to the next corner.
+
+    Two windows of `still_parts` away the signal still moves, so that its side is known there.
+    """
     first, end = rest
     level = float(values[first:end].mean())
     smooth[first:end] = level
-    before = smooth[max(around[0], first - reach) : first]
-    after = smooth[end : min(around[1], end + reach)][::-1]
+    far = 2 * reach + 1
+    begin = cuts[max(np.searchsorted(cuts, first) - 1, 0)]
+    stop = cuts[min(np.searchsorted(cuts, end, "right"), cuts.size - 1)]
+    before = smooth[max(begin, first - far) : first]
+    after = smooth[end : min(stop, end + far)][::-1]
     for neighbours in (before, after):  # both begin at their far ends
         if neighbours.size:
             limit = np.minimum if neighbours[0] < level else np.maximum

@@ -27,9 +27,10 @@ from tsas_cli.recordings.storage import Location, recorded_location
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import write_json
-from tsas_cli.support.wording import listed
+from tsas_cli.support.wording import count_of, listed
 
 TWO_SIDED = 1.96  # standard errors on each side of a 95 % interval
+_MOST_LISTED = 4  # runs by name; of more, their number
 _ROUNDING = 1e-9  # relative, of a value at the end of its interval
 
 
@@ -197,9 +198,11 @@ def _sentences(opening: str, findings: Sequence[Finding]) -> list[str]:
     said = []
     for (code, _), alike in kinds.items():
         runs = [f"run {one.run}" if one.run else "the manifest" for one in alike]
-        where = listed(list(dict.fromkeys(runs)))
-        of_first = "" if len({one.sentence for one in alike}) == 1 else " (the first)"
-        said.append(f"{opening} {where}{of_first}: {alike[0].sentence} (`{code}`).")
+        each = list(dict.fromkeys(runs))
+        where = listed(each) if len(each) <= _MOST_LISTED else count_of(len(each), "run")
+        if len({one.sentence for one in alike}) > 1:
+            where += " (the first)" if len(each) <= _MOST_LISTED else f" (the first: {each[0]})"
+        said.append(f"{opening} {where}: {alike[0].sentence} (`{code}`).")
     return said
 
 
