@@ -3,15 +3,22 @@
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from tests.diagnosis.test_proof import estimate
 from tsas_cli.diagnosis import proven as p
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.diagnosis.held_out import Folds
+from tsas_cli.diagnosis.intervals import estimates_with_tolerances
+from tsas_cli.diagnosis.proof import FoundCause, may_be_zero
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.fit_problem import unknown_of
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.support.steps import NO_PROGRESS
 
 
@@ -235,3 +242,35 @@ def test_a_channel_that_leads_by_as_much_as_it_lags_does_neither(delay_s, lag_s,
         assert bool(p._beside_its_opposite(cause, (delay, lag)).failed) == refused
     gain = sensor_error("force_sensor_gain", f_out_gain=1.2)
     assert p._beside_its_opposite(gain, (delay, lag, gain)) == gain
+
+
+def test_an_effects_shape_is_held_where_it_may_be_zero():
+    """Three runs tell the size well at each shape, and hardly its time: they scatter along both."""
+    rng, rows = np.random.default_rng(4), 60
+    wave, other = np.linalg.qr(rng.standard_normal((rows, 2)))[0].T
+    jacobian = np.tile(np.column_stack((30.0 * wave, 3.0 * wave + 3.0 * other)), (3, 1))
+    noise = 0.1 * rng.standard_normal(3 * rows)
+    residual = noise + np.concatenate([error * other for error in (4.0, -4.0, 0.5)])
+    names = ("load_relaxation.share", "load_relaxation.time_s")
+    values = np.array(
+        [QUANTITIES[name].scaled(value) for name, value in zip(names, (0.02, 2.0), strict=True)]
+    )
+    unknowns = tuple(unknown_of(name) for name in names)
+    solution = Solution(values, np.zeros(2, bool), residual, jacobian, True, "", 1)
+    trial = HypothesisFit(("load_relaxation",), unknowns, solution, (rows,) * 3, on_mesh=True)
+    block = np.repeat(np.arange(18), 10)
+    run = np.repeat(np.arange(3), rows)
+    bench = SimpleNamespace(
+        rigs=[None] * 3, base=SimpleNamespace(problem=SimpleNamespace(ids=["a", "b", "c"]))
+    )
+    judged = SimpleNamespace(
+        bench=bench,
+        folds=Folds(run, block, run, by_run=True),
+        named=frozenset({"load_relaxation"}),
+        trial=lambda _: trial,
+    )
+    tolerated = np.zeros((3 * rows, 7))
+    found = estimates_with_tolerances(judged, trial, tolerated)
+    assert may_be_zero("load_relaxation", found.moved, found.correlation)
+    last = SimpleNamespace(judged=judged, found=found, tolerated=tolerated)
+    assert not p._may_be_zero(last, "load_relaxation")

@@ -20,7 +20,7 @@ from tests.diagnosis.searched import (
     seen,
 )
 from tsas_cli.diagnosis import rivals as rivals_module
-from tsas_cli.diagnosis.rivals import exchanged, rivals_of
+from tsas_cli.diagnosis.rivals import exchanged, is_presliding, rivals_of
 
 
 @pytest.fixture
@@ -95,3 +95,21 @@ def test_of_two_that_do_as_well_the_one_with_fewer_parameters_is_named(made, mon
     assert exchanged(fits, names(C)) == names(C)
     fits.trial(names(C)).solution.at_bound = [False, False]
     assert exchanged(fits, names(C)) == names(A)
+
+
+@pytest.mark.parametrize(
+    ("named", "travel_mm", "may_be"),
+    [
+        (("load_hysteresis",), 0.05, True),
+        (("load_hysteresis",), 0.07, False),  # a hundredth of the stroke is 0.06 mm
+        (("load_hysteresis", "load_friction"), 0.05, False),
+        (("load_relaxation",), 0.05, False),
+    ],
+)
+def test_a_hysteresis_that_yields_at_once_may_be_friction_that_slides_late(
+    named, travel_mm, may_be
+):
+    trial = SimpleNamespace(values=lambda: {"load_hysteresis.travel_mm": travel_mm})
+    bench = SimpleNamespace(longest_stroke_mm=6.0)
+    fits = SimpleNamespace(bench=bench, trial=lambda _: trial)
+    assert is_presliding(fits, frozenset(named)) == may_be

@@ -123,6 +123,22 @@ def test_a_rest_that_a_motion_ends_in_without_a_corner_is_flat(sd):
     assert np.abs(smooth - x)[middle].max() < sd
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_long_rest_within_counts_of_an_encoder_is_one_rest(seed):
+    """Corners of its noise cut it; between parts of unlike means the tendon would turn."""
+    t = np.arange(0.0, 40.0, 0.01)
+    x, v = slowed(t, rest_s=4.0, brake_s=0.2, speed=18.0)
+    counted = np.round(noisy(x, seed=seed, sd=5e-3) / 0.01) * 0.01
+    smooth = condition(t, counted).values
+    middle = np.convolve(v == 0.0, np.ones(101), "same") > 100.5  # 0.5 s from the motion on
+    assert middle.sum() > 2000
+    assert np.abs(np.diff(smooth))[middle[1:] & middle[:-1]].max() < 1e-12
+    ended = (v[:-1] != 0.0) & (v[1:] == 0.0)
+    for stop in np.flatnonzero(ended)[:-1] + 1:  # no overshoot before a rest
+        rest, way = smooth[stop + 200], np.sign(v[stop - 10])
+        assert ((smooth[stop - 20 : stop + 200] - rest) * way).max() < 1e-9
+
+
 @pytest.mark.parametrize("creeping_mm_per_s", [0.02, 0.1])
 def test_a_creeping_motion_is_no_rest(creeping_mm_per_s):
     t = np.arange(0.0, 20.0, 0.004)

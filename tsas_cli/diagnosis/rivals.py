@@ -27,7 +27,7 @@ def find_effects(fits: Fits) -> Hypotheses:
     rivals = {
         e.name: rivals_of(fits, named, e.name, unsure, of_forms) for e in EFFECTS if e.name in named
     }
-    if _is_presliding(fits, named):
+    if is_presliding(fits, named):
         rivals[HYSTERESIS] = tuple(dict.fromkeys((*rivals[HYSTERESIS], FRICTION)))
     screened = tuple(fits.screen(frozenset()))
     for names in judged_sets(named):
@@ -78,7 +78,7 @@ def rivals_of(
     return tuple(out)
 
 
-def _is_presliding(fits: Fits, named: Names) -> bool:
+def is_presliding(fits: Fits, named: Names) -> bool:
     """Return whether a named hysteresis of the load may be friction of its guide.
 
     Dry friction gives way elastically before it slides, by micrometres, which its law leaves out.

@@ -154,7 +154,7 @@ def flatten_rests(
     reach: int,
     noise: float,
 ) -> None:
-    """Set what is at rest to its mean, in place, and clip the overshoot of its neighbours.
+    """Set what is at rest to its mean, in place, and straighten the motion beside it.
 
     To a hysteretic model a drift of a thousandth of a millimetre at rest would be a reversal. A
     rest is a whole piece, or lies inside one where the motion ends without a corner; there its
@@ -175,29 +175,25 @@ def flatten_rests(
                 rests[-1:] = [(begun, part[1])]
             elif at_rest(time_s[slice(*part)], values[slice(*part)], noise):
                 rests.append(part)
-    for rest in rests:
-        _flatten(values, smooth, rest, cuts, reach)
+    between = [0, *(edge for rest in rests for edge in rest), values.size]
+    for k, (first, end) in enumerate(rests):
+        level = smooth[first:end] = float(values[first:end].mean())
+        before, after = smooth[between[2 * k] : first][::-1], smooth[end : between[2 * k + 3]]
+        straighten(before, level, REVERSAL_NOISE * noise)
+        straighten(after, level, REVERSAL_NOISE * noise)
 
 
-def _flatten(
-    values: Floats, smooth: Floats, rest: tuple[int, int], cuts: Indices, reach: int
-) -> None:
-    """Set a rest to its mean, in place, and clip what overshoots it beside, up to the next corner.
+def straighten(beside: Floats, level: float, near: float) -> None:
+    """Let a signal run to a rest's level one way, in place, over the samples that are near it.
 
-    Two windows of `still_parts` away the signal still moves, so that its side is known there.
+    `beside` begins at the rest. What overshoots the level, or turns back before it, is noise.
     """
-    first, end = rest
-    level = float(values[first:end].mean())
-    smooth[first:end] = level
-    far = 2 * reach + 1
-    begin = cuts[max(np.searchsorted(cuts, first) - 1, 0)]
-    stop = cuts[min(np.searchsorted(cuts, end, "right"), cuts.size - 1)]
-    before = smooth[max(begin, first - far) : first]
-    after = smooth[end : min(stop, end + far)][::-1]
-    for neighbours in (before, after):  # both begin at their far ends
-        if neighbours.size:
-            limit = np.minimum if neighbours[0] < level else np.maximum
-            neighbours[:] = limit(neighbours, level)
+    away = np.flatnonzero(np.abs(beside - level) > near)
+    if away.size:
+        farthest = np.maximum if beside[away[0]] < level else np.minimum
+        nearest = np.minimum if beside[away[0]] < level else np.maximum
+        towards = farthest.accumulate(beside[: away[0]][::-1])[::-1]
+        beside[: away[0]] = nearest(towards, level)
 
 
 def still_parts(smooth: Floats, sd: Floats, reach: int) -> list[tuple[int, int]]:
