@@ -1,5 +1,6 @@
 """Which runs may be proposed, within what the rig can do."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -101,6 +102,8 @@ def test_a_proposal_says_what_to_do():
     )
     (long,) = [c for c in candidates(LIMITS, GROUP_A) if c.title == "a long run"]
     assert "rest" not in long.sentence
+    guessed = replace(stairs, assumed=frozenset({"total_bend_rad", "sheath_length_mm"})).sentence
+    assert guessed == stairs.sentence.partition(", bend")[0]
 
 
 @pytest.mark.parametrize(

@@ -35,6 +35,27 @@ def test_the_files_of_a_list_are_copied_with_it(tmp_path):
         assert {Path(file).name for file in files} >= {"a.csv", "run.join"}
 
 
+def test_lists_may_share_a_file_and_others_may_not_have_its_name(tmp_path):
+    recorded(tmp_path / "bench" / "a.csv")
+    for run in ("one", "two"):
+        text = f'[{run}]\nfile = "a.csv"\ntime = "{NAMES[0]}"\n'
+        (tmp_path / "bench" / f"{run}.join").write_text(text)
+    files, _ = start(tmp_path / "rig", [tmp_path / "bench"])
+    assert sum(file.endswith("a.csv") for file in files) == 1
+    (tmp_path / "other").mkdir()
+    other = recorded(tmp_path / "other" / "bench" / "a.csv")
+    with pytest.raises(InputError, match="two sources have the name"):
+        start(tmp_path / "new", [tmp_path / "bench", other.parent])
+
+
+def test_a_recording_that_does_not_match_the_map_is_said(tmp_path, done):
+    recorded(tmp_path / "bench" / "a.csv")
+    (tmp_path / "bench" / "b.csv").write_text("t,u\n0,1\n1,2\n")
+    printed = done("init", tmp_path / "rig", "--from", tmp_path / "bench")
+    assert "files that do not match" in printed
+    assert "b.csv" in printed.partition("files that do not match")[2]
+
+
 def test_recordings_are_copied_and_guessed(tmp_path):
     source = recorded(tmp_path / "bench 1" / "a.csv")
     files, proposal = start(tmp_path / "new", [source.parent])

@@ -38,7 +38,7 @@ def ask(tmp_path):
 
 
 def test_the_smallest_map_and_the_columns_it_takes(ask):
-    mapping = ask(WHOLE + '[columns.f_out_N]\nsource = "f"\n[read]\nextra = ["note", "x"]\n')
+    mapping = ask(WHOLE + '[columns.temperature_C]\nsource = "f"\n[read]\nextra = ["note", "x"]\n')
     assert mapping.sources() == [1, "x", "f", "note"]
 
 
@@ -59,6 +59,10 @@ def test_the_smallest_map_and_the_columns_it_takes(ask):
         (WHOLE.replace('source = "f"', "rate_Hz = 2"), "f_in_N cannot have rate_Hz"),
         (WHOLE.replace("[columns.time_s]", "[columns.x_out_mm]"), "time_s is missing"),
         (WHOLE.replace("x_in_mm", "temperature_C"), "an input and an output column"),
+        (
+            WHOLE + '[columns.f_out_N]\nsource = "f"\n',
+            "columns: f_in_N and f_out_N have one source, 'f'",
+        ),
         (WHOLE.replace('name = "m"', ""), "dataset.name is missing"),
         (WHOLE + "offset = true\n", "columns.f_in_N.offset: true and false are no numbers"),
         (WHOLE + "sign = true\n", "columns.f_in_N.sign: true and false are no numbers"),

@@ -86,6 +86,7 @@ def test_a_factor_says_what_counts_and_volts_are():
         ("is not convertible to mm", "mm", ["mm/deg", "mm rad"]),
         ("is not convertible to rad", "rad", ["%", "deg^2", "1/deg", "rad/deg"]),
         ("is not convertible to rpm", "rpm", ["rad^2/s"]),
+        ("expected deg or gon", "rad", ["grad"]),
         ("is unknown", "mm", ["quux", "m,m", "m*" * 60 + "m"]),
         # What would be worked out to more digits than any memory holds, and more than a float:
         ("is unknown", "mm", ["9**9**9**9", "6^6666666666", "9⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹", "9" + " squared" * 9]),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tsas_cli.commands.common import Json, Quiet, progress, show
-from tsas_cli.records.result import heading
+from tsas_cli.records.result import Table, heading
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
 
@@ -33,11 +33,14 @@ def init(
 ) -> None:
     """Create a project: a map, a folder for recordings, and a Makefile from them to a report."""
     from tsas_cli.project.start import MAP, start
+    from tsas_cli.recordings.guess.text import tables as tables_of
 
     files, proposal = start(folder, sources or [])
     questions = proposal.questions if proposal else {}
     summary = heading("init") | {"folder": str(folder), "files": files, "questions": questions}
-    tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
+    tables: list[Table] = [(f"project {folder}", ("file",), [(name,) for name in files])]
+    if proposal:
+        tables.extend(tables_of(proposal, folder / MAP))
     show(summary, tables, quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         todo = questions or not proposal

@@ -18,21 +18,27 @@ LONG = 12  # periods of a run in which drifts are visible
 
 @dataclass(frozen=True)
 class CandidateRun:
-    """A run that may be proposed, and a name for it."""
+    """A run that may be proposed, and a name for it; `assumed` are conditions not stated."""
 
     title: str
     run: PlannedRun
+    assumed: frozenset[str] = frozenset()
 
     @property
     def sentence(self) -> str:
         """The instruction to record it."""
         r = self.run
-        dwell = f", {r.dwell_s:g} s of rest after each stroke" if r.dwell_s else ""
-        return (
-            f"{self.title}: {r.periods} times 0 to {2.0 * r.amplitude_mm:.3g} mm and back at up to "
-            f"{r.speed:.3g} mm/s{dwell}, preload {r.preload_N:.3g} N, bend "
-            f"{r.total_bend_rad:.3g} rad, sheath {r.sheath_length_mm:.4g} mm"
-        )
+        stroke = f"{r.periods} times 0 to {2.0 * r.amplitude_mm:.3g} mm and back"
+        parts = [f"{self.title}: {stroke} at up to {r.speed:.3g} mm/s"]
+        if r.dwell_s:
+            parts.append(f"{r.dwell_s:g} s of rest after each stroke")
+        conditions = {
+            "preload_N": f"preload {r.preload_N:.3g} N",
+            "total_bend_rad": f"bend {r.total_bend_rad:.3g} rad",
+            "sheath_length_mm": f"sheath {r.sheath_length_mm:.4g} mm",
+        }
+        parts += [text for name, text in conditions.items() if name not in self.assumed]
+        return ", ".join(parts)
 
 
 def planned_limits(runs: Sequence[PlannedRun]) -> Limits:

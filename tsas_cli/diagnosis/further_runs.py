@@ -1,7 +1,7 @@
 """Recorded or planned runs together with runs that might be added, in one linearised fit."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -16,6 +16,7 @@ from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.support.errors import InputError
 
@@ -88,7 +89,8 @@ def joined_to_recorded(bench: Bench, free: Mapping[str, float] | None = None) ->
             x_in_mm=first.conditioned["x_in_mm"].noise,
             **noise,
         )
-        proposed = candidates(limits, bench.rigs[k])
+        assumed = frozenset(name for name in CONDITIONS if getattr(first.run, name) is None)
+        proposed = [replace(c, assumed=assumed) for c in candidates(limits, bench.rigs[k])]
         further = simulated_candidates(proposed, sensors, bench.rigs[k], base.runs)
     return joined_runs(base.runs, further, base.initial, base.fixed, free)
 

@@ -76,7 +76,7 @@ def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
             if source.is_dir() and not source.name:
                 inside = path.relative_to(source)
             place = f"{RAW}/{inside.as_posix()}"
-            if place in copies:
+            if place in copies and copies[place] != path:  # lists may share a file
                 raise InputError(f"two sources have the name {inside}", where=path)
             copies[place] = path
     return copies

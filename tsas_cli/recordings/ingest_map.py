@@ -26,6 +26,7 @@ from tsas_cli.support.strict_table import StrictTable
 SEARCH_TIMEOUT_S = 10.0  # of a pattern, whose search may take exponential time
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
 QUESTION = "?"  # in place of a value that a guessed map leaves open
+_OF_TWO_ENDS = (("x_in_mm", "x_out_mm"), ("f_in_N", "f_out_N"))
 _Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
 
 
@@ -112,6 +113,10 @@ class IngestMap(StrictTable):
                 raise ValueError(f"{name} cannot have rate_Hz, only {TIME} can")
         if TIME not in columns:
             raise ValueError(f"{TIME} is missing: map the clock, or set its rate_Hz")
+        for pair in _OF_TWO_ENDS:
+            both = [columns[name].source for name in pair if name in columns]
+            if len(both) > len(set(both)):
+                raise ValueError(f"{' and '.join(pair)} have one source, {both[0]!r}")
         if not has_input_and_output(frozenset(columns)):
             raise ValueError("an input and an output column are needed, such as x_in_mm and f_in_N")
         return columns

@@ -136,6 +136,10 @@ def _between(text: str, to: str, where: str) -> tuple[float, float]:
 
 def _parse(text: str, to: str, where: str) -> Any:
     spelled = " ".join(text.translate(_TIMES).split())
+    if spelled == "grad":
+        raise InputError(
+            "unit 'grad' is gon in English, degree in German", where=where, expected="deg or gon"
+        )
     spelled = _SPELLINGS.get(spelled, spelled)
     if to == "N":
         spelled = _AS_FORCE.get(spelled, spelled)

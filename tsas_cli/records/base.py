@@ -199,11 +199,16 @@ def _sentences(opening: str, findings: Sequence[Finding]) -> list[str]:
     for (code, _), alike in kinds.items():
         runs = [f"run {one.run}" if one.run else "the manifest" for one in alike]
         each = list(dict.fromkeys(runs))
-        where = listed(each) if len(each) <= _MOST_LISTED else count_of(len(each), "run")
-        if len({one.sentence for one in alike}) > 1:
-            where += " (the first)" if len(each) <= _MOST_LISTED else f" (the first: {each[0]})"
-        said.append(f"{opening} {where}: {alike[0].sentence} (`{code}`).")
+        same = len({one.sentence for one in alike}) == 1
+        where = _named(each) if same else each[0]
+        others = "" if same or len(each) < 2 else f"; others of the kind in {_named(each[1:])}"
+        said.append(f"{opening} {where}: {alike[0].sentence} (`{code}`){others}.")
     return said
+
+
+def _named(runs: Sequence[str]) -> str:
+    """Return a few runs by name, of more their number."""
+    return listed(runs) if len(runs) <= _MOST_LISTED else count_of(len(runs), "run")
 
 
 class ModelFile(Record):

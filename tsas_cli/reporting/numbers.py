@@ -56,14 +56,18 @@ def as_printed(value: float | None) -> str:
 def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
     """Return a value and its interval, both cut at the second digit of the interval's half width.
 
-    >>> with_interval(2.33812, 2.3262, 2.3501)
-    ('2.338', '2.326 to 2.350')
+    Where that is more than the value, and zero is no part of it, each has digits of its own.
+
+    >>> with_interval(2.33812, 2.3262, 2.3501), with_interval(14242.0, 10.0, 1e8)
+    (('2.338', '2.326 to 2.350'), ('14200', '10 to 100000000'))
     """
     if value is None or low is None or high is None or not math.isfinite(high - low):
         return plain(value), ABSENT
     width = (high - low) / 2
     if width <= 0:
         return plain(value), ABSENT
+    if width > abs(value) and low * high > 0.0:
+        return plain(value, 3), f"{plain(low, 2)} to {plain(high, 2)}"
     decimals = 1 - _exponent(width)
     return _fixed(value, decimals), f"{_fixed(low, decimals)} to {_fixed(high, decimals)}"
 

@@ -98,6 +98,7 @@ def test_rows_of_a_file_without_a_clock_count(bench):
         ("time = 1", "", "needs a time, or rate_Hz"),
         ("offset_s", "offset", "offset"),
         ("-0.5", "50.0", "never overlap"),
+        ("-0.5", "0.3", "the channels overlap for 0.2 s only"),
         (LIST, "a = 1", "a"),
     ],
 )

@@ -17,6 +17,7 @@ _DATE = re.compile(
 )
 _TIME = re.compile(r"\d{1,4}:\d\d:\d\d([.,]\d{1,9})?")
 _DAY_S = 86400.0
+LEAST_OVERLAP = 0.5  # of the shortest channel, below which the offset of a clock is wrong
 TIME = "time"  # source of the common clock of a file's channels in a map
 
 
@@ -112,6 +113,13 @@ def on_one_clock(
     clock = clock[(clock >= start) & (clock <= end)]
     if clock.size == 0:
         raise InputError(f"the channels never overlap in time ({described})", where=path)
+    if end - start < LEAST_OVERLAP * min(times[-1] - times[0] for times, _ in series.values()):
+        raise InputError(
+            f"the channels overlap for {end - start:.4g} s only ({described})",
+            where=path,
+            expected="clocks with one beginning",
+            remedy="correct the offsets of the clocks, or cut the longer channels",
+        )
     resampled = {s: np.interp(clock, *channel) for s, channel in series.items()}
     return dict.fromkeys(clock_sources, clock) | resampled
 

@@ -110,7 +110,8 @@ class LoopPlane:
         found = list(_strips(places, phases))
         shades = [dark(role_of_phase(p)) if p in PHASES else colour for p, _ in found]
         strips = [strip for _, strip in found]
-        look = rr.LineStrips2D(strips, colors=shades, radii=-2.0 / order, draw_order=order)
+        packed = np.array(shades, np.uint32)  # three numbers in a list would be one colour
+        look = rr.LineStrips2D(strips, colors=packed, radii=-2.0 / order, draw_order=order)
         self.recorder.static(f"{self.entity}/{key}", look)
         now = f"{self.entity}/{key}/now"
         style = rr.Points2D.from_fields(
