@@ -146,7 +146,7 @@ def test_what_is_left_is_said_with_its_size(sections):
     text = words(sections["unexplained"])
     assert "remaining residual is 38.4; 1" in text
     assert "after what is named" not in text
-    assert "could be explained, 12 % is left after what is named" in words(sections["named"])
+    assert "residual, 12 % is left after what is named" in words(sections["named"])
 
 
 def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):

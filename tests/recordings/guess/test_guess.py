@@ -102,8 +102,24 @@ def test_x_in_or_f_in_that_no_column_is_left_for_is_asked(path, channels, names,
     if asked is None:  # a drive alone was recorded
         assert "f_in_N" not in {channel.name for channel in proposal.channels}
         return
-    assert "delete this table" in proposal.questions[f"columns.{asked}.source"]
+    question = proposal.questions[f"columns.{asked}.source"]
+    assert "delete this table" in question
+    assert "is it in another file" in question
     assert proposal.is_a_recording
+
+
+def test_a_force_that_one_cell_spoils_is_asked_for_by_its_name(path):
+    channels = {"t [s]": "time_s", "drive [mm]": "x_in_mm", "tip [mm]": "x_out_mm"}
+    names = [*channels, "force in [N]"]
+    write_csv(path, [(name, run()[channels.get(name, "f_in_N")]) for name in names])
+    rows = [f"{row},a" for row in path.read_text().splitlines()]
+    rows[0] = rows[0].replace(",a", ",note")
+    rows[-1] = ",".join([*rows[-1].split(",")[:3], "ERR", "a"])
+    path.write_text("\n".join(rows))
+    question = propose([path]).questions["columns.f_in_N.source"]
+    assert question.startswith("is it force in [N], which cannot be used: ")
+    assert "ERR" in question
+    assert "note" not in question
 
 
 def test_a_reference_may_stand_for_a_drive_that_was_not_recorded(path):

@@ -1,11 +1,13 @@
 """The channels of a map and their signs, from the columns of a file."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
 from tsas_cli.recordings.guess.columns import Certainty, FileColumn, Proposed, with_unit
 from tsas_cli.recordings.guess.ends import FORCES, LENGTHS, Assignment, assign
 from tsas_cli.recordings.guess.looks import correlation, sign_of
+from tsas_cli.recordings.guess.words import words_of
 from tsas_cli.recordings.ingest_map import QUESTION
 
 _CLEAR = 0.75  # least magnitude of the correlation of two channels
@@ -13,10 +15,12 @@ Sign = tuple[int | str, str]  # 1, −1 or a question, and why
 _MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
-def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
+def channels(
+    columns: Sequence[FileColumn], unusable: Mapping[str, str] = MappingProxyType({})
+) -> list[Proposed]:
     """Return the proposed channels of the columns besides the clock, in the order of the format.
 
-    Channels without evidence are left out.
+    Channels without evidence are left out; `unusable` are further columns, and why they are.
     """
     moving = [c for c in columns if c.moves]
     others = _others(columns)
@@ -31,7 +35,7 @@ def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     found = {n: _channel(n, c, ends, signed.get(n, (1, ""))) for n, c in ends.assigned.items()}
     found |= _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
     found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
-    found |= _unrecorded(found, [c for c in moving if c.words.is_reference])
+    found |= _unrecorded(found, [c for c in moving if c.words.is_reference], unusable)
     return [found[name] for name in NAMES if name in found]
 
 
@@ -151,7 +155,9 @@ def _missing(
 
 
 def _unrecorded(
-    found: Mapping[str, Proposed], references: Sequence[FileColumn]
+    found: Mapping[str, Proposed],
+    references: Sequence[FileColumn],
+    unusable: Mapping[str, str],
 ) -> dict[str, Proposed]:
     """Return a question for x_in or f_in that no column is left for; a drive alone has no f_in.
 
@@ -164,13 +170,27 @@ def _unrecorded(
         "delete this table."
     )
     why = ("no column is left that it could be",)
-    asked = {name: _open(name, why, question) for name in wanted if found and name not in found}
+    asked = {
+        name: _open(name, why, _correct(name, unusable) + question)
+        for name in wanted
+        if found and name not in found
+    }
     lengths = [c for c in references if c.quantity in (None, *LENGTHS) and c.end != "out"]
     if "x_in_mm" in asked and lengths:
         shown = ", ".join(c.shown for c in lengths)
         follows = f"{question} Where the drive follows it closely, its reference will do: {shown}."
         asked["x_in_mm"] = _open("x_in_mm", why, follows, lengths)
     return asked
+
+
+def _correct(name: str, unusable: Mapping[str, str]) -> str:
+    """Return the question whether a channel is a column that cannot be used."""
+    kinds = ("displacement", "angle") if name == "x_in_mm" else ("force", "torque")
+    return "".join(
+        f"is it {source}, which cannot be used: {reason}? Then correct the file. "
+        for source, reason in unusable.items()
+        if words_of(source).quantity in kinds
+    )
 
 
 def _open(

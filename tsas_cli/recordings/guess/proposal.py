@@ -76,7 +76,7 @@ def propose(files: Sequence[Path]) -> MapProposal:
     rest = [c for c in columns if c.source != time.entry.get("source")]
     if time.entry.get("source") == QUESTION:
         rest = [c for c in rest if not like_a_clock(c)]
-    found = (time, *channels(rest))
+    found = (time, *channels(rest, opened.left_out))
     used = {channel.entry.get("source") for channel in found}
     used |= {source for channel in found for source in channel.candidates}
     return MapProposal(

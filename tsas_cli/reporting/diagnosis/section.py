@@ -81,7 +81,10 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
         )
     if diagnosis.named and left.share_percent is not None:
         share = fixed(left.share_percent, 0)
-        yield f"Of what could be explained, {share} % is left after what is named."
+        yield (
+            "Of what a regression on the recorded signals explains of the nominal model's "
+            f"residual, {share} % is left after what is named."
+        )
     yield from (noise.text(name) for name, noise in left.slow_noise.items())
 
 
