@@ -29,9 +29,6 @@ MOST_APART = 2.0  # factor between its sizes in the parts of a split; of right n
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 MOST_PARTS = 4  # of a split that a sentence lists
-HARMONIC = 0.1  # relative, of the ratio of two periods
-SENSORS = ("f_in", "f_out", "x_out")
-MOST_OF_A_SENSOR = 2  # errors of one sensor; more are a law of it that the catalogue lacks
 ALIKE = 0.1  # relative difference of two sensors' errors within which they are alike
 
 # What adds to both forces alike is something else: a law of friction μ(T + c) is the capstan's with
@@ -44,24 +41,6 @@ BOTH_SENSORS = {
 }
 
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
-
-
-def may_be_of_the_law_of(effect: str, other: str) -> bool:
-    """Return whether an effect may be what another one's law lacks: its sensor's, or a wave."""
-    places = [
-        e.name.partition("_sensor_")[0] if e.acts_on == "sensor" else e.acts_on
-        for e in (BY_NAME[effect], BY_NAME[other])
-    ]
-    wave = BY_NAME[effect].period is not None
-    return places[0] == places[1] and (wave or BY_NAME[effect].acts_on == "sensor")
-
-
-def is_harmonic(period: float, of: float) -> bool:
-    """Return whether a wave's period is a half or a third of another one's, whose place may differ.
-
-    The load moves a little less than the drive, so that a period there is shorter.
-    """
-    return any(abs(of / period - n) < HARMONIC * n for n in (2, 3))
 
 
 @dataclass(frozen=True)
@@ -83,15 +62,6 @@ class FoundCause:
     law_differs: str = ""
     convincing: bool = True
     negligible: bool = False
-
-
-def sensors_of(cause: FoundCause) -> set[str]:
-    """Return the sensors that a cause is an error of, by its parameters that differ from none."""
-    if BY_NAME[cause.effect].acts_on != "sensor":
-        return set()
-    there = [e for e in cause.parameters if not e.holds(QUANTITIES[e.name].default)]
-    names = [e.name.partition(".")[2] for e in there]
-    return {sensor for sensor in SENSORS if any(n.startswith(f"{sensor}_") for n in names)}
 
 
 def failures(

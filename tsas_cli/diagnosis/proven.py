@@ -5,6 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tsas_cli.diagnosis.beside_others import (
+    beside_each_other,
+    beside_what_is_left,
+    may_be_anywhere,
+)
 from tsas_cli.diagnosis.constancy import Split, absorbed_by, beside_tolerances, worst_split
 from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain, gain_percent
 from tsas_cli.diagnosis.friction_scatter import scatter_is_no_effect, within_scatter
@@ -14,31 +19,22 @@ from tsas_cli.diagnosis.intervals import Tolerated, estimates_with_tolerances
 from tsas_cli.diagnosis.proof import (
     ANOTHER_LAW,
     BY_NAME,
-    MOST_OF_A_SENSOR,
     FoundCause,
     failures,
-    is_harmonic,
-    may_be_of_the_law_of,
     may_be_zero,
     of_one_size,
-    sensors_of,
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
-from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of, share_left
+from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
-from tsas_cli.effects.channel_delay import CHANNEL_DELAY
-from tsas_cli.effects.sensor_lag import SENSOR_LAG
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
 
 SEED = 1  # of the resampling of blocks
 MOST_RIVALS = 2  # of an effect that fails, which are tried in its place
-MOST_LEFT = 0.1  # of what could be explained, by all causes together
-TIMES = (CHANNEL_DELAY.name, SENSOR_LAG.name)
-OPPOSITE = 0.3  # of a lag, that a lead differs from it by at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +95,8 @@ def _with_a_rival(
 
     None where one of them is not proven then by the catalogue's law, or more than noise is left.
     """
+    if may_be_anywhere((failing.effect, *failing.rivals)):
+        return None
     for other in failing.rivals[:MOST_RIVALS]:
         rivals = {name: r for name, r in search.rivals.items() if name != failing.effect}
         rivals[other] = tuple(name for name in failing.rivals if name != other)
@@ -128,16 +126,12 @@ def _judged(search: Hypotheses, stand_ins: tuple[FoundCause, ...], step: Steps) 
     after = remainder(bench, final, judged.folds, at_residuals, tolerated)
     last = _LastFit(judged, found, held_out, at_residuals.signals, after.structure, tolerated)
     causes = tuple(_cause(last, name) for name in judged.rivals)
-    causes = tuple(_beside_another_law(cause, causes) for cause in causes)
-    causes = tuple(_beside_a_wave(cause, causes) for cause in causes)
-    causes = tuple(_beside_its_opposite(cause, causes) for cause in causes)
-    gaining = (*causes, *stand_ins)
-    causes = tuple(_beside_others_of_its_sensor(cause, gaining) for cause in causes)
+    causes = beside_each_other(causes, stand_ins)
     start = after
     if named:
         start = remainder_of(bench, judged.trial(frozenset(), on_mesh=mesh), judged.folds)
     causes = tuple(
-        _beside_what_is_left(cause, start, after, bench.sample_interval_s) for cause in causes
+        beside_what_is_left(cause, start, after, bench.sample_interval_s) for cause in causes
     )
     estimates = tuple(found.estimates)
     return Proven(search, judged, causes, stand_ins, estimates, held_out, start, after, tolerated)
@@ -185,6 +179,8 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True
+    if len(named) > 1 and may_be_anywhere((name, *judged.rivals[name])):
+        failed = (*failed, "does what effects of the drive, tendon, load and sensors do as well")
     return FoundCause(
         *(name, judged.rivals[name], tuple(own), gains[0], interval, failed, law),
         convincing=again.convincing,
@@ -210,84 +206,6 @@ def _within_interval(split: Split, estimates: Sequence[Estimate]) -> bool:
     """Return whether the values of all parts lie in the parameter's interval: none differs."""
     (whole,) = (e for e in estimates if e.name == split.parameter)
     return whole.holds(*(value for _, value in split.values))
-
-
-def _beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
-    """Return a cause, refused where one that gains more acts at its place by a law of its own.
-
-    What that law lacks, a curve of another kind of a sensor or a wave, is no cause of its own.
-    """
-    for other in causes:
-        alike = may_be_of_the_law_of(cause.effect, other.effect)
-        if other.law_differs and alike and other.gain_percent > cause.gain_percent:
-            title = BY_NAME[other.effect].title.lower()
-            said = f"acts where {title} does, whose law differs from the catalogue's"
-            return replace(cause, failed=(*cause.failed, said))
-    return cause
-
-
-def _beside_its_opposite(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
-    """Return a delay or a low pass, refused where a channel leads by as much as it lags.
-
-    Together they round its corners alone, which is another effect's.
-    """
-    if cause.effect not in TIMES:
-        return cause
-    times = {e.name.partition(".")[2]: e.value for one in causes for e in one.parameters}
-    for sensor in sorted(sensors_of(cause)):
-        delay_s, lag_s = (times.get(f"{sensor}_{kind}_s", 0.0) for kind in ("delay", "lag"))
-        if lag_s > 0.0 and abs(delay_s + lag_s) < OPPOSITE * lag_s:
-            said = (
-                f"is undone in {sensor}, which leads by {-delay_s:.2g} s and lags by {lag_s:.2g} s"
-            )
-            return replace(cause, failed=(*cause.failed, said))
-    return cause
-
-
-def _beside_others_of_its_sensor(cause: FoundCause, gaining: Sequence[FoundCause]) -> FoundCause:
-    """Return a cause, refused where many effects that gain are errors of the same sensor."""
-    for sensor in sorted(sensors_of(cause)):
-        errors = sum(sensor in sensors_of(other) for other in gaining)
-        if errors > MOST_OF_A_SENSOR:
-            said = f"is one of {errors} errors of the {sensor} sensor, which may be one law of it"
-            return replace(cause, failed=(*cause.failed, said))
-    return cause
-
-
-def _beside_a_wave(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause:
-    """Return a cause, refused where it may be a harmonic of a wave that gains more."""
-    for other in causes:
-        periods = [
-            estimate.value
-            for one in (cause, other)
-            for estimate in one.parameters
-            if estimate.name == BY_NAME[one.effect].period
-        ]
-        waves = len(periods) == 2 and other.gain_percent > cause.gain_percent
-        if waves and is_harmonic(*periods):
-            said = f"may be a harmonic of {BY_NAME[other.effect].title.lower()}"
-            return replace(cause, failed=(*cause.failed, said))
-    return cause
-
-
-def _beside_what_is_left(
-    cause: FoundCause, start: Remainder, after: Remainder, interval_s: float
-) -> FoundCause:
-    """Return a cause, refused where much is left: an effect that is alike may take the rest too.
-
-    A delay by less than half a sample interval is where anything is left: what is wrong at each
-    reversal looks so.
-    """
-    if after.complete:
-        return cause
-    failed, left = list(cause.failed), share_left(start, after)
-    if left > MOST_LEFT:
-        failed.append(f"leaves {100.0 * left:.0f} % of what could be explained")
-    if cause.effect == CHANNEL_DELAY.name and all(
-        abs(e.value) < 0.5 * interval_s for e in cause.parameters
-    ):
-        failed.append("is less than half a sample interval, and more is wrong")
-    return replace(cause, failed=tuple(failed))
 
 
 def _of_another_law(last: _LastFit, name: str) -> Iterator[str]:
