@@ -186,7 +186,7 @@ def flatten_rests(
 def straighten(beside: Floats, level: float, near: float) -> None:
     """Let a signal run to a rest's level one way, in place, over the samples that are near it.
 
-    `beside` begins at the rest. What overshoots the level, or turns back before it, is noise.
+    `beside` begins at the rest. What overshoots the level, or reverses before it, is noise.
     """
     away = np.flatnonzero(np.abs(beside - level) > near)
     if away.size:
