@@ -18,6 +18,13 @@ def names(*found):
     return frozenset(found)
 
 
+class Trial(SimpleNamespace):
+    """A fit whose start beside others is the change that they make."""
+
+    def ready_for(self, change):
+        return SimpleNamespace(**vars(self), ready=change)
+
+
 class Bench:
     """Fits whose mean square is given by the effects, or by a list of one after the other."""
 
@@ -34,7 +41,7 @@ class Bench:
         value = self.mean_squares[fitted]
         value = value.pop(0) if isinstance(value, list) else value
         solution = SimpleNamespace(converged=True, residual=np.ones(SIZE), at_bound=[])
-        return SimpleNamespace(mean_square=value, solution=solution, unknowns=[], on_mesh=on_mesh)
+        return Trial(mean_square=value, solution=solution, unknowns=[], on_mesh=on_mesh)
 
     @property
     def fitted(self):
@@ -60,9 +67,10 @@ def fits_over(bench, known):
     return Fits(bench, folds, effects=effects, tolerated={False: None, True: None})
 
 
-def screened(name, part=0.5, signatures=None):
+def screened(name, part=0.5, signatures=None, start=1.0):
     signatures = np.zeros((SIZE, 1)) if signatures is None else signatures
-    return Screened(OF[name], part, {f"{name}.{OF[name].parameters[0].name}": 1.0}, signatures)
+    initial = {f"{name}.{OF[name].parameters[0].name}": start}
+    return Screened(OF[name], part, initial, signatures, np.ones(SIZE))
 
 
 A, B, C, D, E = "backlash", "drive_friction", "free_tendon", "load_friction", "load_inertia"

@@ -1,5 +1,7 @@
 """Held-out squares, against fits that really leave a run out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -221,3 +223,19 @@ def test_the_first_run_has_zeros_of_its_own_too():
     assert found == pytest.approx([-3.0, -1.0, 0.0], abs=1e-5)
     fitted = single(J, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0], [unknown("zero", k) for k in range(3)])
     assert held_out_squares(fitted, folds_of(THREE))[:2] == pytest.approx([1.0, 1.0])
+
+
+def test_a_fit_ready_for_a_change_is_the_least_squares_beside_it_within_the_bounds(linear):
+    shared, own, data = linear
+    J = np.hstack((shared, own))
+    names = [unknown("a"), unknown("b"), *(unknown("zero", k) for k in range(RUNS))]
+    trial = trial_of(J, data, names)
+    change = np.random.default_rng(3).standard_normal(data.size)
+    ready = trial.ready_for(change)
+    expected = np.linalg.lstsq(J, data - change, rcond=None)[0]
+    np.testing.assert_allclose(ready.solution.values, expected, rtol=1e-6)
+    low = float(trial.solution.values[1])
+    bounded = replace(
+        trial, unknowns=(names[0], replace(names[1], lower=low, upper=low), *names[2:])
+    )
+    assert bounded.ready_for(change).solution.values[1] == low

@@ -14,6 +14,7 @@ from tests.diagnosis.searched import (
     D,
     names,
     pairs,
+    screened,
     search_over,
     seen,
 )
@@ -129,12 +130,13 @@ def test_what_cannot_reduce_the_squares_enough_is_not_fitted(made, least, found)
 
 def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
     parameter = OF[C].parameters[0]
-    start = {f"{C}.{parameter.name}": parameter.neutral + 1.0}
     fits = made({names(): 4.0, names(C): [9.0, 5.0, 3.0]})
-    fits.fit(names(), names(C), start)
+    fits.fit(names(), names(C), screened(C, start=parameter.neutral + 1.0))
     starts = [fit.start for fit in fits.bench.fits if fit.fitted == names(C)]
     away = [next(iter(at.values())) - parameter.neutral for at in starts]
     assert away == pytest.approx([1.0, 0.2, 0.04])
+    ready = [fit.near.ready[0] for fit in fits.bench.fits if fit.fitted == names(C)]
+    assert ready == pytest.approx([1.0, 0.2, 0.04])  # for a change as much smaller
     assert fits.trial(names(C)).mean_square == 3.0
 
 

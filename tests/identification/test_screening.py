@@ -69,6 +69,7 @@ def test_the_amounts_are_those_that_take_the_residual_away():
     assert found.initial == pytest.approx({n: amounts[n] * starts[n] for n in starts}, rel=1e-4)
     own = OWN - basis @ (basis.T @ OWN)
     np.testing.assert_allclose(found.signatures, own, atol=1e-9)
+    np.testing.assert_allclose(found.change, 2.0 * OWN[:, 0] + 0.5 * OWN[:, 1], atol=1e-3)
 
 
 def test_known_changes_are_screened_again_without_a_simulation_and_refined_by_one():

@@ -7,7 +7,6 @@ session: then they are no scatter.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -124,19 +123,23 @@ class Fits:
         """Return whether a set of effects has not been fitted yet."""
         return (names, self.bench.on_mesh(names)) not in self.trials
 
-    def fit(self, near: Names, names: Names, initial: Mapping[str, float]) -> None:
-        """Fit a set of effects if it is new, from another one and initial values."""
+    def fit(self, near: Names, names: Names, *screened: Screened) -> None:
+        """Fit a set of effects if it is new, from another one and effects screened beside it."""
         if not self.is_new(names):
             return
         mesh = self.bench.on_mesh(names)
         known = self.trial(near, on_mesh=mesh)
+        initial = {name: value for s in screened for name, value in s.initial.items()}
+        change = np.sum([s.change for s in screened], axis=0)
         self.step.doing(f"fits {' + '.join(sorted(names))}")
         for _ in range(ATTEMPTS):
-            trial = self.bench.fit(sorted(names), initial, near=known, on_mesh=mesh)
+            start = known.ready_for(change)
+            trial = self.bench.fit(sorted(names), initial, near=start, on_mesh=mesh)
             if trial.mean_square <= known.mean_square * (1.0 + TOLERANCE):
                 break
             # More free parameters cannot fit worse: the initial values were too far off.
             initial = {n: QUANTITIES[n].closer(v, CLOSER) for n, v in initial.items()}
+            change = CLOSER * change
         self._store(names, trial)
         self._say_leader(names)
         self.step()

@@ -108,7 +108,7 @@ def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reducti
     found = []
     for s in candidates:
         together = names | {s.effect.name}
-        fits.fit(names, together, s.initial)
+        fits.fit(names, together, s)
         if not _is_part_of_a_wave(fits.bench, fits.trial(together), s.effect):
             found.append((s.effect.name, fits.gain(names, together)))
     return sorted(found, key=lambda f: -f[1].part)
@@ -176,7 +176,7 @@ def _best_pair(fits: Fits, names: Names, convinces: Criterion) -> Names | None:
             break
         pair = frozenset({a.effect.name, b.effect.name})
         fits.step.ahead(fits.is_new(names | pair))
-        fits.fit(names, names | pair, a.initial | b.initial)
+        fits.fit(names, names | pair, a, b)
         found = fits.gain(names, names | pair)
         if convinces(found) and matters(fits, names, pair):
             return pair

@@ -59,6 +59,16 @@ class HypothesisFit:
         moves[free] = -inverse_gram(J) @ (J.T @ changes)
         return moves
 
+    def ready_for(self, change: Floats) -> Self:
+        """Return the fit with its values moved to where they fit best beside a change, shape (n,).
+
+        As a start for a fit with what changes the residuals so; linear, within the bounds.
+        """
+        moved = self.solution.values + self.moved_by(change[:, None])[:, 0]
+        ends = zip(*((u.lower, u.upper) for u in self.unknowns), strict=True)
+        values = np.clip(moved, *map(np.array, ends))
+        return replace(self, solution=replace(self.solution, values=values))
+
     def correlation(self) -> Floats:
         """Return the correlation of the unknowns by noise alone, shape (p, p), without bounds."""
         return correlation_of(inverse_gram(self.solution.jacobian))

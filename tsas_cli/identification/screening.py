@@ -30,14 +30,16 @@ class Screened:
     """One effect screened linearly: the share of the squares it could explain, initial values.
 
     `signatures` have the free parameters projected out, one column for each amplitude, shape
-    (n, p), in units of noise. `changes` has, for all values that were tried, those of the residuals
-    by each amplitude, shape (n, p); the best are at `values`.
+    (n, p), in units of noise; `change` is that of the residuals at the initial values, the free
+    parameters unchanged, shape (n,). `changes` has, for all values that were tried, those of the
+    residuals by each amplitude, shape (n, p); the best are at `values`.
     """
 
     effect: Effect
     part: float
     initial: dict[str, float]
     signatures: Floats
+    change: Floats
     values: tuple[float, ...] = ()
     changes: Mapping[tuple[float, ...], Floats] = field(default_factory=dict)
 
@@ -105,7 +107,8 @@ def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) ->
     starts = product(*(p.starts or (p.start,) for p in _shapes_first(effect)))
     without = bench.errors_at(trial, {})
     changes = {values: _changes(bench, trial, effect, values, without) for values in starts}
-    return screen_again(Screened(effect, 0.0, {}, np.zeros(0), (), changes), trial, basis)
+    unknown = Screened(effect, 0.0, {}, np.zeros(0), np.zeros(0), changes=changes)
+    return screen_again(unknown, trial, basis)
 
 
 def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screened:
@@ -114,7 +117,7 @@ def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screen
     parameters = _shapes_first(effect)
     amplitudes = [p for p in parameters if not p.shape]
     none = np.zeros((residual.size, 0))
-    best = replace(known, part=-1.0, initial={}, signatures=none, values=())
+    best = replace(known, part=-1.0, initial={}, signatures=none, change=none.sum(axis=1))
     for values, signatures in known.changes.items():
         if not np.isfinite(signatures).all():
             continue
@@ -129,7 +132,14 @@ def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screen
                 _name(effect, p): p.neutral + a * size
                 for p, a, size in zip(amplitudes, amounts, sizes, strict=True)
             }
-            best = replace(best, part=part, initial=initial, signatures=own, values=values)
+            best = replace(
+                best,
+                part=part,
+                initial=initial,
+                signatures=own,
+                change=signatures @ amounts,
+                values=values,
+            )
     return best if best.initial else replace(best, part=0.0)
 
 
