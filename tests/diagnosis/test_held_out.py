@@ -29,7 +29,8 @@ def linear():
 def trial_of(J, data, names):
     values = np.linalg.lstsq(J, data, rcond=None)[0]
     solution = Solution(values, np.zeros(values.size, bool), J @ values - data, J, True, "", 1)
-    return HypothesisFit((), tuple(names), solution, (ROWS,) * RUNS, on_mesh=False)
+    sizes = (ROWS,) * (data.size // ROWS)
+    return HypothesisFit((), tuple(names), solution, sizes, on_mesh=False)
 
 
 def blocks(count=6):
@@ -61,14 +62,11 @@ def test_of_many_runs_several_are_predicted_together_each_with_its_own_offset():
     data = shared @ [2.0] + own @ offsets + 0.01 * rng.standard_normal(runs * ROWS)
     names = [unknown("a"), *(unknown("zero", k) for k in range(runs))]
     J = np.hstack((shared, own))
-    values = np.linalg.lstsq(J, data, rcond=None)[0]
-    solution = Solution(values, np.zeros(values.size, bool), J @ values - data, J, True, "", 1)
-    trial = HypothesisFit((), tuple(names), solution, (ROWS,) * runs, on_mesh=False)
-    left = folds.fold == folds.fold[folds.run == 9][0]
-    mine = sorted(of_fold[int(folds.fold[left][0])])
-    found = held_out_values(trial, folds, int(folds.fold[left][0]))
-    slope = np.linalg.lstsq(J[~left][:, [0, *(1 + k for k in range(runs) if k not in mine)]],
-                            data[~left], rcond=None)[0][0]  # fmt: skip
+    fold = int(folds.fold[folds.run == 9][0])
+    left, mine = folds.fold == fold, of_fold[fold]
+    found = held_out_values(trial_of(J, data, names), folds, fold)
+    others = J[~left][:, [0, *(1 + k for k in range(runs) if k not in mine)]]
+    slope = np.linalg.lstsq(others, data[~left], rcond=None)[0][0]
     assert found[0] == pytest.approx(slope, rel=1e-6)
     for k in mine:
         here = folds.run == k

@@ -1,7 +1,6 @@
 """What refuses a cause because of the others that gain, or of what they all leave."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
 from tsas_cli.diagnosis.remainder import Remainder, share_left
@@ -22,9 +21,8 @@ def beside_each_other(
     causes: tuple[FoundCause, ...], stand_ins: tuple[FoundCause, ...]
 ) -> tuple[FoundCause, ...]:
     """Return causes, refused where another one, or a stand-in, does what they do."""
-    causes = tuple(beside_another_law(cause, causes) for cause in causes)
-    causes = tuple(beside_a_wave(cause, causes) for cause in causes)
-    causes = tuple(beside_its_opposite(cause, causes) for cause in causes)
+    for beside in (beside_another_law, beside_a_wave, beside_its_opposite):
+        causes = tuple(beside(cause, causes) for cause in causes)
     gaining = (*causes, *stand_ins)
     return tuple(beside_others_of_its_sensor(cause, gaining) for cause in causes)
 
@@ -39,7 +37,7 @@ def beside_another_law(cause: FoundCause, causes: Sequence[FoundCause]) -> Found
         if other.law_differs and alike and other.gain_percent > cause.gain_percent:
             title = BY_NAME[other.effect].title.lower()
             said = f"acts where {title} does, whose law differs from the catalogue's"
-            return replace(cause, failed=(*cause.failed, said))
+            return cause.refused(said)
     return cause
 
 
@@ -57,7 +55,7 @@ def beside_its_opposite(cause: FoundCause, causes: Sequence[FoundCause]) -> Foun
             said = (
                 f"is undone in {sensor}, which leads by {-delay_s:.2g} s and lags by {lag_s:.2g} s"
             )
-            return replace(cause, failed=(*cause.failed, said))
+            return cause.refused(said)
     return cause
 
 
@@ -67,7 +65,7 @@ def beside_others_of_its_sensor(cause: FoundCause, gaining: Sequence[FoundCause]
         errors = sum(sensor in sensors_of(other) for other in gaining)
         if errors > MOST_OF_A_SENSOR:
             said = f"is one of {errors} errors of the {sensor} sensor, which may be one law of it"
-            return replace(cause, failed=(*cause.failed, said))
+            return cause.refused(said)
     return cause
 
 
@@ -83,7 +81,7 @@ def beside_a_wave(cause: FoundCause, causes: Sequence[FoundCause]) -> FoundCause
         waves = len(periods) == 2 and other.gain_percent > cause.gain_percent
         if waves and is_harmonic(*periods):
             said = f"may be a harmonic of {BY_NAME[other.effect].title.lower()}"
-            return replace(cause, failed=(*cause.failed, said))
+            return cause.refused(said)
     return cause
 
 
@@ -97,14 +95,14 @@ def beside_what_is_left(
     """
     if after.complete:
         return cause
-    failed, left = list(cause.failed), share_left(start, after)
+    left = share_left(start, after)
     if left > MOST_LEFT:
-        failed.append(f"leaves {100.0 * left:.0f} % of what could be explained")
+        cause = cause.refused(f"leaves {100.0 * left:.0f} % of what could be explained")
     if cause.effect == CHANNEL_DELAY.name and all(
         abs(e.value) < 0.5 * interval_s for e in cause.parameters
     ):
-        failed.append("is less than half a sample interval, and more is wrong")
-    return replace(cause, failed=tuple(failed))
+        cause = cause.refused("is less than half a sample interval, and more is wrong")
+    return cause
 
 
 def may_be_anywhere(names: Iterable[str]) -> bool:

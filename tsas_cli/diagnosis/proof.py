@@ -9,7 +9,8 @@ catalogue's.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -62,6 +63,10 @@ class FoundCause:
     law_differs: str = ""
     convincing: bool = True
     negligible: bool = False
+
+    def refused(self, why: str) -> Self:
+        """Return the effect with one thing more that it does not prove."""
+        return replace(self, failed=(*self.failed, why))
 
 
 def failures(

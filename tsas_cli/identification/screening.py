@@ -117,7 +117,8 @@ def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screen
     parameters = _shapes_first(effect)
     amplitudes = [p for p in parameters if not p.shape]
     none = np.zeros((residual.size, 0))
-    best = replace(known, part=-1.0, initial={}, signatures=none, change=none.sum(axis=1))
+    unchanged = np.zeros(residual.size)
+    best = replace(known, part=-1.0, initial={}, signatures=none, change=unchanged, values=())
     for values, signatures in known.changes.items():
         if not np.isfinite(signatures).all():
             continue

@@ -1,7 +1,6 @@
 """The channels of a map and their signs, from the columns of a file."""
 
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
 from tsas_cli.recordings.guess.columns import Certainty, FileColumn, Proposed, with_unit
@@ -15,9 +14,7 @@ Sign = tuple[int | str, str]  # 1, −1 or a question, and why
 _MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
-def channels(
-    columns: Sequence[FileColumn], unusable: Mapping[str, str] = MappingProxyType({})
-) -> list[Proposed]:
+def channels(columns: Sequence[FileColumn], unusable: Mapping[str, str]) -> list[Proposed]:
     """Return the proposed channels of the columns besides the clock, in the order of the format.
 
     Channels without evidence are left out; `unusable` are further columns, and why they are.
