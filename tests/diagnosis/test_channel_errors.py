@@ -13,26 +13,23 @@ from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 ROWS = 1000
 
 
-def run(advance=0.0):
-    """Return a run with 0.1 N of noise; one sample in ten has the drive's error."""
-    change = np.where(np.arange(ROWS) % 10 == 0, advance, 0.0)
+def bench(*of_drive):
+    """Return runs with 0.1 N of noise; in one sample in ten the drive's error moves f_in."""
+    run = SimpleNamespace(
+        samples={"f_in_N": np.arange(ROWS)}, run=SimpleNamespace(noise={"f_in_N": 0.1})
+    )
+    at = np.arange(ROWS) % 10 == 0
+    by_driven_ends = [{"f_in_N": np.where(at, moved, 0.0)} for moved in of_drive]
     return SimpleNamespace(
-        samples={"f_in_N": np.arange(ROWS)},
-        advance={"f_in_N": change},
-        run=SimpleNamespace(noise={"f_in_N": 0.1}),
+        channels=["f_in_N"], closed=[run] * len(of_drive), by_driven_ends=by_driven_ends
     )
 
 
-def bench(*runs):
-    return SimpleNamespace(channels=["f_in_N"], closed=runs)
-
-
 def test_the_floor_has_white_noise_slow_noise_and_what_the_drive_does():
-    assert noise_floor(bench(run()), "f_in_N", 0.0) == pytest.approx(0.1)
-    assert noise_floor(bench(run()), "f_in_N", 1.0) == pytest.approx(0.1 * math.sqrt(2.0))
-    drive = 0.1 * (0.4 * 2.0) ** 2  # of one sample in ten, by 0.4 standard deviations of it
-    both = noise_floor(bench(run(2.0), run()), "f_in_N", 0.0)
-    assert both == pytest.approx(math.sqrt(0.01 + 0.5 * drive))
+    assert noise_floor(bench(0.0), "f_in_N", 0.0) == pytest.approx(0.1)
+    assert noise_floor(bench(0.0), "f_in_N", 1.0) == pytest.approx(0.1 * math.sqrt(2.0))
+    both = noise_floor(bench(0.8, 0.0), "f_in_N", 0.0)
+    assert both == pytest.approx(math.sqrt(0.01 + 0.5 * 0.1 * 0.8**2))
 
 
 @pytest.mark.parametrize(
@@ -52,7 +49,7 @@ def found(before, after, start, rest, slow=None):
     left = [Remainder(1.0, {"f_in_N": part}, (), shares={"f_in_N": part}) for part in (start, rest)]
     if slow is not None:
         left[1] = replace(left[1], slow={"f_in_N": SlowPart(slow, 1.0)})
-    return channel_errors(bench(run()), {"f_in_N": before}, {"f_in_N": after}, *left)["f_in_N"]
+    return channel_errors(bench(0.0), {"f_in_N": before}, {"f_in_N": after}, *left)["f_in_N"]
 
 
 @pytest.mark.parametrize(

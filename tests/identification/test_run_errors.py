@@ -56,6 +56,23 @@ def test_a_true_model_s_errors_are_about_one(make):
         assert np.sqrt(np.mean(found**2)) < 1.3
 
 
+@pytest.mark.parametrize("make", [sine, nested])
+def test_a_true_model_errs_by_the_noise_and_by_what_noise_of_the_drive_does(make):
+    """The floor of f_in is more than its own noise; that of a distal channel is its noise."""
+    squares = {}
+    for seed in range(6):
+        run = prepared(Rig(), make(rate_Hz=RATE_HZ), sensors=FINE, seed=seed)
+        errors, rig = errors_of(run)
+        by_drive = errors.by_driven_ends(rig)
+        for name, left in errors.raw(rig).items():
+            sizes = run.noise[name], *(np.sqrt(np.mean(e**2)) for e in (by_drive[name], left))
+            squares.setdefault(name, []).append(np.square(sizes))
+    for name, each in squares.items():
+        white, drive, found = np.mean(each, axis=0)
+        assert 0.85 < np.sqrt((white + drive) / found) < 1.25
+        assert bool(drive > 0.04 * white) is (name == "f_in_N")
+
+
 @pytest.mark.parametrize("rate_Hz", [20.0, 30.0, 50.0])
 def test_a_coarse_sample_may_lie_behind_the_reversal_that_it_seems_to_end(rate_Hz):
     """Were it compared, single errors of f_in would be 20 to 60 standard deviations."""
@@ -129,7 +146,6 @@ def errors_with(samples, measured=None, predicted=3.0):
         None,
         lambda rig: dict.fromkeys(samples, np.full(size, predicted)),
         dict.fromkeys(samples, np.ones(size)),
-        dict.fromkeys(samples, np.zeros(size)),
         {n: ReversalShapes(np.zeros(at.size), np.array([0]), at.size) for n, at in samples.items()},
     )
 

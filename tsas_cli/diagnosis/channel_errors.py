@@ -8,7 +8,6 @@ from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.extension import Bench
 
 FAR_OFF = 5.0  # of the noise floor; complete models of distal channels reach 2.2
-REVERSALS = 0.4  # error of the position of a reversal, in standard deviations of one sample
 
 
 @dataclass(frozen=True)
@@ -71,14 +70,13 @@ def noise_floor(bench: Bench, name: str, slow: float) -> float:
     """Return the RMS of a channel's residual with a true model, in its unit.
 
     It is the channel's white noise, slow noise of `slow` times that, and what the noise of the
-    driving end does.
+    driven ends does.
     """
     squares, count = 0.0, 0
-    for run in bench.closed:
+    for run, by_ends in zip(bench.closed, bench.by_driven_ends, strict=True):
         if name in run.samples:
-            at = run.samples[name]
-            advance = REVERSALS * run.advance[name][at]
-            squares += at.size * run.run.noise[name] ** 2 * (1.0 + slow**2)
-            squares += float(advance @ advance)
-            count += at.size
+            size = run.samples[name].size
+            squares += size * run.run.noise[name] ** 2 * (1.0 + slow**2)
+            squares += float(by_ends[name] @ by_ends[name])
+            count += size
     return math.sqrt(squares / count)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -141,6 +141,12 @@ class Bench:
     def channels(self) -> list[str]:
         """The compared channels, in a fixed order."""
         return sorted({name for run in self.closed for name in run.samples})
+
+    @cached_property
+    def by_driven_ends(self) -> list[dict[str, Floats]]:
+        """What noise of the driven ends does to each channel, run by run (`RunErrors`)."""
+        runs = range(len(self.closed))
+        return each(lambda k: self.closed[k].by_driven_ends(self.rigs[k]), runs)
 
     @property
     def longest_stroke_mm(self) -> float:

@@ -49,8 +49,7 @@ class RunErrors:
     """The residuals of one run for any rig, with weights computed at one of them.
 
     Of each channel `samples` are those that enter the fit, `weights` the standard deviation of its
-    residual at all samples, shape (n,), and `advance` its change by each stroke advanced by one
-    standard deviation of the driving end. `predict` returns the predictions of a rig.
+    residual at all samples, shape (n,). `predict` returns the predictions of a rig.
     """
 
     run: Prepared
@@ -58,7 +57,6 @@ class RunErrors:
     simulation: RunSimulation
     predict: Callable[[Rig], Predictions]
     weights: Mapping[str, Floats]
-    advance: Mapping[str, Floats]
     turns: Mapping[str, ReversalShapes]
 
     @property
@@ -92,6 +90,18 @@ class RunErrors:
         errors, turns = (difference / self.weights[name])[self.samples[name]], self.turns[name]
         projection = np.add.reduceat(turns.shape * errors, turns.starts)
         return np.asarray(errors - turns.shape * np.repeat(projection, turns.counts))
+
+    def by_driven_ends(self, rig: Rig) -> dict[str, Floats]:
+        """Return what noise of the driven ends does to each channel, at the samples of the fit."""
+        run, plain = self.run, self.predict(rig)
+        squares = {name: np.zeros(at.size) for name, at in self.samples.items()}
+        for column, conditioned in run.conditioned.items():
+            end = "values" if column == run.drive_column else "load_values"
+            again = conditioned.again(run.time_s, run.every)
+            moved = predict_driven(self.simulation, rig, **{end: again})
+            for name, at in self.samples.items():
+                squares[name] += (moved[name] - plain[name])[at] ** 2
+        return {name: np.sqrt(values) for name, values in squares.items()}
 
     def delays(self, rig: Rig) -> dict[str, Floats]:
         """Return by how much each stroke lags behind the model's, in each channel.
@@ -228,7 +238,7 @@ def _weighted(
         name: _reversal_shapes(change[name] / weights[name], at, reversals)
         for name, at in samples.items()
     }
-    return RunErrors(run, samples, simulation, predict, weights, change, turns)
+    return RunErrors(run, samples, simulation, predict, weights, turns)
 
 
 def _reversal_shapes(change: Floats, at: Indices, reversals: Indices) -> ReversalShapes:

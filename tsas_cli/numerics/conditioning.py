@@ -61,6 +61,18 @@ class Conditioned:
     smallest_reversal: float = 0.0
     step: float = 0.0
 
+    def again(self, time_s: Floats, every: int = 1) -> Floats:
+        """Return the values cleaned once more, with noise and rounding like those of the raw ones.
+
+        Its difference is an error such as the values themselves have. They are one in `every` of
+        the samples that were cleaned. The noise is the same in every call.
+        """
+        white = math.sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0) / every)
+        noisy = self.values + white * np.random.default_rng(0).standard_normal(self.values.size)
+        if self.step > 0.0 and every == 1:
+            noisy = self.step * np.round(noisy / self.step)
+        return condition(time_s, noisy).values
+
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
     """Return the cleaned signal of times and values, shape (n,).

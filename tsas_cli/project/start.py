@@ -31,9 +31,15 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], MapProposal
     The sources are copied into `raw/`, a folder with its name. Files are added to an existing
     folder one by one: after a kill, the same call writes the missing ones.
 
-    InputError: a file exists with other content, a source cannot be read, or two have the same
-    name.
+    InputError: a file exists with other content, a source cannot be read or is the folder itself,
+    or two have the same name.
     """
+    if folder.exists() and any(source.resolve() == folder.resolve() for source in sources):
+        raise InputError(
+            "is both the project and its recordings",
+            where=folder,
+            remedy=f"name a new folder, or move the recordings into {folder / RAW} and name that",
+        )
     name = printable(folder.resolve().name) or "bench"
     quoted = tomlkit.item(name).as_string()
     files: dict[str, str | Path] = {  # by place in the project: a text, or what is copied there

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from fnmatch import fnmatch
 from itertools import chain
 from pathlib import Path
@@ -15,7 +16,7 @@ from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap, run_conditions
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
-from tsas_cli.recordings.readers import SUFFIXES, batches, is_known
+from tsas_cli.recordings.readers import READABLE, batches, is_known
 from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
 from tsas_cli.recordings.writing import parquet_writer, table_of
@@ -51,7 +52,8 @@ def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
             raise InputError(
                 "holds no file to ingest" if source.is_dir() else "does not exist",
                 where=source,
-                expected=f"a file, or a folder of files in {', '.join(SUFFIXES)}",
+                expected=READABLE if source.is_dir() else "a recording, or a folder of them",
+                remedy=_nearest(source),
             )
         found += files
     if len(found) > limits.RUNS:
@@ -62,6 +64,13 @@ def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
             remedy="ingest fewer folders at a time, or set files under [read] of the map",
         )
     return found
+
+
+def _nearest(source: Path) -> str:
+    """Return the name beside a file that is not there, if one is like it."""
+    beside = [] if source.exists() else [path.name for path in source.parent.glob("*")]
+    close = get_close_matches(source.name, beside, n=1)
+    return f"did you mean {close[0]}?" if close else ""
 
 
 def ingest_files(

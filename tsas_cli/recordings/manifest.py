@@ -25,7 +25,7 @@ from pydantic import (
 from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.files import Raw, parsed
+from tsas_cli.support.files import Raw, in_subfolders, parsed
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -181,11 +181,12 @@ def read_manifest(folder: Location) -> Manifest:
     """
     path = folder / MANIFEST_FILE
     if not path.is_file():
+        inside = in_subfolders(folder, (MANIFEST_FILE,))
         raise InputError(
-            "no dataset.toml here",
+            "is a file" if folder.is_file() else "no dataset.toml here",
             where=folder,
             expected="a dataset folder",
-            remedy="make one from your files with `tsas ingest`",
+            remedy=inside or "make one from your files with `tsas ingest`",
         )
     check_inside(path, folder)
     return parse(Manifest, read_toml(path), path)

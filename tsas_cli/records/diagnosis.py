@@ -31,6 +31,16 @@ Verdict = Literal[
     "sufficient",
     "undecided",
 ]
+VERDICTS: dict[Verdict, str] = {
+    "named": "Cause found",
+    "ambiguous": "Cause found, but these recordings leave open which",
+    "partly": "Cause found, and something unknown beside it",
+    "described": "Something without a name is missing, and described",
+    "stand_in": "Something unknown is missing",
+    "sufficient": "Nothing is missing",
+    "unexplained": "Something unknown is missing",
+    "undecided": "Cannot tell",
+}
 INCOMPLETE = frozenset[Verdict]({"partly", "described", "stand_in", "unexplained"})
 UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from statistics import median
 
 from tsas_cli.records.closing import ClosingFile
-from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
+from tsas_cli.records.diagnosis import VERDICTS, DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.records.drive import DriveDiagnosis, DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
@@ -18,16 +18,6 @@ from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 from tsas_cli.support.wording import listed
 
 _REDUCTION = "normalised residual"
-_KINDS = {
-    "named": "Cause found",
-    "ambiguous": "Cause found, but these recordings leave open which",
-    "partly": "Cause found, and something unknown beside it",
-    "described": "Something without a name is missing, and described",
-    "stand_in": "Something unknown is missing",
-    "sufficient": "Nothing is missing",
-    "unexplained": "Something unknown is missing",
-    "undecided": "Cannot tell",
-}
 _NO_CAUSE = {
     "sufficient": "The nominal model explains these recordings",
     "described": "A law of unnamed origin describes what the model misses",
@@ -75,7 +65,7 @@ def _of_diagnosis(
     shown = tuple(fact for fact in facts if ABSENT not in fact.value)
     if extended:
         numbers += ", nominal → extended model"
-    kind = _KINDS[diagnosis.verdict]
+    kind = VERDICTS[diagnosis.verdict]
     if len(named) == 1 and shown and shown[0].label == _REDUCTION:
         kind += f": {_REDUCTION} on held-out data {shown[0].value}"
     return Glance(kind, verdict, numbers if shown else "", shown)

@@ -25,7 +25,7 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, printable
-from tsas_cli.support.files import read_json
+from tsas_cli.support.files import in_subfolders, read_json
 
 STAGES: tuple[type[StageFile], ...] = (
     CheckFile,
@@ -211,6 +211,7 @@ def _by_file(folders: Sequence[Location], *, several: bool) -> dict[str, list[Lo
                 "does not exist" if missing else "neither a dataset nor what a stage wrote",
                 where=folder,
                 expected=f"a folder with one of {', '.join(looked_for)}",
+                remedy=in_subfolders(folder, looked_for),
             )
         for file in files:
             before = found.setdefault(file, [])

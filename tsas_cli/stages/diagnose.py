@@ -119,13 +119,14 @@ class DiagnosisResult(Result):
             for row in self.record.candidates[:SHOWN]
         ]
         if ranking:
-            yield "hypotheses", ("effects", "reduction [%]", "test statistic", ""), ranking
+            of = f", best {len(ranking)} of {len(self.record.candidates)}"
+            yield f"hypotheses{of}", ("effects", "reduction [%]", "test statistic", ""), ranking
 
     def sentences(self) -> list[str]:
         """Return the verdict, what to measure next, and what the recordings do not say."""
         slow = self.record.remainder.slow_noise
         return [
-            f"Verdict: {self.verdict}. {self.reason}",
+            f"{records.VERDICTS[self.verdict]} (verdict: {self.verdict}). {self.reason}",
             *(law.sentence for law in self.record.laws),
             *(noise.text(name) for name, noise in slow.items()),
             f"Next: {self.next_experiment}",

@@ -23,6 +23,7 @@ from tsas_cli.support.replacing import (
     refuse_kind,
 )
 from tsas_cli.support.temporaries import place_file, place_folder, temporary_for
+from tsas_cli.support.wording import listed
 
 Raw = dict[str, Any]  # a table of TOML, JSON or MATLAB, before a schema has read it
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
@@ -128,6 +129,14 @@ def own_file(path: Path) -> AbstractContextManager[Path]:
     InputError: it is a folder, or not writable.
     """
     return new_file(path, mark=b"", inputs=(), force=True)
+
+
+def in_subfolders(folder: object, names: Collection[str]) -> str:
+    """Return which subfolders hold one of some files, as a remedy; "" where none does."""
+    inside = sorted(folder.glob("*")) if isinstance(folder, Path) else []
+    found = [sub.name for sub in inside if any((sub / name).is_file() for name in names)]
+    more = [f"{len(found) - 3} more"] if len(found) > 3 else []
+    return f"name one of its subfolders: {listed([*found[:3], *more])}" if found else ""
 
 
 def write_sums(folder: Path) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import sha256_of
+from tsas_cli.support.files import in_subfolders, sha256_of
 from tsas_cli.sweeping.outcome import Row, versions
 from tsas_cli.sweeping.plan import SweepPlan, points_of
 from tsas_cli.sweeping.values import Options, Values, sorted_values
@@ -151,7 +151,7 @@ def _matching(name: str, base: Path) -> Iterator[SweepSource]:
 def _source(name: str, base: Path) -> SweepSource:
     folder = base / name
     if not (folder / MANIFEST_FILE).is_file():
-        inside = next(folder.glob(f"*/{MANIFEST_FILE}"), None) if folder.is_dir() else None
+        inside = in_subfolders(folder, (MANIFEST_FILE,))
         raise InputError(
             "no dataset.toml here",
             where=folder,

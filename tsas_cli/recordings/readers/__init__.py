@@ -56,6 +56,10 @@ _CONVERTING = ("converted", "labview", "spreadsheet")  # to a file of another fo
 _IN_PARTS = ("delimited", "parquet")  # they have `batches` and `names`, the others `offered`
 _WITH_TABLES = ("json_table", "matlab", "spreadsheet")
 SUFFIXES = tuple(_READERS)
+READABLE = (
+    "CSV or other text, MATLAB, HDF5, NumPy, Parquet, Feather, JSON, a spreadsheet, TDMS, LVM, "
+    f"MDF, MCAP or a ROS bag, plain or in {' '.join(converted.PACKED)}"
+)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
@@ -175,6 +179,6 @@ def _unknown(path: Path) -> InputError:
     return InputError(
         f"unknown file format {suffix}{' inside' if packed else ''}",
         where=path,
-        expected=f"one of {', '.join(SUFFIXES)}",
+        expected=READABLE,
         remedy=way.format(file=shlex.quote(str(path)), **names),
     )
