@@ -124,7 +124,7 @@ def test_the_longest_stroke_is_the_widest_motion_of_a_run_by_displacement(bench)
 def test_an_uneven_sheath_is_bent_by_a_twentieth_more_here_than_there(bench):
     """The residuals that say slope and bow of the bend change by that, each in its own way."""
     trial = trial_of([zero_of(0), zero_of(1)], [5.0, 6.0])
-    found = bench().unevenness(trial)
+    found = bench().changes_on_chain(trial, [{"bend_slope": 0.05}, {"bend_bow": 0.05}])
     assert found.shape == (10, 2)
     expected = np.zeros((10, 2))
     expected[[3, 8], 0] = expected[[4, 9], 1] = 0.05

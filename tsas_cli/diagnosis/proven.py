@@ -176,7 +176,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
     if within_tolerances(judged.trial(named), name, last.tolerated, reduction):
-        failed, negligible = (*failed, "is no more than a tolerance of load cells and bend"), True
+        failed, negligible = (*failed, "is no more than a tolerance"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True
     if len(named) > 1 and may_be_anywhere((name, *judged.rivals[name])):

@@ -1,7 +1,8 @@
 """What every rig has by a small amount, and is no cause.
 
-Load cells whose scale is off or bent or that feel the other force, a sheath that is bent unevenly;
-beside them the friction of each run (`friction_scatter`).
+Load cells whose scale is off or bent or that feel the other force, friction that reverses over a
+few micrometres and not at once, a sheath that is bent unevenly; beside them the friction of each
+run (`friction_scatter`).
 """
 
 from collections.abc import Sequence
@@ -10,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER, friction_of_runs
-from tsas_cli.identification.extension import UNEVEN, Bench
+from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.hypothesis_fit import FAR, HypothesisFit
@@ -21,6 +22,8 @@ from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.support.arrays import Floats, Indices
 
 BEND = "bend_slope", "bend_bow"  # the modes of an uneven bend
+UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
+PRESLIDING, PRESLIDING_MM = "presliding.length_mm", 0.002  # asperities of metal give way by so much
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.
@@ -34,27 +37,30 @@ LOAD_CELLS = {
 
 
 def tolerances(bench: Bench, trial: HypothesisFit) -> Floats:
-    """Return the residuals' change by one standard deviation of load cells and bend, (n, m)."""
+    """Return the residuals' change by one standard deviation of each tolerance, (n, m)."""
     fitted, without = trial.values(), bench.errors_at(trial, {})
-    changes = [
-        bench.errors_at(trial, {name: fitted.get(name, QUANTITIES[name].default) + size}) - without
+    moved = {
+        name: fitted.get(name, QUANTITIES[name].default) + size
         for name, size in _sizes(bench).items()
-    ]
-    return np.column_stack([*changes, bench.unevenness(trial)])
+    }
+    on_chain = [{PRESLIDING: moved.pop(PRESLIDING)}, *({mode: UNEVEN} for mode in BEND)]
+    changes = [bench.errors_at(trial, {name: value}) - without for name, value in moved.items()]
+    return np.column_stack([*changes, bench.changes_on_chain(trial, on_chain)])
 
 
 def _sizes(bench: Bench) -> dict[str, float]:
-    """Return one standard deviation of each error of a load cell."""
+    """Return one standard deviation of each parameter of an effect that is a tolerance."""
     largest = largest_forces(bench)
-    return {
+    cells = {
         name: LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
         for name, channel in LOAD_CELLS.items()
     }
+    return cells | {PRESLIDING: PRESLIDING_MM}
 
 
 def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
     """Return what tolerances change, without those that an effect of the trial is about."""
-    own = [name.partition(".")[0] in trial.effects for name in LOAD_CELLS]
+    own = [name.partition(".")[0] in trial.effects for name in (*LOAD_CELLS, PRESLIDING)]
     others = tolerated.copy()
     others[:, : len(own)][:, own] = 0.0
     return others
@@ -96,13 +102,14 @@ def rigs_with_tolerances(
     """
     columns, amounts = _explained_by(trial, tolerated, run)
     values = trial.solution.values - trial.moved_by(columns) @ amounts
-    frictions, cells, bends = np.split(
-        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(LOAD_CELLS)))
+    fitted, sizes = trial.values(), _sizes(bench)
+    frictions, of_effects, bends = np.split(
+        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes)))
     )
-    fitted = trial.values()
+    of_effects[len(LOAD_CELLS)] = max(of_effects[len(LOAD_CELLS)], 0.0)  # no length is negative
     set_to = {
         name: QUANTITIES[name].scaled(QUANTITIES[name].default + size * float(part))
-        for (name, size), part in zip(_sizes(bench).items(), cells, strict=True)
+        for (name, size), part in zip(sizes.items(), of_effects, strict=True)
         if name not in fitted
     }
     unknowns = [*trial.unknowns, *map(unknown_of, set_to)]

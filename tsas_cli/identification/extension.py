@@ -23,7 +23,6 @@ TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of ma
 MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
 COARSE_NODES = 12  # of the slip chain, in screening
 PROBED = (0.1, 0.3)  # of its plausible size, where a size that ended at its bound is tried again
-UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,17 +123,18 @@ class Bench:
 
         return np.concatenate(each(residuals, range(len(errors)), at_once=trial.on_mesh))
 
-    def unevenness(self, trial: HypothesisFit) -> Floats:
-        """Return the sensitivity of a trial's residuals to an unevenly bent sheath.
+    def changes_on_chain(
+        self, trial: HypothesisFit, settings: Sequence[Mapping[str, float]]
+    ) -> Floats:
+        """Return how a trial's residuals change by settings that only the slip chain has, (n, m).
 
-        Shape (n, 2), one standard deviation of each of the first two modes.
+        Each setting holds values of a rig by name (`with_values`).
         """
         parts = []
         for k, run in enumerate(self.meshed):
             rig = self.rig(trial, k)
-            even = run.residuals(rig)
-            modes = [with_values(rig, {mode: UNEVEN}) for mode in ("bend_slope", "bend_bow")]
-            parts.append(np.array([run.residuals(uneven) - even for uneven in modes]).T)
+            plain = run.residuals(rig)
+            parts.append(np.array([run.residuals(with_values(rig, s)) - plain for s in settings]).T)
         return np.concatenate(parts)
 
     @property
