@@ -137,7 +137,7 @@ def test_an_effects_shape_is_held_where_it_may_be_zero():
         named=frozenset({"load_relaxation"}),
         trial=lambda _: trial,
     )
-    tolerated = np.zeros((3 * rows, 7))
+    tolerated = np.zeros((3 * rows, 8))
     found = estimates_with_tolerances(judged, trial, tolerated)
     assert may_be_zero("load_relaxation", found.moved, found.correlation)
     last = SimpleNamespace(judged=judged, found=found, tolerated=tolerated)

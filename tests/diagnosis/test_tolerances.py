@@ -149,7 +149,10 @@ def test_an_effect_of_another_shape_is_not_within_tolerances():
 
 
 def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_what_is_fitted():
-    """A linear bench, of which each parameter changes one residual, and two modes of the bend."""
+    """A linear bench, of which each parameter changes one residual.
+
+    Of what only the chain has, two micrometres of elastic travel and two modes of the bend do.
+    """
     at = {
         "force_sensor_gain.f_out_gain": 0,
         "force_crosstalk.f_in_of_f_out": 1,
@@ -157,7 +160,7 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
         "force_sensor_curvature.f_in_per_N": 3,
         "force_sensor_curvature.f_out_per_N": 4,
     }
-    fitted = {"force_crosstalk.f_in_of_f_out": 0.04}
+    fitted = {"force_crosstalk.f_in_of_f_out": 0.04, "presliding.length_mm": 0.03}
     neutral = {"force_sensor_gain.f_out_gain": 1.0}
 
     def errors_at(trial, changes):
@@ -165,6 +168,14 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
         for name, row in at.items():
             out[row] = (neutral | fitted | changes).get(name, 0.0)
         return out
+
+    def changes_on_chain(trial, settings):
+        assert settings == [
+            {"presliding.length_mm": 0.032},
+            {"bend_slope": 0.05},
+            {"bend_bow": 0.05},
+        ]
+        return np.full((5, 3), 7.0)
 
     # What is not compared, as between the samples of a slower clock, is no reading.
     measured = {"f_in_N": np.array([3.0, np.nan, -50.0]), "f_out_N": np.array([20.0, 5.0, 900.0])}
@@ -174,7 +185,7 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
         channels=["f_in_N", "f_out_N", "x_out_mm"],
         closed=[run],
         errors_at=errors_at,
-        unevenness=lambda trial: np.full((5, 2), 7.0),
+        changes_on_chain=changes_on_chain,
     )
     columns = tolerances(bench, SimpleNamespace(values=lambda: fitted))
     sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0]
@@ -183,10 +194,12 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
 
 
 def test_an_effect_that_is_named_has_no_tolerance_of_its_own():
-    given = np.arange(14.0).reshape(2, 7) + 1.0
+    given = np.arange(16.0).reshape(2, 8) + 1.0
     others = of_others(SimpleNamespace(effects=("force_crosstalk",)), given)
-    assert others.tolist() == [[1, 0, 0, 4, 5, 6, 7], [8, 0, 0, 11, 12, 13, 14]]
+    assert others.tolist() == [[1, 0, 0, 4, 5, 6, 7, 8], [9, 0, 0, 12, 13, 14, 15, 16]]
     assert given[0, 1] == 2.0
+    others = of_others(SimpleNamespace(effects=("presliding",)), given)
+    assert np.flatnonzero(others[0] == 0.0).tolist() == [5]
     assert of_others(SimpleNamespace(effects=()), given).tolist() == given.tolist()
 
 

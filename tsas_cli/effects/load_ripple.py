@@ -24,7 +24,7 @@ LOAD_RIPPLE = Effect(
     equation="spring force = F0 + kL·(x + s·sin a + c·(cos a − 1) + 2nd harmonic),  a = 2πx/period",
     doc=__doc__,
     parameters=wave_parameters(
-        0.1, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 5.0, 8)
+        0.1, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 2.5, 19)
     ),
     experiment="Turn the pulley to another angle before the run: the wave moves along x_out with "
     "it.",

@@ -42,7 +42,7 @@ POSITION_SENSOR_RIPPLE = Effect(
     equation="reading of x_out = x + s·sin a + c·(cos a − 1) + 2nd harmonic,  a = 2πx/period",
     doc=__doc__,
     parameters=wave_parameters(
-        0.05, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 2.0, 24)
+        0.05, 10.0, shortest_mm=0.5, longest_mm=60.0, starts=periods(60.0, 0.6, 82)
     ),
     experiment="Turn the encoder on its shaft by half a turn: the wave changes its sign over "
     "x_out, and f_in and f_out stay as they are.",

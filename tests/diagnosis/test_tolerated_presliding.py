@@ -1,0 +1,25 @@
+"""Friction of the independent rig that reverses over a few micrometres, or over more."""
+
+import pytest
+
+import tsas_cli as tsas
+from tsas_studies.challenge.rig.friction import Friction
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensor, Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
+
+FINE = Sensors(rate_Hz=100.0, x_in_mm=Sensor(noise=0.0002), f_in_N=Sensor(noise=0.04))
+
+
+@pytest.mark.parametrize(("length_mm", "named"), [(0.003, []), (0.012, ["presliding"])])
+def test_elastic_travel_of_a_few_micrometres_is_no_cause(tmp_path, length_mm, named):
+    """It is in every contact of metal; these encoders see it, at five times the noise of f_in."""
+    rig = Rig(cells=60, friction=Friction(presliding_mm=length_mm))
+    runs = [
+        Run(f"{size:.0f}-mm", measure(simulate(rig, sine(size)), FINE, seed=k), conditions(rig))
+        for k, size in enumerate((6.0, 8.0, 10.0))
+    ]
+    found = tsas.diagnose(write_dataset(tmp_path / "dataset", runs))
+    assert [cause.effect for cause in found.causes] == named
+    assert found.verdict == ("named" if named else "sufficient")
