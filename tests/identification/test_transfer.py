@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.identification.phases import Segment
-from tsas_cli.identification.transfer import tension_transfer
+from tsas_cli.identification.transfer import tension_transfer, without_transfer
 
 UP, DOWN = 1.5, 0.7  # f_in over f_out
 C_UP, C_DOWN = 4.0, -1.0  # and what is added [N]
@@ -189,6 +189,16 @@ def test_a_run_without_both_forces_is_passed_over():
     without, segments = run_of("b")
     without.channels["f_in_N"][:] = np.nan
     assert told((without, segments)) == {}
+
+
+def test_a_run_that_shows_no_transfer_is_named_and_one_without_both_forces_is_not():
+    short, long, one_end = run_of("b", bend=2.0, strokes=1), run_of("a"), run_of("c")
+    del one_end[0].channels["f_out_N"]
+    runs, segments = zip(short, long, one_end, strict=True)
+    found = tension_transfer(runs, segments)
+    (sentence,) = without_transfer(runs, found)
+    assert sentence.startswith("The tension passed on is not fitted in b: ")
+    assert list(without_transfer([long[0]], found)) == []
 
 
 def test_one_stroke_each_way_is_too_few_however_long_it_is():

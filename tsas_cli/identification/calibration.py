@@ -17,7 +17,7 @@ from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.transfer import Slope, tension_transfer
+from tsas_cli.identification.transfer import Slope, tension_transfer, without_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -95,11 +95,13 @@ def calibrate_runs(
                 else "No catalogued effect explains the residual: the intervals may not contain "
                 "the true values."
             )
+    transfer = tension_transfer(runs, segments)
     notes = [
         *contradictions(manifest, model),
         *thinned_notes(runs),
         *residual_notes,
         *unknown_conditions(runs),
+        *without_transfer(runs, transfer),
         *sentences,
     ]
     return Calibration(
@@ -109,7 +111,7 @@ def calibrate_runs(
         measured,
         predictions,
         expected,
-        tension_transfer(runs, segments),
+        transfer,
         notes,
         fitted,
     )

@@ -8,7 +8,7 @@ same sign is an offset.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ from tsas_cli.identification.phases import Phase, Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
 from tsas_cli.support.arrays import Floats
+from tsas_cli.support.wording import listed
 
 PHASES: tuple[Phase, ...] = ("contraction", "loosening", "dead_band_up", "dead_band_down")
 FEWEST_SAMPLES = 6
@@ -97,6 +98,18 @@ def tension_transfer(
         members = [k for k, run in enumerate(runs) if run.run.total_bend_rad == bend]
         out += _of_one_bend([runs[k] for k in members], [segments[k] for k in members])
     return out
+
+
+def without_transfer(runs: Sequence[Prepared], transfer: Sequence[Estimate]) -> Iterator[str]:
+    """Yield a sentence on the runs with both forces that a transfer is not fitted to."""
+    fitted = {run for estimate in transfer for run in (estimate.run or "").split(", ")}
+    forces = "f_in_N", "f_out_N"
+    both = [r.run.id for r in runs if all(r.channel(name) is not None for name in forces)]
+    if missing := [run for run in both if run not in fitted]:
+        yield (
+            f"The tension passed on is not fitted in {listed(missing)}: full slip in both "
+            "directions is too short there, or f_out_N hardly changes in it."
+        )
 
 
 def _of_one_bend(runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]) -> list[Estimate]:
