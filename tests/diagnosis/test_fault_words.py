@@ -31,6 +31,7 @@ def test_friction_that_does_not_grow_with_the_bend_is_said(bends_rad, frictions,
     ]
     said = differing(np.array(frictions), runs).sentence
     assert ("does not grow with the bend" in said) == falls
+    assert ("state total_bend_rad of each run" in said) == (None in bends_rad)
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,7 @@ from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.diagnosis.rivals import find_effects
 from tsas_cli.diagnosis.tolerances import frictions_of, tolerances
+from tsas_cli.diagnosis.tolerated_travel import travel_notes
 from tsas_cli.identification.calibration import with_preload_correction
 from tsas_cli.identification.extension import Bench, bench_of
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -262,7 +263,7 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         judged=judged,
         before=before,
         final=final,
-        cannot_tell=base.not_identifiable,
+        cannot_tell=(*base.not_identifiable, *travel_notes(proven.estimates, named)),
         stand_in_model=(
             Model(whole.estimates).over(base.model) if whole is not None and law is None else None
         ),

@@ -68,7 +68,7 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
     mesh = bench.on_mesh(named)
     trial = found.trials.get((named, mesh)) or bench.fit(sorted(named), on_mesh=mesh)
     sets = judged_sets(named)
-    step.doing(f"tests {', '.join(sorted(named))}")
+    step.doing(f"tests {', '.join(sorted(named)) or 'the nominal model'}")
     step.ahead(REWEIGHTINGS + len(sets))
     for _ in range(REWEIGHTINGS):
         bench = reweighted_bench(bench, trial)

@@ -29,6 +29,7 @@ from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
+from tsas_cli.diagnosis.tolerated_travel import with_tolerated_travel
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
@@ -110,7 +111,9 @@ def _with_a_rival(
 
 def _judged(search: Hypotheses, stand_ins: tuple[FoundCause, ...], step: Steps) -> Proven:
     """Return the effects of a set with what each does not prove, fitted with the final weights."""
-    judged = reweighted_hypotheses(search, step) if search.named else search
+    beside = with_tolerated_travel(search)
+    as_it_is = not search.named and beside is search
+    judged = search if as_it_is else reweighted_hypotheses(beside, step)
     bench, named = judged.bench, judged.named
     mesh = bench.on_mesh(named)
     final = judged.trial(named)

@@ -77,7 +77,11 @@ def differing(frictions: Floats, runs: Sequence[Run]) -> RecordingFault | None:
     sentence = (
         f"Friction differs from run to run by {' to '.join(said)}, as by "
         + (PULLEYS if _falls_with(bends_rad, frictions) else "humidity, lubrication or wear, ")
-        + "or where the stated bends are wrong"
+        + (
+            "or where the stated bends are wrong"
+            if all(run.total_bend_rad for run in runs)
+            else "or where the bends differ: state total_bend_rad of each run"
+        )
     )
     return RecordingFault(code="run-frictions", sentence=sentence)
 
