@@ -156,10 +156,10 @@ def test_without_a_search_nothing_is_said_of_one():
 def judged_with(noise):
     run = SimpleNamespace(
         samples={"f_in_N": np.arange(9)},
-        advance={"f_in_N": np.zeros(9)},
         run=SimpleNamespace(noise={"f_in_N": noise}),
     )
-    return SimpleNamespace(bench=SimpleNamespace(closed=[run]))
+    by_driven_ends = [{"f_in_N": np.zeros(run.samples["f_in_N"].size)}]
+    return SimpleNamespace(bench=SimpleNamespace(closed=[run], by_driven_ends=by_driven_ends))
 
 
 def test_errors_and_what_is_left_have_units_and_percent():

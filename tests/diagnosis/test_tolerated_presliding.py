@@ -23,3 +23,7 @@ def test_elastic_travel_of_a_few_micrometres_is_no_cause(tmp_path, length_mm, na
     found = tsas.diagnose(write_dataset(tmp_path / "dataset", runs))
     assert [cause.effect for cause in found.causes] == named
     assert found.verdict == ("named" if named else "sufficient")
+    # The model has the travel in either case: other runs are predicted with it.
+    assert found.model.value("presliding.length_mm") == pytest.approx(length_mm, rel=0.3)
+    noted = any("of elastic travel before sliding" in note for note in found.record.cannot_tell)
+    assert noted is not bool(named)
