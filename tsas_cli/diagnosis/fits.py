@@ -2,8 +2,8 @@
 
 A set of effects is fitted from the initial values of the path that reaches it first. What
 tolerances do is free beside every hypothesis, by its prior: of two effects the one is better that
-leaves what every rig has. So is the friction of each run, unless the frictions change with the
-session: then they are no scatter.
+leaves what every rig has. Elastic travel is not: it would take a play that the data show. So is the
+friction of each run, unless the frictions change with the session: then they are no scatter.
 """
 
 import math
@@ -15,7 +15,7 @@ from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.friction_scatter import is_in_line, with_friction_of_runs
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
-from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances
+from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances, without_travel
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -164,7 +164,7 @@ class Fits:
             self.tolerated[mesh] = tolerances(self.bench, trial)
         elif mesh not in self.tolerated:
             self.trial(frozenset(), on_mesh=mesh)
-        beside = with_tolerances(trial, self.tolerated[mesh])
+        beside = with_tolerances(trial, without_travel(self.tolerated[mesh]))
         self.squares[names, mesh] = held_out_squares(beside, self.folds)
         scattered = with_friction_of_runs(beside, self.folds.run)
         self.scattered[names, mesh] = held_out_squares(scattered, self.folds)

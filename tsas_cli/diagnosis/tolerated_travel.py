@@ -1,8 +1,8 @@
 """Elastic travel of a few micrometres: no cause, and part of every model where the data show it.
 
-A tolerance that is linear in the residuals is enough to search beside. The tests of causes and the
-models that are written fit this one with the rest: on a stiff tendon three micrometres are more
-newtons than the noise, and a model without them predicts other runs worse.
+The search may find it; it is then no more than a tolerance. The tests of causes and the models that
+are written fit it with the rest: on a stiff tendon three micrometres are more newtons than the
+noise, and a model without them predicts other runs worse.
 """
 
 from collections.abc import Iterable, Iterator

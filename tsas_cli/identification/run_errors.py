@@ -97,10 +97,11 @@ class RunErrors:
         squares = {name: np.zeros(at.size) for name, at in self.samples.items()}
         for column, conditioned in run.conditioned.items():
             end = "values" if column == run.drive_column else "load_values"
-            again = conditioned.again(run.time_s, run.every)
-            moved = predict_driven(self.simulation, rig, **{end: again})
-            for name, at in self.samples.items():
-                squares[name] += (moved[name] - plain[name])[at] ** 2
+            draws = conditioned.again(run.time_s, run.every)
+            for again in draws:
+                moved = predict_driven(self.simulation, rig, **{end: again})
+                for name, at in self.samples.items():
+                    squares[name] += (moved[name] - plain[name])[at] ** 2 / len(draws)
         return {name: np.sqrt(values) for name, values in squares.items()}
 
     def delays(self, rig: Rig) -> dict[str, Floats]:

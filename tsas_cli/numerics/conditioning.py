@@ -39,6 +39,7 @@ STILL = 6.0  # standard deviations by which what rests moves in a window, at mos
 MISSED = 4.0  # standard deviations by which a fit of few samples misses the signal
 SMOOTH = 0.5  # of a reversal's second difference, by those beside it at least
 REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
+DRAWS = 4  # of noise, by which the error of a cleaned signal is estimated
 REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
 
 
@@ -49,7 +50,8 @@ class Conditioned:
     `sd` is the standard deviation of its error per sample, `unseen` the correction that makes it
     monotone between reversals, `window_s` the median window, `noise` the raw noise, `reversals`
     the indices of the extrema, with both ends, `smallest_reversal` the amplitude below which a
-    reversal counts as noise, `step` the quantisation step.
+    reversal counts as noise, `step` the quantisation step; `recorded` are the samples that are no
+    gap, all without it.
     """
 
     values: Floats
@@ -60,18 +62,24 @@ class Conditioned:
     reversals: Indices
     smallest_reversal: float = 0.0
     step: float = 0.0
+    recorded: Indices | None = None
 
-    def again(self, time_s: Floats, every: int = 1) -> Floats:
+    def again(self, time_s: Floats, every: int = 1) -> list[Floats]:
         """Return the values cleaned once more, with noise and rounding like those of the raw ones.
 
-        Its difference is an error such as the values themselves have. They are one in `every` of
-        the samples that were cleaned. The noise is the same in every call.
+        The difference of each is an error such as the values themselves have. They are one in
+        `every` of the samples that were cleaned. The noise is the same in every call.
         """
+        at = slice(None) if self.recorded is None else self.recorded
         white = math.sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0) / every)
-        noisy = self.values + white * np.random.default_rng(0).standard_normal(self.values.size)
-        if self.step > 0.0 and every == 1:
-            noisy = self.step * np.round(noisy / self.step)
-        return condition(time_s, noisy).values
+        random, out = np.random.default_rng(0), []
+        for _ in range(DRAWS):
+            noisy = np.full(self.values.size, math.nan)
+            noisy[at] = self.values[at] + white * random.standard_normal(self.values[at].size)
+            if self.step > 0.0 and every == 1:
+                noisy = self.step * np.round(noisy / self.step)
+            out.append(condition(time_s, noisy).values)
+        return out
 
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
@@ -86,7 +94,9 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
         reversals[0], reversals[-1] = 0, time_s.size - 1
         series = cleaned.values, cleaned.sd, cleaned.unseen
         clean, sd, unseen = (np.interp(time_s, time_s[finite], each) for each in series)
-        return replace(cleaned, values=clean, sd=sd, unseen=unseen, reversals=reversals)
+        return replace(
+            cleaned, values=clean, sd=sd, unseen=unseen, reversals=reversals, recorded=finite
+        )
     noise, memory = noise_and_memory(values)
     if not noise > 0.0:  # noise-free, or too short for an estimate
         nothing = np.zeros(values.size)
