@@ -39,6 +39,7 @@ STILL = 6.0  # standard deviations by which what rests moves in a window, at mos
 MISSED = 4.0  # standard deviations by which a fit of few samples misses the signal
 SMOOTH = 0.5  # of a reversal's second difference, by those beside it at least
 REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
+KEPT = 0.8  # of the noise: what the values keep of it makes the windows of the next fits narrower
 DRAWS = 4  # of noise, by which the error of a cleaned signal is estimated
 REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
 
@@ -71,7 +72,7 @@ class Conditioned:
         `every` of the samples that were cleaned. The noise is the same in every call.
         """
         at = slice(None) if self.recorded is None else self.recorded
-        white = math.sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0) / every)
+        white = KEPT * math.sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0) / every)
         random, out = np.random.default_rng(0), []
         for _ in range(DRAWS):
             noisy = np.full(self.values.size, math.nan)
