@@ -57,6 +57,7 @@ def without_tolerances(monkeypatch):
     """Let rigs be without tolerances."""
     monkeypatch.setattr(fits_module, "tolerances", lambda bench, trial: None)
     monkeypatch.setattr(fits_module, "with_tolerances", lambda trial, tolerated: trial)
+    monkeypatch.setattr(fits_module, "without_travel", lambda tolerated: tolerated)
     monkeypatch.setattr(fits_module, "with_friction_of_runs", lambda trial, run: trial)
     monkeypatch.setattr(fits_module, "is_in_line", lambda trial, run, session_s: False)
 
