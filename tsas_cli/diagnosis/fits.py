@@ -2,8 +2,8 @@
 
 A set of effects is fitted from the initial values of the path that reaches it first. What
 tolerances do is free beside every hypothesis, by its prior: of two effects the one is better that
-leaves what every rig has. Elastic travel is not: it would take a play that the data show. So is the
-friction of each run, unless the frictions change with the session: then they are no scatter.
+leaves what every rig has. So is the friction of each run, unless the frictions change with the
+session: then they are no scatter. Elastic travel is not: it would take a play that the data show.
 """
 
 import math

@@ -23,7 +23,8 @@ from tsas_cli.support.arrays import Floats, Indices
 
 BEND = "bend_slope", "bend_bow"  # the modes of an uneven bend
 UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
-PRESLIDING, PRESLIDING_MM = "presliding.length_mm", 0.002  # asperities of metal give way by so much
+PRESLIDING = "presliding"
+TRAVEL, TRAVEL_MM = f"{PRESLIDING}.length_mm", 0.002  # asperities of metal give way by so much
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.
@@ -43,7 +44,7 @@ def tolerances(bench: Bench, trial: HypothesisFit) -> Floats:
         name: fitted.get(name, QUANTITIES[name].default) + size
         for name, size in _sizes(bench).items()
     }
-    on_chain = [{PRESLIDING: moved.pop(PRESLIDING)}, *({mode: UNEVEN} for mode in BEND)]
+    on_chain = [{TRAVEL: moved.pop(TRAVEL)}, *({mode: UNEVEN} for mode in BEND)]
     changes = [bench.errors_at(trial, {name: value}) - without for name, value in moved.items()]
     return np.column_stack([*changes, bench.changes_on_chain(trial, on_chain)])
 
@@ -55,12 +56,12 @@ def _sizes(bench: Bench) -> dict[str, float]:
         name: LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
         for name, channel in LOAD_CELLS.items()
     }
-    return cells | {PRESLIDING: PRESLIDING_MM}
+    return cells | {TRAVEL: TRAVEL_MM}
 
 
 def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
     """Return what tolerances change, without those that an effect of the trial is about."""
-    own = [name.partition(".")[0] in trial.effects for name in (*LOAD_CELLS, PRESLIDING)]
+    own = [name.partition(".")[0] in trial.effects for name in (*LOAD_CELLS, TRAVEL)]
     others = tolerated.copy()
     others[:, : len(own)][:, own] = 0.0
     return others
@@ -163,8 +164,8 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduct
     does, its change is small beside them, and is not what it takes away. Elastic travel is not
     linear: its length is compared.
     """
-    if effect == PRESLIDING.partition(".")[0]:
-        return trial.values()[PRESLIDING] <= PLAUSIBLE * PRESLIDING_MM
+    if effect == PRESLIDING:
+        return trial.values()[TRAVEL] <= PLAUSIBLE * TRAVEL_MM
     held = replace(trial.solution, at_bound=trial.solution.at_bound | trial.of_effect(effect))
     others = projector(replace(trial, solution=held))
     change = orthogonal_to(others, trial.change_by(effect))

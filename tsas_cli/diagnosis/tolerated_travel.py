@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from tsas_cli.diagnosis.friction_scatter import PLAUSIBLE
 from tsas_cli.diagnosis.hypotheses import Hypotheses
-from tsas_cli.diagnosis.tolerances import PRESLIDING, PRESLIDING_MM
+from tsas_cli.diagnosis.tolerances import PRESLIDING, TRAVEL, TRAVEL_MM
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import unknown_of
@@ -25,18 +25,18 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     Unchanged where a cause has a travel of its own, or more than the plausible travel fits best.
     """
     bench, effects = search.bench, sorted(search.named)
-    if PRESLIDING.partition(".")[0] in effects:
+    if PRESLIDING in effects:
         return search
-    scaled = QUANTITIES[PRESLIDING].scaled
+    scaled = QUANTITIES[TRAVEL].scaled
     travel = replace(
-        unknown_of(PRESLIDING, scaled(PRESLIDING_MM)), upper=scaled(PLAUSIBLE * PRESLIDING_MM)
+        unknown_of(TRAVEL, scaled(TRAVEL_MM)), upper=scaled(PLAUSIBLE * TRAVEL_MM)
     )
     freed = replace(bench, free=(*bench.free, travel), never_closed=True)
     near = search.trial(search.named)
     trial = freed.fit(effects, near=near)
     counted = search.folds.blocks_of_runs(len(bench.rigs))
     found = with_errors(trial.unknowns, trial.solution, counted, by_run=True)
-    at = [u.name for u in trial.unknowns].index(PRESLIDING)
+    at = [u.name for u in trial.unknowns].index(TRAVEL)
     if found.at_bound[at] or not found.values[at] > SIGNIFICANT * found.stderr[at]:
         return search
     return replace(search, bench=freed, trials={(search.named, True): trial}, squares={})
@@ -44,11 +44,11 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
 
 def travel_notes(estimates: Iterable[Estimate], named: Iterable[str]) -> Iterator[str]:
     """Yield that the model has a travel that is no cause."""
-    if PRESLIDING.partition(".")[0] in named:
+    if PRESLIDING in named:
         return
     for estimate in estimates:
-        if estimate.name == PRESLIDING:
+        if estimate.name == TRAVEL:
             yield (
                 f"The model has {1e3 * estimate.value:.2g} µm of elastic travel before sliding "
-                f"({PRESLIDING}), as every tendon may: that is no cause."
+                f"({TRAVEL}), as every tendon may: that is no cause."
             )
