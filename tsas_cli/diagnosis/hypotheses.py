@@ -38,6 +38,11 @@ class Hypotheses:
         """Return the fit of a set of effects, that on the mesh if any of it needs one."""
         return self.trials[names, on_mesh or self.bench.on_mesh(names)]
 
+    def nearest(self, names: Names) -> HypothesisFit:
+        """Return the fit of a set of effects, or of the set that differs from it least."""
+        mesh = self.bench.on_mesh(names)
+        return self.trials[min(self.trials, key=lambda key: (len(key[0] ^ names), key[1] != mesh))]
+
     def held_out(self, names: Names, *, on_mesh: bool = False) -> Floats:
         """Return the held-out squares of a set of effects, block by block."""
         return self.squares[names, on_mesh or self.bench.on_mesh(names)]
@@ -66,7 +71,7 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
     """
     named, bench = found.named, found.bench
     mesh = bench.on_mesh(named)
-    trial = found.trials.get((named, mesh)) or bench.fit(sorted(named), on_mesh=mesh)
+    trial = found.nearest(named)
     sets = judged_sets(named)
     step.doing(f"tests {', '.join(sorted(named)) or 'the nominal model'}")
     step.ahead(REWEIGHTINGS + len(sets))
