@@ -242,7 +242,8 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
         described=law is not None,
     )
     fault = wandering(proven.after) if verdict == "unexplained" else None
-    if verdict == "sufficient":
+    follows_nothing = verdict == "unexplained" and not proven.after.depends_on
+    if fault is None and (verdict == "sufficient" or follows_nothing):
         frictions = frictions_of(final, proven.tolerated, folds.run)
         fault = differing(frictions, [errors.run.run for errors in bench.closed])
         verdict = verdict if fault is None else "unexplained"
