@@ -28,9 +28,7 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     if PRESLIDING in effects:
         return search
     scaled = QUANTITIES[TRAVEL].scaled
-    travel = replace(
-        unknown_of(TRAVEL, scaled(TRAVEL_MM)), upper=scaled(PLAUSIBLE * TRAVEL_MM)
-    )
+    travel = replace(unknown_of(TRAVEL, scaled(TRAVEL_MM)), upper=scaled(PLAUSIBLE * TRAVEL_MM))
     freed = replace(bench, free=(*bench.free, travel), never_closed=True)
     trial = freed.fit(effects, near=search.nearest(search.named))
     counted = search.folds.blocks_of_runs(len(bench.rigs))

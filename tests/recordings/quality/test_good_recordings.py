@@ -225,6 +225,27 @@ def test_a_corner_of_the_force_where_the_drive_reverses_is_no_burst(rows):
     assert ("bursts" in found) == (rows > 0)
 
 
+@pytest.mark.parametrize("noise", [0.0, 1.0])
+def test_the_load_of_a_slack_tendon_is_not_clipped(noise):
+    """It rests where its spring is relaxed while the drive moves on; so do the tensions."""
+    time = np.arange(1200) / 100.0
+    x = -10.0 * np.sin(np.pi * time / 2.0)
+    random = noise * np.random.default_rng(4).standard_normal((3, x.size))
+    x_out = np.maximum(x, -6.0)
+    f_out = 12.0 + 2.0 * x_out + 0.05 * random[1]
+    f_in = (12.0 + 2.0 * x_out) * np.where(np.gradient(x) > 0.0, 1.2, 1.0 / 1.2)
+    measured = {
+        "time_s": time,
+        "x_in_mm": x,
+        "f_in_N": f_in + 0.05 * random[0],
+        "x_out_mm": x_out + 0.005 * random[2],
+        "f_out_N": f_out,
+    }
+    assert "clipped" not in complaints(measured)
+    stopped = measured | {"f_out_N": f_out + 5.0, "f_in_N": measured["f_in_N"] + 5.0}
+    assert "clipped" in complaints(stopped)  # taut: the load is at a stop, or its sensor at an end
+
+
 def test_a_stroke_that_hardly_leaves_the_dead_band_is_not_clipped():
     """The tension rises no further once the whole tendon slips against a soft load."""
     time = np.arange(1200) / 100.0

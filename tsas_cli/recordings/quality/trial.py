@@ -14,7 +14,7 @@ from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.quality.batches import Batches, batches_of
 from tsas_cli.recordings.quality.samples import Size, alternates, outlying, size_of
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 GAP = 1.5  # intervals; a longer one is a gap
 COMMANDED = "motor_speed_rpm"
@@ -22,6 +22,7 @@ MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
 _STEPS, _ROUNDING = 2.0, 1e-5  # of a step, and of the span: the least noise of a sensor
 _FEWEST = 16  # samples of a channel that is checked
+_SMALL_OFFSET = 0.02  # of a tension's range
 _STROKE = 0.2  # of the drive's span: the smallest reversal that begins a new stroke
 
 
@@ -125,6 +126,18 @@ class RunSignals:
     def visible(self, name: str) -> float:
         """Return the smallest change of a channel that neither noise nor quantisation explains."""
         return 6.0 * self.sizes[name].noise + 2.0 * self.sizes[name].step
+
+    def reading_of_none(self, name: str) -> float:
+        """Return the largest size that a sensor with a small offset reads of no tension [N]."""
+        return max(self.visible(name), _SMALL_OFFSET * self.sizes[name].span)
+
+    def is_slack(self, rows: slice | Indices) -> bool:
+        """Return whether a recorded tension vanishes in these rows, as of a slack tendon."""
+        tensions = [name for name in self.mechanical if name.startswith("f_")]
+        return any(
+            bool(np.all(np.abs(self.channels[name][rows]) <= self.reading_of_none(name)))
+            for name in tensions
+        )
 
     def moves(self, name: str) -> bool:
         """Return whether a channel moves visibly."""

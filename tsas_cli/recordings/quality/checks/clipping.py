@@ -30,7 +30,8 @@ def clipped(trial: RunSignals) -> Findings:
     The sensor or its amplifier is at the end of its range, or the part is at a stop. Reported when
     the channel stays constant at its extreme while the drive moves on by more than a twentieth of
     its span. Not clipping: a dwell (everything rests), the dead band after a reversal (the drive
-    moves back), a coarse step at the peak of a sine, a rest at the beginning. With noise behind the
+    moves back), a coarse step at the peak of a sine, a rest at the beginning, a slack tendon, whose
+    load rests while the drive moves on. With noise behind the
     end of the range, or a soft end, nothing is constant: then the end of each long stroke is a flat
     line but for noise, and lacks what the stroke before it foretells. A force that falls with the
     speed is curved there.
@@ -54,6 +55,7 @@ def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Fin
         for rows in plateaus(values, _FEWEST_ROWS)
         if rows.start > 0
         and values[rows.start] == extreme
+        and not (sign < 0 and trial.is_slack(rows))
         and _motion_continues(trial, name, rows, sign)
     ]
     if flat:
@@ -95,7 +97,8 @@ def _end_of_stroke(
     """Return a channel's level at the end of a stroke, how much it lacks there, and if it is flat.
 
     It lacks what a line through the part of the stroke before foretells; None for a stroke that is
-    short, that goes back on its second half, or in which the channel does not follow.
+    short, that goes back on its second half, in which the channel does not follow, or
+    that leaves the tendon slack.
     """
     x, y = (trial.channels[n][stroke.rows] for n in ("x_in_mm", name))
     share = (x - x[0]) / (x[-1] - x[0])
@@ -111,7 +114,8 @@ def _end_of_stroke(
     if stroke.direction * slope < _FOLLOWS * trial.sizes[name].span:
         return None
     own = np.polyfit(share[last], y[last], 1)
-    if float(np.ptp(y[last])) == 0.0:
+    rows = np.flatnonzero(last) + stroke.rows.start
+    if float(np.ptp(y[last])) == 0.0 or (stroke.direction < 0 and trial.is_slack(rows)):
         return None
     level = float(y[last].mean())
     lacks = stroke.direction * (at_zero + slope - level)

@@ -48,9 +48,6 @@ def _wrong_sign(column: str, what: str) -> Finding:
     )
 
 
-_SPAN = 0.02  # of the range, below zero: a slack tendon on a sensor with a small offset
-
-
 def negative_tension(trial: RunSignals) -> Findings:
     """A tension is negative for part of the run.
 
@@ -65,7 +62,7 @@ def negative_tension(trial: RunSignals) -> Findings:
         if not name.startswith("f_"):
             continue
         values = trial.channels[name]
-        limit = max(trial.visible(name), _SPAN * trial.sizes[name].span)
+        limit = trial.reading_of_none(name)
         low, high = np.nanpercentile(values, (0.5, 98.0))
         if low < -limit and high >= -trial.visible(name):  # else the sign check reports it
             share = 100.0 * float(np.mean(values < 0.0))
