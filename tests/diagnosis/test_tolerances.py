@@ -151,7 +151,7 @@ def test_an_effect_of_another_shape_is_not_within_tolerances():
 def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_what_is_fitted():
     """A linear bench, of which each parameter changes one residual.
 
-    Of what only the chain has, two micrometres of elastic travel and two modes of the bend do.
+    Of what only the chain has, three micrometres of elastic travel and two modes of the bend do.
     """
     at = {
         "force_sensor_gain.f_out_gain": 0,
@@ -171,7 +171,7 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
 
     def changes_on_chain(trial, settings):
         assert settings == [
-            {"presliding.length_mm": 0.032},
+            {"presliding.length_mm": 0.033},
             {"bend_slope": 0.05},
             {"bend_bow": 0.05},
         ]

@@ -73,11 +73,16 @@ def held_at_the_load(drive, load, rig, n):
     return slip_chain(course, rig, LOADED_BY_DISPLACEMENT, n)
 
 
+@pytest.mark.parametrize("growth", [0.0, 0.4, 1.0])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_tendon_at_rest_is_a_rod_on_bristles(sign):
-    """EA x'' = k x with k = aF0/(L·length): stiffness EA q coth(qL), q² = k/EA, and no loop."""
+def test_a_tendon_at_rest_is_a_rod_on_bristles(sign, growth):
+    """EA x'' = k x with k = aF0/(L·length): stiffness EA q coth(qL), q² = k/EA, and no loop.
+
+    At the preload of 25 N the part of the length that grows is 2.5 times that at 10 N.
+    """
     EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
-    rig = with_values(GROUP_A, {"presliding.length_mm": LENGTH})
+    at_10_N = LENGTH / (1.0 + 1.5 * growth)
+    rig = with_values(GROUP_A, {"presliding.length_mm": at_10_N, "presliding.growth": growth})
     x = sign * 1e-3 * LENGTH * np.sin(np.linspace(0.0, 4.0 * np.pi, 401))
     f_in = held_at_the_load(x, 0.0, rig, NODES)[2]
     q = math.sqrt(A * 25.0 / (L * LENGTH) / EA)

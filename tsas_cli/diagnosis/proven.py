@@ -28,8 +28,14 @@ from tsas_cli.diagnosis.proof import (
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
-from tsas_cli.diagnosis.tolerances import LOAD_CELL, largest_forces, tolerances, within_tolerances
-from tsas_cli.diagnosis.tolerated_travel import with_tolerated_travel
+from tsas_cli.diagnosis.tolerances import (
+    LOAD_CELL,
+    PRESLIDING,
+    largest_forces,
+    tolerances,
+    within_tolerances,
+)
+from tsas_cli.diagnosis.tolerated_travel import is_tolerated, with_tolerated_travel
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
@@ -178,7 +184,11 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     interval = gains[1], gains[2]
     negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
-    if within_tolerances(judged.trial(named), name, last.tolerated, reduction):
+    if (
+        is_tolerated(judged.bench, judged.trial(named))
+        if name == PRESLIDING
+        else within_tolerances(judged.trial(named), name, last.tolerated, reduction)
+    ):
         failed, negligible = (*failed, "is no more than a tolerance"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True

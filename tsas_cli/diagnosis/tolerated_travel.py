@@ -8,15 +8,30 @@ noise, and a model without them predicts other runs worse.
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from tsas_cli.diagnosis.friction_scatter import PLAUSIBLE
 from tsas_cli.diagnosis.hypotheses import Hypotheses
-from tsas_cli.diagnosis.tolerances import PRESLIDING, TRAVEL, TRAVEL_MM
+from tsas_cli.diagnosis.tolerances import GROWTH, PRESLIDING, TRAVEL, TRAVEL_MM
+from tsas_cli.effects.presliding import AT_N, Presliding, travel_at
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import unknown_of
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 
 SIGNIFICANT = 4.0  # standard errors of the travel
+
+
+def is_tolerated(bench: Bench, trial: HypothesisFit) -> bool:
+    """Return whether a trial's travel is no longer than a plausible one at the preload.
+
+    It is not linear in what it changes, so that its length is compared.
+    """
+    values = trial.values()
+    travel_mm = travel_at(_mean_preload(bench), Presliding(values[TRAVEL], values[GROWTH]))
+    return travel_mm <= PLAUSIBLE * TRAVEL_MM
 
 
 def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
@@ -27,16 +42,24 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     bench, effects = search.bench, sorted(search.named)
     if PRESLIDING in effects:
         return search
+    longest_mm = PLAUSIBLE * TRAVEL_MM * max(1.0, AT_N / _mean_preload(bench))
     scaled = QUANTITIES[TRAVEL].scaled
-    travel = replace(unknown_of(TRAVEL, scaled(TRAVEL_MM)), upper=scaled(PLAUSIBLE * TRAVEL_MM))
-    freed = replace(bench, free=(*bench.free, travel), never_closed=True)
+    travel = replace(unknown_of(TRAVEL, scaled(TRAVEL_MM)), upper=scaled(longest_mm))
+    free = (*bench.free, travel, unknown_of(GROWTH))
+    freed = replace(bench, free=free, never_closed=True)
     trial = freed.fit(effects, near=search.nearest(search.named))
     counted = search.folds.blocks_of_runs(len(bench.rigs))
     found = with_errors(trial.unknowns, trial.solution, counted, by_run=True)
     at = [u.name for u in trial.unknowns].index(TRAVEL)
-    if found.at_bound[at] or not found.values[at] > SIGNIFICANT * found.stderr[at]:
+    significant = found.values[at] > SIGNIFICANT * found.stderr[at]
+    if found.at_bound[at] or not significant or not is_tolerated(bench, trial):
         return search
     return replace(search, bench=freed, trials={(search.named, True): trial}, squares={})
+
+
+def _mean_preload(bench: Bench) -> float:
+    """Return the mean preload of the runs, at least a newton [N]."""
+    return max(float(np.mean([rig.preload_N for rig in bench.rigs])), 1.0)
 
 
 def travel_notes(estimates: Iterable[Estimate], named: Iterable[str]) -> Iterator[str]:
@@ -46,6 +69,6 @@ def travel_notes(estimates: Iterable[Estimate], named: Iterable[str]) -> Iterato
     for estimate in estimates:
         if estimate.name == TRAVEL:
             yield (
-                f"The model has {1e3 * estimate.value:.2g} µm of elastic travel before sliding "
-                f"({TRAVEL}), as every tendon may: that is no cause."
+                f"The model has {1e3 * estimate.value:.2g} µm of elastic travel before sliding at "
+                f"{AT_N:.0f} N ({TRAVEL}), as every tendon may: that is no cause."
             )

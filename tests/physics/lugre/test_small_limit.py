@@ -15,8 +15,14 @@ from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
 N = 3
-TIME_S = np.linspace(0.0, 2.0 * math.pi, 41)
-MOTION = 3.0 - 3.0 * np.cos(TIME_S) + 0.3 * np.sin(3.0 * TIME_S)
+
+
+def motion(time_s):
+    return 3.0 - 3.0 * np.cos(time_s) + 0.3 * np.sin(3.0 * time_s)
+
+
+TIME_S, FINER_S = (np.linspace(0.0, 2.0 * math.pi, samples) for samples in (41, 61))
+MOTION = motion(TIME_S)
 STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=2e5))
 NOT_HERE = {"load_inertia", "stribeck_friction", "antagonist"}  # own motions; it is refused
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
@@ -44,7 +50,8 @@ LARGER |= dict.fromkeys(("viscous_friction", "bend_drift", "friction_drift"), 10
 @pytest.mark.parametrize("name", [e.name for e in EFFECTS if e.name not in NOT_HERE])
 def test_every_effect(name):
     """What it changes is many times as large as the difference of the two models."""
-    effect, nominal = next(e for e in EFFECTS if e.name == name), DriveInput(MOTION, time_s=TIME_S)
+    effect = next(e for e in EFFECTS if e.name == name)
+    nominal = DriveInput(motion(FINER_S), time_s=FINER_S)
     sizes = {p.name: min(LARGER.get(name, 1.0) * p.start, p.upper) for p in effect.parameters}
     rig = with_values(STIFF, {f"{name}.{p}": size for p, size in sizes.items()})
     _, lugre, off = both(rig, nominal)

@@ -41,6 +41,16 @@ EFFECTS = {
         "presliding.length_mm": 0.05,
         "load_dependent_friction.exponent": 1.0,
     },
+    "bristles of a fixed stiffness": {
+        "presliding.length_mm": 0.02,
+        "presliding.growth": 1.0,
+        "sheath_drag.force_N": 6.0,
+    },
+    "bristles of which a part has one": {
+        "presliding.length_mm": 0.02,
+        "presliding.growth": 0.6,
+        "pulley_friction.load_loss": 0.15,
+    },
     "a bent spring": {
         "load_spring_nonlinearity.quadratic_per_mm": 0.3,
         "load_spring_nonlinearity.cubic_per_mm2": 0.2,
@@ -126,6 +136,7 @@ class Nodes:
 
     def __init__(self, rig):
         self.rig, self.share, self.speed = rig, np.zeros(N + 1), np.zeros(N + 1)
+        self.length = np.zeros(N + 1)
 
     def hold(self, i, way, before, behind, now):
         pulled, released, drag_N, _ = now.losses
@@ -141,7 +152,14 @@ class Nodes:
         loss, sign = 0.5 * drag_N / N, math.copysign(1.0, mean)
         pulleys = self.rig.effects.pulley_friction
         at_end = {1: pulleys.drive_loss, N: pulleys.load_loss}.get(i, 0.0)
-        length = self.rig.effects.presliding.length_mm
+        length, growth = self.rig.effects.presliding
+        if growth > 0.0:
+            wrap = 0.5 * (pulled + released) / N + at_end
+            limit_N = mean * wrap + drag_N / N
+            at_10_N = 10.0 * self.rig.friction_coefficient * self.rig.total_bend_rad / N
+            length *= 1.0 - growth + growth * limit_N / at_10_N
+            self.share[i] *= self.length[i] / length  # the bristles stay as they are bent
+            self.length[i] = length
         if length > 0.0:
             limit = 1.0 if way > 0.0 else -1.0
             share = limit + (self.share[i] - limit) * math.exp(-abs(way) / length)

@@ -19,6 +19,7 @@ from tsas_cli.physics.slip.nodes import (
     capstan_ratio,
     is_linear,
     set_friction,
+    set_lengths,
     slip_after_backwards,
     slips_backwards,
     update_relations,
@@ -63,6 +64,7 @@ def test_a_way_that_would_turn_stops_at_its_turning(chain):
     nodes(chain, rows.POSITION)[:] = 0.02, 0.02, -0.01
     nodes(chain, rows.TRAVEL)[:] = 0.01, 0.0, -0.03
     nodes(chain, rows.SHARE_BEFORE)[:] = 0.5, -0.5, 0.1
+    set_lengths(chain, NOW, BRISTLY)
     assert not update_travel(chain, BRISTLY)
     assert nodes(chain, rows.TRAVEL).tolist() == [0.02, 0.02, -0.01]
     far, near = math.exp(-0.4), math.exp(-0.2)
@@ -147,6 +149,7 @@ def test_the_tangent_of_a_node_is_the_slope_of_its_law(chain, exponent, sign, wa
     nodes(chain, rows.POSITION_BEFORE)[:], nodes(chain, rows.POSITION)[:] = 0.3, 0.3 + way
     nodes(chain, rows.SHARE_BEFORE)[:] = 0.25
     set_friction(chain, NOW, laws(values))
+    set_lengths(chain, NOW, laws(values))
     assert update_relations(chain, NOW, laws(values))
 
     def left(before, behind, x):

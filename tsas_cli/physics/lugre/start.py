@@ -2,6 +2,7 @@
 
 import math
 
+from tsas_cli.effects.presliding import bristle_compliance, fixed_travel
 from tsas_cli.effects.sheath_drag import drag_over
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import SPRING, Boundary, DriveEnd, drive_end, load_end
@@ -23,13 +24,14 @@ NO_TIME_S = 1e-13  # step of the balance at rest
 @kernel
 def bristles_of(rig: Rig) -> Bristle:
     """Return the bristles of the whole sheath."""
-    stiffness = rig.bristles.stiffness_N_per_mm
-    travel = rig.effects.presliding.length_mm
-    limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
+    presliding, wrap = rig.effects.presliding, rig.friction_coefficient * rig.total_bend_rad
+    fixed, compliance = fixed_travel(presliding), bristle_compliance(presliding, wrap)
+    stiffness = 1.0 / (1.0 / rig.bristles.stiffness_N_per_mm + compliance)
+    limit = rig.preload_N * wrap
     limit += rig.effects.sheath_drag.force_N
-    damping = bristle_damping(rig.bristles, rig.sheath_length_mm, limit, travel)
+    damping = bristle_damping(rig.bristles, rig.sheath_length_mm, limit, fixed + compliance * limit)
     viscous = rig.effects.viscous_friction.coefficient_N_s_per_mm
-    return Bristle(stiffness, damping, viscous, travel)
+    return Bristle(stiffness, damping, viscous, fixed)
 
 
 @kernel

@@ -10,7 +10,7 @@ of a travel stops at zero first.
 import math
 
 from tsas_cli.effects.load_dependent_friction import load_exponent
-from tsas_cli.effects.presliding import friction_share, friction_share_rate
+from tsas_cli.effects.presliding import fixed_travel, friction_share, friction_share_rate
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
@@ -21,6 +21,7 @@ from tsas_cli.physics.slip.state import BALANCED, TOLERANCE, Moment, SlipLaws
 from tsas_cli.support.arrays import Floats
 
 MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
+SHORTEST_MM = 1e-6  # travel of a slack node, where that grows with the tension
 MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions by a tangent
 
 
@@ -69,11 +70,29 @@ def set_sheath_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
             factor *= stribeck_factor(chain[at.SPEED + i], laws.stribeck)
         chain[at.WRAP_PULLED + i] = min(pulled * factor, MOST_WRAP)
         chain[at.WRAP_RELEASED + i] = min(released * factor, MOST_WRAP)
-    if laws.presliding_mm == 0.0:
+    if laws.presliding.length_mm == 0.0:
         for i in range(1, n + 1):
             chain[at.RATIO_PULLED + i] = exponential(-chain[at.WRAP_PULLED + i])
         for i in range(1, n + 1):
             chain[at.RATIO_RELEASED + i] = exponential(-chain[at.WRAP_RELEASED + i])
+
+
+@kernel
+def set_lengths(chain: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Set the travel over which each node's friction reverses, at the tensions of the tangents.
+
+    The deflection of its bristles stays what it was: their friction over the limit does not.
+    """
+    if laws.presliding.length_mm == 0.0:
+        return
+    fixed, drag_N = fixed_travel(laws.presliding), now.losses.drag_N / laws.n
+    for i in range(1, laws.n + 1):
+        tension = 0.5 * abs(chain[at.TENSION + i - 1] + chain[at.TENSION + i])
+        wrap = 0.5 * (chain[at.WRAP_PULLED + i] + chain[at.WRAP_RELEASED + i])
+        length = max(fixed + laws.bristle_mm_per_N * (tension * wrap + drag_N), SHORTEST_MM)
+        if chain[at.LENGTH + i] > 0.0:
+            chain[at.SHARE_BEFORE + i] *= chain[at.LENGTH + i] / length
+        chain[at.LENGTH + i] = length
 
 
 @kernel
@@ -95,7 +114,7 @@ def is_linear(laws: SlipLaws) -> bool:
     """Return whether the problem is linear for a given active set."""
     return (
         laws.friction_exponent == 0.0
-        and laws.presliding_mm == 0.0
+        and laws.presliding.length_mm == 0.0
         and laws.load.mass_kg == 0.0
         and laws.load.hysteresis.force_N == 0.0
         and laws.load.nonlinearity.quadratic_per_mm == 0.0
@@ -116,7 +135,7 @@ def capstan_ratio(direction: float, i: int, chain: Floats) -> float:
 @kernel
 def update_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     """Set the relations of all sliding nodes; return whether they changed."""
-    if laws.presliding_mm > 0.0:
+    if laws.presliding.length_mm > 0.0:
         stopped = update_travel(chain, laws)
         return set_tangent_relations(chain, now, laws) or stopped
     if laws.friction_exponent == 0.0:
@@ -187,7 +206,7 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
             0.5 * (1.0 + ratio) * loss + ratio * abs(carried) * limit
         ) * inverse
         unbalanced += abs(share * residual) > BALANCED * abs(share) * (abs(before) + laws.preload_N)
-    if laws.presliding_mm > 0.0:
+    if laws.presliding.length_mm > 0.0:
         add_presliding_slope(chain, laws)
     return unbalanced > 0
 
@@ -197,7 +216,7 @@ def add_presliding_slope(chain: Floats, laws: SlipLaws) -> None:
     """Add the derivative of the drop of tension by a node's travel, at the tangent's point."""
     for i in range(1, laws.n + 1):
         moved = chain[at.TRAVEL + i]
-        rate = friction_share_rate(chain[at.SHARE + i], moved, laws.presliding_mm)
+        rate = friction_share_rate(chain[at.SHARE + i], moved, chain[at.LENGTH + i])
         chain[at.DROP_SLOPE + i] *= rate
         chain[at.DROP + i] -= chain[at.DROP_SLOPE + i] * (chain[at.POSITION_BEFORE + i] + moved)
 
@@ -215,7 +234,8 @@ def update_travel(chain: Floats, laws: SlipLaws) -> bool:
         stopped += reversed_sign and abs(moved - chain[at.TRAVEL + i]) > TOLERANCE * laws.scale_mm
         moved = 0.0 if reversed_sign else moved
         chain[at.TRAVEL + i] = moved
-        chain[at.SHARE + i] = friction_share(chain[at.SHARE_BEFORE + i], moved, laws.presliding_mm)
+        length = chain[at.LENGTH + i]
+        chain[at.SHARE + i] = friction_share(chain[at.SHARE_BEFORE + i], moved, length)
     return stopped > 0
 
 
@@ -230,7 +250,7 @@ def extrapolate(chain: Floats, laws: SlipLaws) -> None:
 @kernel
 def accept(chain: Floats, laws: SlipLaws) -> None:
     """Accept the present state as the solution of the step."""
-    if laws.presliding_mm > 0.0:
+    if laws.presliding.length_mm > 0.0:
         for i in range(1, laws.n + 1):
             share = chain[at.SHARE + i]
             chain[at.SHARE_BEFORE + i] = share

@@ -26,6 +26,7 @@ from tsas_cli.physics.slip.nodes import (
     extrapolate,
     is_linear,
     set_friction,
+    set_lengths,
     update_relations,
     update_speeds,
 )
@@ -78,6 +79,7 @@ def begin(tendon: Floats, now: Moment, laws: SlipLaws) -> None:
     if not is_linear(laws):
         extrapolate(tendon, laws)
     set_friction(tendon, now, laws)
+    set_lengths(tendon, now, laws)
     update_relations(tendon, now, laws)
 
 
@@ -86,7 +88,10 @@ def update_nodes(tendon: Floats, now: Moment, laws: SlipLaws, limit: int, revers
     """Update a tendon's active set and relations; return whether any changed."""
     if laws.friction_exponent != 0.0:
         set_friction(tendon, now, laws)
-    changed = laws.presliding_mm == 0.0 and update_active_set(tendon, now, laws, limit, reverse) > 0
+    if laws.bristle_mm_per_N > 0.0:
+        set_lengths(tendon, now, laws)
+    sticks = laws.presliding.length_mm == 0.0
+    changed = sticks and update_active_set(tendon, now, laws, limit, reverse) > 0
     return update_relations(tendon, now, laws) or changed
 
 

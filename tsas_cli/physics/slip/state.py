@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.effects.antagonist import Antagonist
+from tsas_cli.effects.presliding import Presliding, bristle_compliance
 from tsas_cli.effects.pulley_friction import PulleyFriction
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.numerics.compiled import kernel
@@ -38,7 +39,8 @@ class SlipLaws(NamedTuple):
     friction_exponent: float
     friction_slope: float  # along the sheath, over the mean
     pulleys: PulleyFriction
-    presliding_mm: float
+    presliding: Presliding
+    bristle_mm_per_N: float  # compliance of a node's bristles of fixed stiffness
     stribeck: StribeckFriction
     drive: DriveEnd
     load: LoadEnd
@@ -77,7 +79,8 @@ ELEMENT, STRETCH = PITCH * 24, PITCH * 24 + 1  # force of the load's hysteresis,
 SPEED = PITCH * 25  # at which the node has slid within the frictional lag [mm/s]
 POSITION_EARLIER, SPEED_EARLIER = PITCH * 26, PITCH * 27  # of the masses, a step before "before"
 STEP_BEFORE = PITCH * 24 + 2  # length of the last step [s]
-ROWS = 28
+LENGTH = PITCH * 28  # travel over which the friction of a node reverses [mm]
+ROWS = 29
 # An antagonist's rows follow, with node 0 at the load and n + 1 at the drive: the pair is one loop,
 # on which the load pulls, and x and the directions of slip are those of the first tendon.
 SECOND = PITCH * ROWS
@@ -119,6 +122,7 @@ def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
     """Return the constants of the rig for a static problem, with the given ends."""
     antagonist = rig.effects.antagonist
     preload_N = rig.preload_N + antagonist.preload_N
+    wrap = rig.friction_coefficient * rig.total_bend_rad / n
     return SlipLaws(
         n,
         preload_N,
@@ -127,7 +131,8 @@ def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
         rig.effects.load_dependent_friction.exponent,
         rig.effects.uneven_friction.slope,
         rig.effects.pulley_friction,
-        rig.effects.presliding.length_mm,
+        rig.effects.presliding,
+        bristle_compliance(rig.effects.presliding, wrap),
         rig.effects.stribeck_friction,
         drive_end(rig, boundary.drive),
         load_end(rig, boundary.load),
@@ -146,7 +151,8 @@ def with_drive(laws: SlipLaws, drive: DriveEnd) -> SlipLaws:
         laws.friction_exponent,
         laws.friction_slope,
         laws.pulleys,
-        laws.presliding_mm,
+        laws.presliding,
+        laws.bristle_mm_per_N,
         laws.stribeck,
         drive,
         laws.load,
@@ -165,7 +171,8 @@ def laws_of_second(laws: SlipLaws) -> SlipLaws:
         laws.friction_exponent,
         -laws.friction_slope,
         PulleyFriction(laws.pulleys.load_loss, laws.pulleys.drive_loss),
-        laws.presliding_mm,
+        laws.presliding,
+        laws.bristle_mm_per_N,
         laws.stribeck,
         free_drive(DISPLACEMENT),
         with_given(laws.load, DISPLACEMENT),

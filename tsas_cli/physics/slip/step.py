@@ -22,6 +22,7 @@ from tsas_cli.physics.slip.nodes import (
     extrapolate,
     is_linear,
     set_friction,
+    set_lengths,
     slip_after_backwards,
     slips_backwards,
     update_relations,
@@ -42,16 +43,18 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     if not is_linear(laws):
         extrapolate(chain, laws)
     set_friction(chain, now, laws)
+    set_lengths(chain, now, laws)
     update_relations(chain, now, laws)
+    sticks = laws.presliding.length_mm == 0.0
     for iteration in range(most_iterations(n)):
         sweep_to_drive(chain, now, laws)
         sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
+        if laws.bristle_mm_per_N > 0.0:
+            set_lengths(chain, now, laws)
         limit, reverse = changes_at(iteration, n)
-        unsolved = (
-            laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, limit, reverse) > 0
-        )
+        unsolved = sticks and update_active_set(chain, now, laws, limit, reverse) > 0
         unsolved = update_relations(chain, now, laws) or unsolved
         if not unsolved or limit == n:
             unsolved = update_ends(chain, now, laws) or unsolved
@@ -91,7 +94,7 @@ def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
         q += chain[at.SLIP + last] * guide + p * compliance * F0
         r = 1.0 + p * compliance
     chain[at.SWEEP_P + laws.n], chain[at.SWEEP_Q + laws.n], chain[at.SWEEP_R + laws.n] = p, q, r
-    if laws.presliding_mm > 0.0:
+    if laws.presliding.length_mm > 0.0:
         eliminate_presliding(chain, p, q, r, laws)
     else:
         eliminate_sliding(chain, p, q, r, laws)
@@ -133,7 +136,7 @@ def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set positions and tensions, from the drive on."""
     n, last = laws.n, laws.n + 1
     chain[at.POSITION] = drive_position(chain, now, laws)
-    if laws.presliding_mm > 0.0:
+    if laws.presliding.length_mm > 0.0:
         substitute_presliding(chain, laws)
     else:
         substitute_sliding(chain, laws)
