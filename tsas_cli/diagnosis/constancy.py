@@ -22,7 +22,7 @@ from tsas_cli.diagnosis.held_out import (
     in_stretches,
 )
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
-from tsas_cli.diagnosis.tolerances import without_tolerances
+from tsas_cli.diagnosis.tolerances import GROWTH, without_tolerances
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.support.arrays import Floats, Indices
@@ -109,12 +109,15 @@ def beside_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
 def _with_frictions(
     trial: HypothesisFit, effect: str, folds: Folds
 ) -> tuple[HypothesisFit, list[int]]:
-    """Return a fit with the friction of each run, and the columns of an effect that are split."""
+    """Return a fit with the friction of each run, and the columns of an effect that are split.
+
+    How a size grows with the tension is none: a part of the data at one tension does not show it.
+    """
     J = trial.solution.jacobian
     columns = [
         j
         for j, u in enumerate(trial.unknowns)
-        if u.name.split(".")[0] == effect and not trial.solution.at_bound[j]
+        if u.name.split(".")[0] == effect and u.name != GROWTH and not trial.solution.at_bound[j]
     ]
     within_runs = [j for j in columns if not is_scatter(trial, J[:, j], folds.run)]
     if within_runs:  # what differs from run to run alone is the friction of each

@@ -1,8 +1,9 @@
 """Friction at one node of the tendon with pre-sliding: LuGre's bristles.
 
 Yang 2025, Eq. (15): the deflection z of the bristles follows dz/dt = v − |v| z/z∞, and friction is
-f = g z/z∞ + σ1 dz/dt + σ2 v. Its limit is g; z∞ = g/σ0 + l, where l is the travel of Dahl's law
-(`presliding`), which does not depend on the tension. With l = 0 that is σ0 z in the first term.
+f = g z/z∞ + σ1 dz/dt + σ2 v. Its limit is g; z∞ = g/σ0 + l, where l is the part of the travel of
+Dahl's law (`presliding`) that does not depend on the tension; the other is in series with σ0. With
+l = 0 that is σ0 z in the first term.
 """
 
 import math
@@ -32,7 +33,7 @@ class Bristle(NamedTuple):
     stiffness: float  # [N/mm]
     damping: float  # [N s/mm]
     viscous: float  # [N s/mm]
-    travel: float  # of Dahl's law [mm]
+    travel: float  # of Dahl's law, at any tension [mm]
 
 
 @kernel
