@@ -169,7 +169,7 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
         ),
         "presliding": Signature(
             "Rounded corners: f_in leaves a reversal with a finite slope, over the same travel at "
-            "every tension. Short strokes become thin loops.",
+            "every tension where growth is 0. Short strokes become thin loops.",
             _one(length_mm=0.4),
             Motion(kind="nested", amplitude_mm=2.0, speed_mm_per_s=2.0, periods=1),
         ),
