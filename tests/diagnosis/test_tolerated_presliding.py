@@ -27,3 +27,16 @@ def test_elastic_travel_of_a_few_micrometres_is_no_cause(tmp_path, length_mm, na
     assert found.model.value("presliding.length_mm") == pytest.approx(length_mm, rel=0.3)
     noted = any("of elastic travel before sliding" in note for note in found.record.cannot_tell)
     assert noted is not bool(named)
+
+
+def test_a_travel_that_grows_with_the_tension_is_no_cause_either(tmp_path):
+    """Bristles of a fixed stiffness: 2 µm at 10 N are 5 at the preload of 25 N."""
+    rig = Rig(cells=60, friction=Friction(presliding_mm=0.002, presliding_growth=1.0))
+    runs = [
+        Run(f"{size:.0f}-mm", measure(simulate(rig, sine(size)), FINE, seed=k), conditions(rig))
+        for k, size in enumerate((6.0, 8.0, 10.0))
+    ]
+    found = tsas.diagnose(write_dataset(tmp_path / "dataset", runs))
+    assert (found.verdict, found.causes) == ("sufficient", ())
+    assert found.model.value("presliding.length_mm") == pytest.approx(0.002, rel=0.3)
+    assert found.model.value("presliding.growth") > 0.6

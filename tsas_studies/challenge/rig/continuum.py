@@ -21,6 +21,7 @@ from tsas_studies.challenge.rig.motions import Floats
 from tsas_studies.challenge.rig.surface import Surface
 
 LEAST_RATIO = 0.01  # of T/F0, below which friction no longer depends on it
+GROWS_AT_N = 10.0  # tension at which a length that grows with it is the stated one
 
 
 class Tendon(NamedTuple):
@@ -100,21 +101,33 @@ def stribeck_rise(speed: float, tendon: Tendon) -> float:
 
 
 @compiled
+def length_of(i: int, state: State, tendon: Tendon) -> float:
+    """Return δ of node i [mm], by the tension at the step before where it grows with that."""
+    grows = tendon.friction.presliding_mm * tendon.friction.presliding_growth
+    if grows == 0.0:
+        return tendon.delta
+    stretch = 0.0
+    for j in (max(i - 1, 0), min(i, state.u.size - 2)):
+        stretch += 0.5 * tendon.k[j] * (state.u[j] - state.u[j + 1])
+    return float(tendon.delta + grows * (max(tendon.preload + stretch, 0.0) / GROWS_AT_N - 1.0))
+
+
+@compiled
 def turned(du: float, i: int, state: State, tendon: Tendon) -> float:
     """Return the friction state of node i after a displacement du [mm]."""
-    rise = stribeck_rise(state.speed[i], tendon)
+    rise, delta = stribeck_rise(state.speed[i], tendon), length_of(i, state, tendon)
     if tendon.friction.round_mm > 0.0:
-        return bouc_wen(du, state.phi[i], tendon.delta, rise)
-    return dahl(du, state.phi[i], tendon.delta, tendon.friction.asymmetry, rise)
+        return bouc_wen(du, state.phi[i], delta, rise)
+    return dahl(du, state.phi[i], delta, tendon.friction.asymmetry, rise)
 
 
 @compiled
 def turned_slope(du: float, i: int, state: State, tendon: Tendon) -> float:
     """Return by how much that changes per displacement [1/mm]."""
-    rise = stribeck_rise(state.speed[i], tendon)
+    rise, delta = stribeck_rise(state.speed[i], tendon), length_of(i, state, tendon)
     if tendon.friction.round_mm > 0.0:
-        return bouc_wen_slope(du, state.phi[i], tendon.delta, rise)
-    return dahl_slope(du, state.phi[i], tendon.delta, tendon.friction.asymmetry, rise)
+        return bouc_wen_slope(du, state.phi[i], delta, rise)
+    return dahl_slope(du, state.phi[i], delta, tendon.friction.asymmetry, rise)
 
 
 @compiled

@@ -26,6 +26,7 @@ class Friction(NamedTuple):
     # Displacement over which friction reverses, beyond the rig's own; the work lost until it has
     # turned is that of a friction that changes by its limit per such displacement.
     presliding_mm: float = 0.0
+    presliding_growth: float = 0.0  # part of it that is in proportion to the tension, as at 10 N
     # μ grows over a run, relative to its first value, and over the session.
     rate_per_s: float = 0.0
     settling_per_s: float = 0.0

@@ -44,7 +44,7 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
     "viscous_friction": places("friction", coefficient_N_s_per_mm="viscous_N_s_per_mm"),
     "sheath_drag": places("friction", force_N="drag_N"),
     "load_dependent_friction": places("friction", exponent="load_exponent"),
-    "presliding": places("friction", length_mm="presliding_mm"),
+    "presliding": places("friction", length_mm="presliding_mm", growth="presliding_growth"),
     "bend_drift": places(
         "friction", rate_rad_per_s="bend_rate_rad_per_s", settling_per_s="bend_settling_per_s"
     ),
