@@ -184,11 +184,11 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     interval = gains[1], gains[2]
     negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
-    if (
-        is_tolerated(judged.bench, judged.trial(named))
-        if name == PRESLIDING
-        else within_tolerances(judged.trial(named), name, last.tolerated, reduction)
-    ):
+    if name == PRESLIDING:
+        tolerated = is_tolerated(judged.bench, judged.trial(named))
+    else:
+        tolerated = within_tolerances(judged.trial(named), name, last.tolerated, reduction)
+    if tolerated:
         failed, negligible = (*failed, "is no more than a tolerance"), True
     if within_scatter(judged.trial(named), name, judged.folds.run):
         failed, negligible = (*failed, "is no more than a friction that differs by run"), True

@@ -31,10 +31,9 @@ def clipped(trial: RunSignals) -> Findings:
     the channel stays constant at its extreme while the drive moves on by more than a twentieth of
     its span. Not clipping: a dwell (everything rests), the dead band after a reversal (the drive
     moves back), a coarse step at the peak of a sine, a rest at the beginning, a slack tendon, whose
-    load rests while the drive moves on. With noise behind the
-    end of the range, or a soft end, nothing is constant: then the end of each long stroke is a flat
-    line but for noise, and lacks what the stroke before it foretells. A force that falls with the
-    speed is curved there.
+    load rests while the drive moves on. With noise behind the end of the range, or a soft end,
+    nothing is constant: then the end of each long stroke is a flat line but for noise, and lacks
+    what the stroke before it foretells. A force that falls with the speed is curved there.
     """
     for name in trial.mechanical:
         if name == trial.prescribed:
@@ -97,8 +96,8 @@ def _end_of_stroke(
     """Return a channel's level at the end of a stroke, how much it lacks there, and if it is flat.
 
     It lacks what a line through the part of the stroke before foretells; None for a stroke that is
-    short, that goes back on its second half, in which the channel does not follow, or
-    that leaves the tendon slack.
+    short, that goes back on its second half, in which the channel does not follow, or that
+    leaves the tendon slack.
     """
     x, y = (trial.channels[n][stroke.rows] for n in ("x_in_mm", name))
     share = (x - x[0]) / (x[-1] - x[0])
