@@ -15,7 +15,12 @@ from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.friction_scatter import is_in_line, with_friction_of_runs
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
-from tsas_cli.diagnosis.tolerances import tolerances, with_tolerances, without_travel
+from tsas_cli.diagnosis.tolerances import (
+    tolerances,
+    with_tolerances,
+    without_tolerances,
+    without_travel,
+)
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -98,6 +103,12 @@ class Fits:
         mesh = self.bench.on_mesh(names)
         excess = max(self.excess(names, mesh, self.scatters(names, mesh)), 0.0)
         return excess / (1.0 + excess)
+
+    def of_tolerances(self, names: Names) -> float:
+        """Return the share of the squares with these effects that tolerances take away."""
+        trial = self.trial(names)
+        left = without_tolerances(trial, self.tolerated[trial.on_mesh], self.folds.run)
+        return 1.0 - float(left @ left) / float(np.sum(trial.solution.residual**2))
 
     def excess(self, names: Names, mesh: bool, scatter: bool) -> float:
         """Return by how much the held-out mean square exceeds that of noise alone."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
-from tsas_cli.diagnosis.search import add, significant_effects
+from tsas_cli.diagnosis.search import MOST_OF_TOLERANCES, add, significant_effects
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.load_friction import LOAD_FRICTION
 from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS
@@ -14,6 +14,7 @@ from tsas_cli.identification.quantities import QUANTITIES
 MODEL_ERROR = 0.1  # of the squares that a wrong model leaves, by which two effects differ by chance
 ONE_CHANNEL = 0.1  # of an effect's reduction: what forms of laws differ by, where one channel tells
 PRESLIDING = 0.01  # of the stroke: a hysteresis that yields within it is friction that slides late
+CLEARLY = 0.5  # times the squares: of two effects, one that leaves so much fits clearly better
 SIMPLER = LEAST_REDUCTION_PER_COMPLEXITY - LEAST_DIFFERENCE  # that a simpler effect leaves more
 
 FRICTION, HYSTERESIS = LOAD_FRICTION.name, LOAD_HYSTERESIS.name
@@ -61,6 +62,7 @@ def rivals_of(
     parameters, may predict worse by what these cost.
     """
     fewer = named - {name}
+    by_tolerances = fits.of_tolerances(named) > MOST_OF_TOLERANCES
     alike = (1.0 - of_forms) * fits.gain(fewer, named).part
     out = []
     for other, found in add(fits, fewer, fits.reduction(fewer, named)):
@@ -73,6 +75,9 @@ def rivals_of(
         fits_worse = trial.mean_square > fits.trial(named).mean_square
         costs = LEAST_DIFFERENCE if fits_worse else LEAST_REDUCTION_PER_COMPLEXITY
         worse = fits.gain(instead, named).beyond(costs + unsure)
+        worse = worse and not (
+            by_tolerances and trial.mean_square < CLEARLY * fits.trial(named).mean_square
+        )
         if not worse or (of_forms > 0.0 and fits.gain(fewer, instead).part > alike):
             out.append(other)
     return tuple(out)

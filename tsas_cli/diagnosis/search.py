@@ -31,6 +31,7 @@ SHARE = 0.2  # least reduction of the excess over the noise by a cause
 LEAST = 0.003  # least reduction of the nominal model's excess by a further cause,
 MOST = 0.5  # unless it takes that share of what is left
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
+MOST_OF_TOLERANCES = 0.5  # share of the squares beyond which a cause is sought in their place
 LINEAR = 0.4  # share of its reduction that a signature explains; a fit takes up to 2.5 times it
 Criterion = Callable[[Reduction], bool]
 PAIRS = 4  # of effects that are fitted, of those that explain most together
@@ -48,7 +49,7 @@ def _grown(fits: Fits, named: Names, before: frozenset[Names]) -> Names:
     the best one, both branches are searched to their ends: the residual of the simpler effect
     may be one that no further effect explains.
     """
-    if len(named) >= MOST_EFFECTS or (named and is_quiet(fits, named)) or named in before:
+    if len(named) >= MOST_EFFECTS or (named and _explains_all(fits, named)) or named in before:
         return named
     ends = [
         _grown(fits, _without_redundant(fits, better), before | {named})
@@ -74,6 +75,11 @@ def is_quiet(fits: Fits, names: Names) -> bool:
     return mean_square < 1.0 + MOST_SLOW and is_complete(fits, names)
 
 
+def _explains_all(fits: Fits, names: Names) -> bool:
+    """Return whether noise alone is left, and not because most else is taken for tolerances."""
+    return is_quiet(fits, names) and fits.of_tolerances(names) < MOST_OF_TOLERANCES
+
+
 def is_complete(fits: Fits, names: Names) -> bool:
     """Return whether a regression finds nothing that a further cause could explain."""
     return remainder_of(fits.bench, fits.trial(names), fits.folds).complete
@@ -89,7 +95,7 @@ def sufficient(fits: Fits, names: Names, mesh: bool) -> float:
     """Return the reduction of the held-out mean square that a further cause has to make."""
     scatter = fits.scatters(names, mesh)
     excess = fits.excess(names, mesh, scatter)
-    if not names:
+    if not names or is_quiet(fits, names):
         return SHARE * (excess - EXCESS_OF_COMPLETE_MODEL)
     little = LEAST * fits.excess(frozenset(), mesh, scatter)
     return max(SHARE * excess, min(little, MOST * excess))
@@ -151,9 +157,9 @@ def _simplest(fits: Fits, names: Names, singles: list[tuple[str, Reduction]]) ->
 
 def _criterion(fits: Fits, names: Names) -> Criterion:
     """Return whether a further effect convinces, by what its predecessors leave."""
-    if names or not is_quiet(fits, names):
+    if not is_quiet(fits, names):
         return attrgetter("convincing")
-    below = held_out_mean_square(fits, names) < 1.0
+    below = not names and held_out_mean_square(fits, names) < 1.0
     return attrgetter("convincing_of_any" if below else "convincing_of_noise")
 
 

@@ -71,7 +71,7 @@ def test_limits_of_friction_follow_tension_way_and_speed(exponent, excess, sign)
     for i, wrap in ((1, 0.14), (2, 0.11), (3, 0.11)):
 
         def limit(tension, v, wrap=wrap):
-            factor = wrap * (abs(tension) / F0) ** exponent
+            factor = wrap * (abs(tension) / 10.0) ** exponent
             return abs(tension) * factor * (1.0 + excess * math.exp(-((v / 2.0) ** 2)))
 
         mean, v, d = 0.5 * (tensions[i - 1] + tensions[i]), speeds[i] + 1.5, 1e-5

@@ -142,7 +142,7 @@ class Nodes:
         pulled, released, drag_N, _ = now.losses
         mean = 0.5 * (before + behind)
         exponent = self.rig.effects.load_dependent_friction.exponent
-        factor = (abs(mean) / self.rig.preload_N) ** exponent
+        factor = (abs(mean) / 10.0) ** exponent
         factor *= 1.0 + self.rig.effects.uneven_friction.slope * ((i - 0.5) / N - 0.5)
         excess, falls_mm_s, power, lag_s = self.rig.effects.stribeck_friction
         factor *= 1.0 + excess * math.exp(-((self.speed[i] / falls_mm_s) ** power))

@@ -52,7 +52,7 @@ def nodes(chain, row):
 
 
 def test_friction_stays_finite_where_no_tension_is_left(chain):
-    """Its tension counts as a hundredth of the preload, and a node passes on e^−30 at least."""
+    """Its tension counts as 0.1 N, and a node passes on e^−30 at least."""
     chain[rows.TENSION :][: N + 2] = 1e-9
     for exponent, pulled, released in ((-0.5, 0.2 * 10.0, 0.15 * 10.0), (-1.5, 30.0, 30.0)):
         set_friction(chain, NOW, laws({"load_dependent_friction.exponent": exponent}))
@@ -155,7 +155,7 @@ def test_the_tangent_of_a_node_is_the_slope_of_its_law(chain, exponent, sign, wa
     def left(before, behind, x):
         limit = math.copysign(1.0, x - 0.3)
         share = limit + (0.25 - limit) * math.exp(-abs(x - 0.3) / 0.05)
-        wrap = (0.2 if share > 0.0 else 0.15) * abs((before + behind) / (2.0 * F0)) ** exponent
+        wrap = (0.2 if share > 0.0 else 0.15) * abs((before + behind) / 20.0) ** exponent
         half = 0.5 * share * 0.4
         return behind + half - math.exp(-sign * share * wrap) * (before - half)
 

@@ -79,7 +79,7 @@ def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
     if laws.lump.friction_exponent != 0.0:
         for i in range(1, laws.n + 1):
             mean = 0.5 * (s[at.TENSION + i - 1] + s[at.TENSION + i])
-            factor = load_factor(mean / laws.preload_N, laws.lump.friction_exponent)
+            factor = load_factor(mean, laws.lump.friction_exponent)
             s[at.LIMIT + i] *= factor
             s[at.LIMIT_BY_T + i] *= factor * (1.0 + laws.lump.friction_exponent)
     if laws.lump.friction_slope != 0.0:

@@ -114,7 +114,7 @@ def sliding_friction(
     limit, force, rate = np.empty(speed.size), np.empty(speed.size), np.empty(speed.size)
     for i in range(speed.size):
         factor = stribeck_factor(speed[i], laws.lump.stribeck)
-        factor *= load_factor(tension[i] / laws.preload_N, laws.lump.friction_exponent)
+        factor *= load_factor(tension[i], laws.lump.friction_exponent)
         limit[i] = wrap * factor * abs(tension[i]) + laws.lump.drag_N
         force[i], rate[i] = friction_now(deflection[i], speed[i], limit[i], laws.lump.bristle)
     return limit, force, rate

@@ -59,9 +59,8 @@ def set_sheath_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
             chain[at.WRAP_PULLED + i], chain[at.WRAP_RELEASED + i] = pulled, released
             chain[at.RATIO_PULLED + i], chain[at.RATIO_RELEASED + i] = ratio_pulled, ratio_released
         return
-    per_N = 0.5 / laws.load_preload_N
     for i in range(1, n + 1):  # short loops: in one, the compiler runs out of registers
-        mean = (chain[at.TENSION + i - 1] + chain[at.TENSION + i]) * per_N
+        mean = 0.5 * (chain[at.TENSION + i - 1] + chain[at.TENSION + i])
         chain[at.WRAP_PULLED + i] = load_exponent(mean, laws.friction_exponent)
     for i in range(1, n + 1):
         factor = exponential(chain[at.WRAP_PULLED + i])

@@ -34,7 +34,7 @@ class SlipLaws(NamedTuple):
 
     n: int  # nodes of the sheath
     preload_N: float  # of the tendon
-    load_preload_N: float  # of the load, at which friction is the nominal one
+    load_preload_N: float  # of the load
     scale_mm: float  # elongation of a node's segment at the preload
     friction_exponent: float
     friction_slope: float  # along the sheath, over the mean

@@ -20,7 +20,8 @@ from tsas_studies.challenge.rig.load_end import Load
 from tsas_studies.challenge.rig.motions import Floats
 from tsas_studies.challenge.rig.surface import Surface
 
-LEAST_RATIO = 0.01  # of T/F0, below which friction no longer depends on it
+MU_AT_N = 10.0  # tension at which the friction coefficient is the stated one
+LEAST_N = 0.1  # below it friction no longer depends on the tension
 GROWS_AT_N = 10.0  # tension at which a length that grows with it is the stated one
 
 
@@ -132,12 +133,12 @@ def turned_slope(du: float, i: int, state: State, tendon: Tendon) -> float:
 
 @compiled
 def load_factor(i: int, tension: Floats, tendon: Tendon) -> float:
-    """Return (T/F0)^n of node i."""
+    """Return (T/10 N)^n of node i."""
     exponent = tendon.friction.load_exponent
     if exponent == 0.0:
         return 1.0
     mean = 0.5 * (tension[max(i - 1, 0)] + tension[min(i, tension.size - 1)])
-    return float(max(mean / tendon.preload, LEAST_RATIO) ** exponent)
+    return float((max(mean, LEAST_N) / MU_AT_N) ** exponent)
 
 
 @compiled

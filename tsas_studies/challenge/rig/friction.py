@@ -19,7 +19,7 @@ class Friction(NamedTuple):
     stribeck_velocity_mm_per_s: float = 5.0
     stribeck_power: float = 2.0
     stribeck_memory_s: float = 0.02
-    load_exponent: float = 0.0  # it is μ (T/F0)^exponent at each place
+    load_exponent: float = 0.0  # it is μ (T/10 N)^exponent at each place
     # Force per speed of the tendon as a whole; each place has its own speed.
     viscous_N_s_per_mm: float = 0.0
     drag_N: float = 0.0  # of the whole sheath, even along it, the same at any tension
