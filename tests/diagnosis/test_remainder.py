@@ -186,6 +186,8 @@ def test_errors_are_brief_by_how_many_are_far_and_by_what_they_weigh(rows, far, 
     errors[: 3 * rows // 10] *= 2.5 / 0.67449
     errors[-far:] = size * np.sign(errors[-far:])
     assert _is_brief(errors) == brief
+    assert not _is_brief(errors, least=20.1)  # all are within what every rig has
+    assert _is_brief(errors, least=0.99 * size) == brief
 
 
 @pytest.mark.parametrize(

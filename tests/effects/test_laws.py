@@ -52,6 +52,19 @@ def test_a_drift_never_turns_bend_or_friction_the_other_way():
     assert friction_factor(both, 20.0, 100.0) == pytest.approx(1.04 + 0.05)
 
 
+@pytest.mark.parametrize("preload_N", [8.0, 40.0])
+@pytest.mark.parametrize("exponent", [-0.36, 0.2])
+def test_friction_follows_the_tension_and_not_the_preload(preload_N, exponent):
+    """Along the sheath dT = μ (T/10 N)^n T dθ, so that T^−n falls by n μθ (10 N)^−n."""
+    rig = with_values(
+        GROUP_A, {"preload_N": preload_N, "load_dependent_friction.exponent": exponent}
+    )
+    found = simulate(rig, DriveInput(np.linspace(0.0, 12.0, 400)), nodes=200)
+    wrap = rig.friction_coefficient * rig.total_bend_rad
+    f_in = (found.f_out_N[-1] ** -exponent - exponent * wrap * 10.0**-exponent) ** (-1.0 / exponent)
+    assert found.f_in_N[-1] == pytest.approx(f_in, rel=1e-4)
+
+
 TIME_S = np.linspace(0.0, 12.0, 1201)
 X_MM = 8.0 + 6.0 * np.sin(TIME_S)
 DRIVE = DriveInput(X_MM, time_s=TIME_S)

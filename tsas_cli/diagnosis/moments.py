@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from tsas_cli.diagnosis.friction_scatter import PLAUSIBLE
+from tsas_cli.diagnosis.tolerances import TRAVEL_MM
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
@@ -45,21 +47,27 @@ def at_moments(
     for name in bench.channels:
         if _is_late(np.concatenate([run[name] for run in delays if name in run])):
             late.append(name)
-        if any(_is_brief(run[name]) for run in parts if name in run):
+        least_mm = PLAUSIBLE * TRAVEL_MM if name.endswith("_mm") else 0.0
+        if any(
+            _is_brief(part[name], least_mm / run.weights[name][run.samples[name]])
+            for (run, _), part in zip(pairs, parts, strict=True)
+            if name in part
+        ):
             brief.append(name)
     return tuple(late), tuple(brief)
 
 
-def _is_brief(errors: Floats) -> bool:
+def _is_brief(errors: Floats, least: Floats | float = 0.0) -> bool:
     """Return whether what a run's errors exceed the noise by comes at a few moments.
 
-    Noise is as large at any time, and seldom far beyond its own standard deviation.
+    Noise is as large at any time, and seldom far beyond its own standard deviation. Errors up to
+    `least` count for none: every contact gives way by so much before it slides.
     """
     sd = float(np.median(np.abs(errors - np.median(errors)))) / UPPER_QUARTILE
     if sd == 0.0:  # most errors are the same, as of a coarse channel
         return False
     size = np.minimum(np.abs(errors) / sd, FARTHEST)
-    beyond = np.where(size > FAR, size, 0.0) ** 2
+    beyond = np.where((size > FAR) & (np.abs(errors) > least), size, 0.0) ** 2
     brief = np.count_nonzero(beyond) >= FEWEST_FAR and float(np.mean(beyond)) > BRIEF
     return bool(brief) and float(np.mean(errors**2)) > 1.0 + ABOVE_NOISE
 

@@ -123,7 +123,7 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(lively, boundary):
     for i in range(1, N + 1):
         mean = 0.5 * (T_now[i - 1] + T_now[i])
         pulled = bent[i] + GH * v[i] >= 0.0
-        limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 25.0) ** 0.3
+        limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 10.0) ** 0.3
         limit *= 1.0 + math.exp(-((v[i] / 2.0) ** 2))
         limit *= 1.0 + (i - 0.5) / N - 0.5
         limit += 2.0 * math.tanh(0.5 * {1: 0.05, N: 0.08}.get(i, 0.0)) * mean + 2.5 / N

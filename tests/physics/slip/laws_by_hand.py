@@ -33,13 +33,13 @@ EFFECTS = {
     "free tendon": FREE,
     "compliances in series": FREE
     | {"drive_compliance.compliance_mm_per_N": 0.004, "sheath_compression.compliance_ratio": 0.3},
-    "friction rises with tension": {"load_dependent_friction.exponent": 0.25},
+    "friction rises with tension": {"load_dependent_friction.exponent": 0.15},
     "friction falls with tension": {"load_dependent_friction.exponent": -0.25},
     "friction is the same at any tension": {"load_dependent_friction.exponent": -1.0},
     "presliding": {"presliding.length_mm": 0.02},
     "presliding and tension": {
         "presliding.length_mm": 0.05,
-        "load_dependent_friction.exponent": 1.0,
+        "load_dependent_friction.exponent": 0.5,
     },
     "bristles of a fixed stiffness": {
         "presliding.length_mm": 0.02,
