@@ -57,9 +57,19 @@ def without_tolerances(monkeypatch):
     """Let rigs be without tolerances."""
     monkeypatch.setattr(fits_module, "tolerances", lambda bench, trial: None)
     monkeypatch.setattr(fits_module, "with_tolerances", lambda trial, tolerated: trial)
+    tolerances_take(monkeypatch, 0.0)
     monkeypatch.setattr(fits_module, "without_travel", lambda tolerated: tolerated)
     monkeypatch.setattr(fits_module, "with_friction_of_runs", lambda trial, run: trial)
     monkeypatch.setattr(fits_module, "is_in_line", lambda trial, run, session_s: False)
+
+
+def tolerances_take(monkeypatch, share):
+    """Let tolerances take a share of the squares that any effects leave."""
+    monkeypatch.setattr(
+        fits_module,
+        "without_tolerances",
+        lambda trial, tolerated, run: np.sqrt(1.0 - share) * trial.solution.residual,
+    )
 
 
 def fits_over(bench, known):

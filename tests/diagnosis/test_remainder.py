@@ -32,6 +32,7 @@ class Run:
         )
         everything = np.arange(time_s.size)
         self.samples = dict.fromkeys(errors, everything if samples is None else samples)
+        self.weights = dict.fromkeys(errors, np.ones(time_s.size))
         self.given, self.f_in = errors, 7.0 * everything
 
     def errors(self, rig):

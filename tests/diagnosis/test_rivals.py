@@ -18,6 +18,7 @@ from tests.diagnosis.searched import (
     names,
     search_over,
     seen,
+    tolerances_take,
 )
 from tsas_cli.diagnosis import rivals as rivals_module
 from tsas_cli.diagnosis.rivals import exchanged, is_presliding, rivals_of
@@ -58,6 +59,22 @@ def test_what_leaves_a_little_more_is_a_rival(made, unsure, of_forms, rivals, mo
     fits = made({names(): 9.0, names(A): 4.8, names(C): 5.0})
     monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
     assert rivals_of(fits, names(A), A, unsure, of_forms) == rivals
+
+
+@pytest.mark.parametrize(
+    ("share", "in_sample", "rivals"), [(0.51, 3.9, (C,)), (0.51, 4.1, ()), (0.49, 3.9, ())]
+)
+def test_what_fits_clearly_better_without_tolerances_is_a_rival(
+    made, share, in_sample, rivals, monkeypatch
+):
+    """With them it predicts worse; where they take most, they decide between the two."""
+    fits = made({names(): 9.0, names(A): 8.0, names(C): in_sample})
+    monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
+    tolerances_take(monkeypatch, share)
+    for effects, held_out in ((names(A), 1.0), (names(C), 1.5)):
+        of = effects, fits.trial(effects).on_mesh
+        fits.squares[of] = fits.scattered[of] = np.full(BLOCKS, held_out * SIZE / BLOCKS)
+    assert rivals_of(fits, names(A), A) == rivals
 
 
 @pytest.mark.parametrize(("in_sample", "rivals"), [(1.0, (C,)), (1.001, ())])

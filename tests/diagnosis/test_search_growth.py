@@ -20,6 +20,7 @@ from tests.diagnosis.searched import (
     pairs,
     screened,
     search_over,
+    tolerances_take,
 )
 from tsas_cli.diagnosis import search as s
 
@@ -57,6 +58,15 @@ def test_it_ends_where_it_is_quiet(grown):
     fits = grown({names(): 8.0, names(A): 1.1, names(A, B): 0.5})
     assert s.significant_effects(fits) == names(A)
     assert names(A, B) not in fits.bench.fitted
+
+
+@pytest.mark.parametrize(("left", "found"), [(0.9, names(A, B)), (1.09, names(A))])
+def test_it_goes_on_where_it_is_quiet_by_tolerances(grown, monkeypatch, left, found):
+    """More than half of what A leaves is taken for tolerances: B may be there in their place."""
+    fits = grown({names(): 8.0, names(A): 1.1, names(A, B): left, names(A, C): 1.09})
+    tolerances_take(monkeypatch, 0.51)
+    assert s.significant_effects(fits) == found
+    assert names(A, B) in fits.bench.fitted
 
 
 def test_nothing_is_named_where_nothing_convinces(grown):

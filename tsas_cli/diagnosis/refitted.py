@@ -12,7 +12,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER
 from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
-from tsas_cli.identification.extension import TOLERANCE, Bench
+from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -130,7 +130,12 @@ def _solved(
     unknowns = [replace(u, initial=float(v)) for u, v in zip(free_unknowns, start, strict=True)]
     known = trial.solution.jacobian[np.concatenate(kept)][:, free]
     fitted = solve(
-        unknowns, len(runs), residuals, tolerance=TOLERANCE, known=known, values_only=True
+        unknowns,
+        len(runs),
+        residuals,
+        tolerance=bench.tolerance_at(trial.mean_square),
+        known=known,
+        values_only=True,
     )
     out = values.copy()
     out[free] = fitted.values

@@ -5,7 +5,7 @@ from dataclasses import replace
 from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
-from tsas_cli.diagnosis.search import MOST_OF_TOLERANCES, add, significant_effects
+from tsas_cli.diagnosis.search import add, is_by_tolerances, significant_effects
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.load_friction import LOAD_FRICTION
 from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS
@@ -59,10 +59,11 @@ def rivals_of(
 
     Those that leave more by a share that is `unsure` do as well too; so do those whose reduction is
     smaller by less than the share `of_forms`. One that fits all the data no worse, by more
-    parameters, may predict worse by what these cost.
+    parameters, may predict worse by what these cost. So may one that fits clearly better, where
+    most of what the named ones leave is taken for tolerances.
     """
     fewer = named - {name}
-    by_tolerances = fits.of_tolerances(named) > MOST_OF_TOLERANCES
+    by_tolerances = is_by_tolerances(fits, named)
     alike = (1.0 - of_forms) * fits.gain(fewer, named).part
     out = []
     for other, found in add(fits, fewer, fits.reduction(fewer, named)):
@@ -75,9 +76,8 @@ def rivals_of(
         fits_worse = trial.mean_square > fits.trial(named).mean_square
         costs = LEAST_DIFFERENCE if fits_worse else LEAST_REDUCTION_PER_COMPLEXITY
         worse = fits.gain(instead, named).beyond(costs + unsure)
-        worse = worse and not (
-            by_tolerances and trial.mean_square < CLEARLY * fits.trial(named).mean_square
-        )
+        fits_better = trial.mean_square < CLEARLY * fits.trial(named).mean_square
+        worse = worse and not (by_tolerances and fits_better)
         if not worse or (of_forms > 0.0 and fits.gain(fewer, instead).part > alike):
             out.append(other)
     return tuple(out)

@@ -4,7 +4,8 @@ Stepwise selection: one effect after the other is added while the best one is si
 each, earlier ones that have become redundant are removed. Where no single effect is significant,
 pairs are screened together, because effects of opposite sign mask each other. Where the nominal
 model leaves noise alone, a first effect has to take more of it, or be more significant; where it
-leaves less than is known of the noise, be more significant.
+leaves less than is known of the noise, be more significant. Where noise alone is left since most
+is taken for tolerances, a further effect has to as well.
 """
 
 from collections.abc import Callable
@@ -49,7 +50,9 @@ def _grown(fits: Fits, named: Names, before: frozenset[Names]) -> Names:
     the best one, both branches are searched to their ends: the residual of the simpler effect
     may be one that no further effect explains.
     """
-    if len(named) >= MOST_EFFECTS or (named and _explains_all(fits, named)) or named in before:
+    if len(named) >= MOST_EFFECTS or named in before:
+        return named
+    if named and not is_by_tolerances(fits, named) and is_quiet(fits, named):
         return named
     ends = [
         _grown(fits, _without_redundant(fits, better), before | {named})
@@ -75,9 +78,9 @@ def is_quiet(fits: Fits, names: Names) -> bool:
     return mean_square < 1.0 + MOST_SLOW and is_complete(fits, names)
 
 
-def _explains_all(fits: Fits, names: Names) -> bool:
-    """Return whether noise alone is left, and not because most else is taken for tolerances."""
-    return is_quiet(fits, names) and fits.of_tolerances(names) < MOST_OF_TOLERANCES
+def is_by_tolerances(fits: Fits, names: Names) -> bool:
+    """Return whether what little these effects leave is so because most is taken for tolerances."""
+    return fits.of_tolerances(names) > MOST_OF_TOLERANCES
 
 
 def is_complete(fits: Fits, names: Names) -> bool:
@@ -95,7 +98,7 @@ def sufficient(fits: Fits, names: Names, mesh: bool) -> float:
     """Return the reduction of the held-out mean square that a further cause has to make."""
     scatter = fits.scatters(names, mesh)
     excess = fits.excess(names, mesh, scatter)
-    if not names or is_quiet(fits, names):
+    if not names or (is_by_tolerances(fits, names) and is_quiet(fits, names)):
         return SHARE * (excess - EXCESS_OF_COMPLETE_MODEL)
     little = LEAST * fits.excess(frozenset(), mesh, scatter)
     return max(SHARE * excess, min(little, MOST * excess))
@@ -157,7 +160,7 @@ def _simplest(fits: Fits, names: Names, singles: list[tuple[str, Reduction]]) ->
 
 def _criterion(fits: Fits, names: Names) -> Criterion:
     """Return whether a further effect convinces, by what its predecessors leave."""
-    if not is_quiet(fits, names):
+    if (names and not is_by_tolerances(fits, names)) or not is_quiet(fits, names):
         return attrgetter("convincing")
     below = not names and held_out_mean_square(fits, names) < 1.0
     return attrgetter("convincing_of_any" if below else "convincing_of_noise")

@@ -32,7 +32,8 @@ class Bench:
     `free` are the free parameters of the base fit, with its estimates as initial values, `rigs`
     those of its runs. The residuals of the runs, with the weights and samples of the base fit, are
     `closed` by the solver that each rig needs, `meshed` and `coarse` by the slip chain. `priors`
-    are those of effects' parameters that have one (`Unknown.prior`).
+    are those of effects' parameters that have one (`Unknown.prior`); `tolerance` is the share of
+    the squares for the last step of a fit, in proportion to their mean beyond the noise.
     """
 
     base: FittedModel
@@ -43,6 +44,7 @@ class Bench:
     coarse: tuple[RunErrors, ...]
     never_closed: bool
     priors: Mapping[str, float] = field(default_factory=dict)
+    tolerance: float = TOLERANCE
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
         """Return whether a hypothesis needs the slip chain."""
@@ -86,8 +88,7 @@ class Bench:
         unknowns = (*base, *freed)
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
-        mean_square = 1.0 if near is None else near.mean_square
-        tolerance = TOLERANCE * min(max(mean_square, 1.0), MOST_LOOSENING)
+        tolerance = self.tolerance_at(1.0 if near is None else near.mean_square)
         errors = self.meshed if mesh else self.closed
 
         def residuals(k: int, values: Floats) -> Floats:
@@ -106,6 +107,10 @@ class Bench:
             solution = solved(inside, known=solution.jacobian)
         sizes = tuple(run.count for run in errors)
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
+
+    def tolerance_at(self, mean_square: float) -> float:
+        """Return the share of the squares below which a step is the last, by their mean."""
+        return self.tolerance * min(max(mean_square, 1.0), MOST_LOOSENING)
 
     def errors_at(self, trial: HypothesisFit, changes: Mapping[str, float]) -> Floats:
         """Return all residuals at a trial's values with some effects' parameters set.
