@@ -6,8 +6,8 @@ is a hundred times cheaper than the decompositions of the whole Jacobian in scip
 the gradient points outwards, and the others step on (active set).
 
 With slopes that are known nearly, from another fit, the Jacobian is corrected after each step by
-what the step has shown (Broyden 1965), and calculated where steps fail or reduce the squares by
-less than predicted, and at the end.
+what the step has shown (Broyden 1965), and calculated where several steps fail, or one reduces the
+squares by less than predicted, and at the end.
 """
 
 from collections.abc import Callable
@@ -22,6 +22,7 @@ MOST_DAMPING = 1e8
 STEP = 1e-7  # change of all unknowns below which a step is the last
 LAST = 0.01  # of the tolerance, below which a step is not worth its residual; with known slopes
 AS_PREDICTED = 0.5  # share of the predicted reduction, beyond which corrected slopes are kept
+MOST_FAILED = 3  # steps with corrected slopes that fail one after the other
 NEARLY_BOUND = 1e-4  # of a unit, or of the width between the bounds if it is less
 
 
@@ -81,7 +82,7 @@ def least_squares(
     x = np.clip(start, lower, upper)
     r, exact = residual(x), slopes is None
     J = jacobian(x) if slopes is None else slopes
-    damping, evaluations = FIRST_DAMPING, 1
+    damping, evaluations, failed = FIRST_DAMPING, 1, 0
     while evaluations < most:
         gradient, gram = J.T @ r, J.T @ J
         at_bound = ((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0))
@@ -108,19 +109,27 @@ def least_squares(
             exact = slopes is None or (reduction < AS_PREDICTED * predicted and not last)
             if exact:
                 J = jacobian(x)
-            elif not last:  # changed least, by weights of the unknowns, to predict what came
-                along = np.diag(gram) * step
-                J = J + np.outer(r - before - J @ step, along / float(along @ step))
-            damping = max(damping / 10.0, 1e-12)
+            elif not last:
+                J = _corrected(J, step, r - before, gram)
+            damping, failed = max(damping / 10.0, 1e-12), 0
             if last:
                 return found("the last step is within the tolerance")
         elif exact:
             damping *= 10.0
             if smallest or damping > MOST_DAMPING:
                 return found("no step reduces the squares")
+        elif failed < MOST_FAILED:
+            J = _corrected(J, step, trial - r, gram)
+            damping, failed = 10.0 * damping, failed + 1
         else:
-            J, exact = jacobian(x), True
+            J, exact, damping = jacobian(x), True, FIRST_DAMPING
     return found(f"squares still decreasing after {most} evaluations", converged=False)
+
+
+def _corrected(J: Floats, step: Floats, change: Floats, gram: Floats) -> Floats:
+    """Return the Jacobian changed least, by weights of the unknowns, to predict what a step did."""
+    along = np.diag(gram) * step
+    return np.asarray(J + np.outer(change - J @ step, along / float(along @ step)))
 
 
 def _bounded_step(
