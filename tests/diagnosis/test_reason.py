@@ -63,11 +63,21 @@ def test_where_nothing_is_named_the_nearest_effect_is_said(found, near):
 
 
 def test_causes_are_named_with_their_reduction():
-    said = reason_of("named", [cause(PLAY), cause(MASS)], [], START, left(1.44))
+    said = reason_of("named", [cause(PLAY), cause(MASS)], [], START, left(1.1))
     assert said == (
         f"The nominal model lacks: {TITLE[PLAY]} and {TITLE[MASS]}. "
         "With them the RMS of the residual of f_in_N on held-out data falls from 0.400 to 0.120 N."
     )
+
+
+def test_what_tolerances_may_do_beside_named_causes_is_said():
+    within = (
+        "What is left, 2.0 × the noise level, is no more than slow noise and the tolerances of "
+        "load cells, bend and friction do."
+    )
+    assert reason_of("named", [cause(PLAY)], [], START, left(4.0)).endswith(within)
+    more = reason_of("partly", [cause(PLAY)], [], START, left(4.0, "time_s"))
+    assert within not in more
 
 
 @pytest.mark.parametrize(

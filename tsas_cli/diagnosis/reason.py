@@ -15,6 +15,7 @@ from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.wording import listed
 
+WITHIN_TOLERANCES = "no more than slow noise and the tolerances of load cells, bend and friction do"
 NEAR = 0.1  # least reduction of the squares by an effect that comes near
 
 
@@ -43,19 +44,28 @@ def reason_of(
         if causes:
             sentences.append("No catalogued effect explains the remaining residual.")
         sentences += _dependence(after)
+    elif causes and _exceeds_noise(after):
+        sentences.append(f"What is left, {_over_noise(after)}, is {WITHIN_TOLERANCES}.")
     if law is not None:
         sentences.append(_law(law))
     return " ".join(text[0].upper() + text[1:] for text in sentences)
 
 
 def _sufficient(after: Remainder) -> str:
-    if after.mean_square > 1.0 + LEAST_SLOW:
+    if _exceeds_noise(after):
         return (
-            f"The nominal model leaves {_digits(math.sqrt(after.mean_square), 2)} × the noise "
-            "level: no more than slow noise and the tolerances of load cells, bend and friction "
-            "do. These runs show no missing effect."
+            f"The nominal model leaves {_over_noise(after)}: {WITHIN_TOLERANCES}. "
+            "These runs show no missing effect."
         )
     return "The nominal model is at the noise level: these runs show no missing effect."
+
+
+def _exceeds_noise(after: Remainder) -> bool:
+    return after.mean_square > 1.0 + LEAST_SLOW
+
+
+def _over_noise(after: Remainder) -> str:
+    return f"{_digits(math.sqrt(after.mean_square), 2)} × the noise level"
 
 
 def _gain(causes: Sequence[FoundCause], channels: Mapping[str, HeldOutErrors]) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """The tendon as a continuum with Dahl friction, by finite volumes: its records and laws.
 
 Nodes cluster towards both ends (Chebyshev–Lobatto points); each node carries the friction of the
-half cells beside it, each cell one tension. Friction per length is μ κ T (T/F0)^n φ, where the
+half cells beside it, each cell one tension. Friction per length is μ κ T (T/10 N)^n φ, where the
 state φ follows Dahl's law (dahl.py); viscous friction w v of each node's own speed v and its drag,
 d φ, add to it. At δ = 5e-6 mm a front is a few mm wide.
 
@@ -76,7 +76,7 @@ class State(NamedTuple):
 class Cells(NamedTuple):
     """A tendon during a step: tension [N] and stiffness [N/mm] of each cell, friction of each node.
 
-    Friction by the tension is 2 e T, e = μ θ φ (T/F0)^n / 2; the other one, w [N], is viscous or
+    Friction by the tension is 2 e T, e = μ θ φ (T/10 N)^n / 2; the other one, w [N], is viscous or
     drag.
     """
 
