@@ -92,8 +92,6 @@ for panel, commands in PANELS.items():
 
 def run() -> None:
     """Run the command line; an error becomes one line on stderr and an exit code."""
-    # For many small matrices, threads inside each product cost three times what they save.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if os.environ.get("COLUMNS") == "0":  # no width, as `shutil.get_terminal_size` has it
         del os.environ["COLUMNS"]
     _open_closed_streams()

@@ -3,7 +3,6 @@
 One process, since ten would spend most of their time on imports.
 """
 
-import os
 import sys
 from pathlib import Path
 
@@ -25,7 +24,6 @@ def main() -> None:
     """Run the stages; what a stage prints is kept beside its folder."""
     from tsas_cli.app import app
 
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does
     for number, stage in enumerate(STAGES):
         with Path(f"printed-{number}.txt").open("w", encoding="utf-8") as stream:
             sys.stdout = stream

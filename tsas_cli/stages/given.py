@@ -10,6 +10,7 @@ from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Address, Location, location_of
@@ -125,7 +126,9 @@ def checked(function: Callable[..., Any]) -> Callable[..., Any]:
         for name, given in named.bind(*args, **keywords).arguments.items():
             if kinds.get(name):
                 of_kind(kinds[name], given, name)
-        return function(*args, **keywords)
+        # Threads inside each product of small matrices cost more than they save.
+        with threadpool_limits(limits=1, user_api="blas"):
+            return function(*args, **keywords)
 
     return call
 
