@@ -101,6 +101,20 @@ def test_an_interference_is_the_jump_at_each_reversal_with_the_drive(size):
     assert jumps == pytest.approx(np.full(5, size), abs=1e-9)
 
 
+@pytest.mark.parametrize(("rests", "said"), [(4, True), (3, False)])
+def test_an_interference_shows_at_half_of_the_reversals(rests, said):
+    """Of seven; from some time on the load follows the drive at once, so that no jump is seen."""
+    rng = np.random.default_rng(3)
+    t = 0.002 * np.arange(4001)
+    x = 5.0 + 5.0 * np.interp(np.mod(t, 2.0), [0.0, 1.0, 2.0], [-1.0, 1.0, -1.0])
+    way = np.where(np.mod(t, 2.0) < 1.0, 1.0, -1.0)
+    load = np.where(way > 0.0, np.maximum(x - 2.0, 0.0), np.minimum(x, 8.0))
+    jumping = np.where(t < rests + 0.7, load + 0.5 * way, x)
+    read = jumping + 0.01 * rng.standard_normal(t.size)
+    found = replace(fine(t, x_in_mm=x, f_out_N=read), overall={})  # sizes of its own
+    assert (list(motion.interference(found)) != []) == said
+
+
 @pytest.mark.parametrize(
     ("step_s", "stroke_s", "said"),
     [
