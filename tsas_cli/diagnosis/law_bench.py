@@ -27,7 +27,7 @@ CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"
 # Longest width over the longest stroke: an element as wide as half of it only adds a straight line.
 WIDEST = {"drive_law": 0.25, "tendon_law": 0.125, "load_law": 0.25}
 REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
-TOLERANCE = 3e-4  # of the squares, for the last step of a fit
+TOLERANCE = 3e-5  # of the squares, for the last step of a fit
 PRIOR = 0.1  # of a block's squares, the cost of a parameter that does as much as the residual
 PLAUSIBLE_FACTOR = 0.3  # of a law that changes the friction,
 PLAUSIBLE_PLACE = 0.1  # along the stroke of the drive: 0.3 predicts a damper at twice the error
