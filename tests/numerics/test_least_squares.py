@@ -71,6 +71,24 @@ def test_slopes_that_are_known_wrongly_are_calculated_where_no_step_helps():
     np.testing.assert_allclose(found.values, TRUTH, rtol=1e-6)
 
 
+def test_a_step_to_where_nothing_is_finite_is_none_and_corrects_no_slopes():
+    """As where a model cannot be simulated; the slopes known lead far off, at first."""
+
+    seen = []
+
+    def residual(p):
+        seen.append(tuple(p))
+        return decay(p) - decay(TRUTH) if p[1] < 0.6 else np.full(T.size, np.nan)
+
+    start = np.array([1.8, 0.4, 2.9])
+    known = slopes(start) * [1.0, 0.01, 1.0]
+    how = {"tolerance": 1e-12, "most": 100, "slopes": known}
+    found = least_squares(residual, slopes, start, FREE, **how)
+    np.testing.assert_allclose(found.values, TRUTH, rtol=1e-6)
+    assert seen[1][1] > 0.6
+    assert len(set(seen)) == len(seen)  # none is tried twice
+
+
 def test_a_start_outside_of_the_bounds_is_moved_inside():
     bounds = (np.zeros(3), np.array([5.0, 1.0, 4.0]))
     found, _ = fitted([9.0, -1.0, 2.9], bounds)

@@ -118,7 +118,7 @@ def least_squares(
             damping *= 10.0
             if smallest or damping > MOST_DAMPING:
                 return found("no step reduces the squares")
-        elif failed < MOST_FAILED:
+        elif failed < MOST_FAILED and np.isfinite(reduction):
             J = _corrected(J, step, trial - r, gram)
             damping, failed = 10.0 * damping, failed + 1
         else:
