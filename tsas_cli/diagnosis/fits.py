@@ -45,6 +45,8 @@ class Fits:
     scattered: dict[tuple[Names, bool], Floats] = field(default_factory=dict)  # by own frictions
     in_line: dict[tuple[Names, bool], bool] = field(default_factory=dict)  # own frictions
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
+    complete: dict[Names, bool] = field(default_factory=dict)  # whether only noise is left
+    taken: dict[Names, float] = field(default_factory=dict)  # shares that tolerances take
     tolerated: dict[bool, Floats] = field(default_factory=dict)  # at the nominal model, by mesh
     leads: Names = frozenset()
     least: float = math.inf  # held-out squares of what leads
@@ -106,9 +108,11 @@ class Fits:
 
     def of_tolerances(self, names: Names) -> float:
         """Return the share of the squares with these effects that tolerances take away."""
-        trial = self.trial(names)
-        left = without_tolerances(trial, self.tolerated[trial.on_mesh], self.folds.run)
-        return 1.0 - float(left @ left) / float(np.sum(trial.solution.residual**2))
+        if names not in self.taken:
+            trial = self.trial(names)
+            left = without_tolerances(trial, self.tolerated[trial.on_mesh], self.folds.run)
+            self.taken[names] = 1.0 - float(left @ left) / float(np.sum(trial.solution.residual**2))
+        return self.taken[names]
 
     def excess(self, names: Names, mesh: bool, scatter: bool) -> float:
         """Return by how much the held-out mean square exceeds that of noise alone."""

@@ -10,8 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tsas_cli.diagnosis.friction_scatter import PLAUSIBLE
-from tsas_cli.diagnosis.tolerances import TRAVEL_MM
+from tsas_cli.diagnosis.tolerances import LONGEST_MM
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
@@ -47,7 +46,7 @@ def at_moments(
     for name in bench.channels:
         if _is_late(np.concatenate([run[name] for run in delays if name in run])):
             late.append(name)
-        least_mm = PLAUSIBLE * TRAVEL_MM if name.endswith("_mm") else 0.0
+        least_mm = LONGEST_MM if name.endswith("_mm") else 0.0
         if any(
             _is_brief(part[name], least_mm / run.weights[name][run.samples[name]])
             for (run, _), part in zip(pairs, parts, strict=True)

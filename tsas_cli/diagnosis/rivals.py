@@ -73,12 +73,11 @@ def rivals_of(
         trial = fits.trial(instead)
         if not trial.solution.converged:
             continue
-        fits_worse = trial.mean_square > fits.trial(named).mean_square
-        costs = LEAST_DIFFERENCE if fits_worse else LEAST_REDUCTION_PER_COMPLEXITY
-        worse = fits.gain(instead, named).beyond(costs + unsure)
-        fits_better = trial.mean_square < CLEARLY * fits.trial(named).mean_square
-        worse = worse and not (by_tolerances and fits_better)
-        if not worse or (of_forms > 0.0 and fits.gain(fewer, instead).part > alike):
+        squares = trial.mean_square / fits.trial(named).mean_square
+        costs = LEAST_DIFFERENCE if squares > 1.0 else LEAST_REDUCTION_PER_COMPLEXITY
+        as_good = not fits.gain(instead, named).beyond(costs + unsure)
+        as_form = of_forms > 0.0 and fits.gain(fewer, instead).part > alike
+        if as_good or as_form or (by_tolerances and squares < CLEARLY):
             out.append(other)
     return tuple(out)
 

@@ -85,7 +85,9 @@ def is_by_tolerances(fits: Fits, names: Names) -> bool:
 
 def is_complete(fits: Fits, names: Names) -> bool:
     """Return whether a regression finds nothing that a further cause could explain."""
-    return remainder_of(fits.bench, fits.trial(names), fits.folds).complete
+    if names not in fits.complete:
+        fits.complete[names] = remainder_of(fits.bench, fits.trial(names), fits.folds).complete
+    return fits.complete[names]
 
 
 def matters(fits: Fits, before: Names, added: Names) -> bool:

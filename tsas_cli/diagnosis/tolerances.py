@@ -26,6 +26,7 @@ UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvatur
 PRESLIDING = "presliding"
 GROWTH = f"{PRESLIDING}.growth"
 TRAVEL, TRAVEL_MM = f"{PRESLIDING}.length_mm", 0.003  # asperities of metal give way by so much
+LONGEST_MM = PLAUSIBLE * TRAVEL_MM
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.

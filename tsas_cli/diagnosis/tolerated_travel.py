@@ -10,9 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsas_cli.diagnosis.friction_scatter import PLAUSIBLE
 from tsas_cli.diagnosis.hypotheses import Hypotheses
-from tsas_cli.diagnosis.tolerances import GROWTH, PRESLIDING, TRAVEL, TRAVEL_MM
+from tsas_cli.diagnosis.tolerances import GROWTH, LONGEST_MM, PRESLIDING, TRAVEL, TRAVEL_MM
 from tsas_cli.effects.presliding import AT_N, Presliding, travel_at
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench
@@ -31,7 +30,7 @@ def is_tolerated(bench: Bench, trial: HypothesisFit) -> bool:
     """
     values = trial.values()
     travel_mm = travel_at(_mean_preload(bench), Presliding(values[TRAVEL], values[GROWTH]))
-    return travel_mm <= PLAUSIBLE * TRAVEL_MM
+    return travel_mm <= LONGEST_MM
 
 
 def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
@@ -42,7 +41,7 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     bench, effects = search.bench, sorted(search.named)
     if PRESLIDING in effects:
         return search
-    longest_mm = PLAUSIBLE * TRAVEL_MM * max(1.0, AT_N / _mean_preload(bench))
+    longest_mm = LONGEST_MM * max(1.0, AT_N / _mean_preload(bench))
     scaled = QUANTITIES[TRAVEL].scaled
     travel = replace(unknown_of(TRAVEL, scaled(TRAVEL_MM)), upper=scaled(longest_mm))
     free = (*bench.free, travel, unknown_of(GROWTH))

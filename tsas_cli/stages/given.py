@@ -116,7 +116,8 @@ def of_kind(kinds: tuple[type, ...], given: Any, name: str = "") -> Any:
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function that refuses an argument of another kind than it is annotated with.
 
-    Numbers, and what can be of a kind with parts, the function checks itself.
+    Numbers, and what can be of a kind with parts, the function checks itself. Its products of
+    matrices run on one thread.
     """
     kinds = {name: _kinds(hint) for name, hint in get_type_hints(function).items()}
     named = signature(function)

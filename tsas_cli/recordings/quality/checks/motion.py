@@ -127,7 +127,7 @@ def _excess_while_pulling(trial: RunSignals) -> float:
 _BESIDE_S, _OF_A_STROKE = 0.4, 0.06  # stretch on either side, at most
 _APART = 0.3  # of it: the time of the reversal itself
 _FEWEST_ROWS, _FEWEST_REVERSALS, _FEWEST_JUMPS = 6, 4, 3
-_MOST_REVERSALS = 0.5  # share of them that has to show it: short strokes look like a jump too
+_SHOWING = 0.5  # share of the reversals that have to show it: short strokes look like a jump too
 _RESTS = 1.5  # noise levels of a change while the load rests
 _PART = 0.2  # of a jump, that it may change by then
 _VISIBLE, _CRITICAL = 4.0, 6.0  # noise levels, and standard errors of the mean,
@@ -150,7 +150,7 @@ def interference(trial: RunSignals) -> Findings:
         return
     for name in [n for n in ("x_out_mm", "f_out_N") if n in trial.noisy]:
         jumps = _jumps(trial, trial.noisy[name], trial.sizes[name].noise)
-        if jumps.size < max(_FEWEST_JUMPS, _MOST_REVERSALS * (len(trial.strokes) - 1)):
+        if jumps.size < max(_FEWEST_JUMPS, _SHOWING * (len(trial.strokes) - 1)):
             continue
         critical = max(_CRITICAL, float(stdtrit(jumps.size - 1, 1.0 - _CHANCE)))
         mean, error = float(jumps.mean()), float(jumps.std(ddof=1)) / math.sqrt(jumps.size)
