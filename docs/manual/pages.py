@@ -32,7 +32,7 @@ HOW_TO = (
     _docs("Track a force", "tracking"),
     _docs("Close the loop", "close-loop"),
     _docs("Many runs: sweeps", "sweep"),
-    _docs("Find runs among many datasets", "catalogue"),
+    _docs("Find runs among many datasets", "runs"),
     _docs("Datasets on object storage", "object-storage"),
     _docs("A model for other programs", "export"),
 )

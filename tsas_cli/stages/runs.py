@@ -90,7 +90,7 @@ def runs(
     Parameters
     ----------
     query
-        A condition in SQL over the columns (docs/catalogue.md), such as
+        A condition in SQL over the columns (docs/runs.md), such as
         `total_bend_rad > 3 and f_out in channels and started >= 2026-01`; all runs without it.
     folders
         Where to look; the current folder without it.
