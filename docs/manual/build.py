@@ -90,14 +90,13 @@ def _contents() -> list[dict[str, Any]]:
     ]
     reference = [
         {"Commands": "commands.md"},
-        *entries((pages.PYTHON,)),
         {"Python, call by call": "api.md"},
-        *entries((pages.FORMATS,)),
+        *entries(pages.REFERENCE),
     ]
     return [
         {pages.HOME.title: pages.HOME.site},
         {pages.TUTORIAL.title: pages.TUTORIAL.site},
-        {"How-to": entries(pages.how_to())},
+        {"How-to": entries(pages.HOW_TO)},
         {"Effects": ["effects/index.md", *effects]},
         {"Reference": reference},
         {"Method": entries(pages.METHOD)},

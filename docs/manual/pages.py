@@ -1,6 +1,5 @@
 """Which pages the site has, in which order, and where each comes from."""
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,19 +25,26 @@ HOW_TO = (
     _docs("Read your files", "files"),
     _docs("The map, key by key", "ingest"),
     _docs("A project of your own", "init"),
+    _docs("Files that you don't trust", "untrusted"),
     _docs("Check recordings", "check"),
     _docs("Plan runs", "plan"),
     _docs("Identify a drive", "drive"),
     _docs("Track a force", "tracking"),
     _docs("Close the loop", "close-loop"),
+    _docs("Does a model carry over?", "predict"),
+    _docs("Compare two models", "compare"),
+    _docs("Look at streams", "viewing"),
     _docs("Many runs: sweeps", "sweep"),
     _docs("Find runs among many datasets", "runs"),
     _docs("Datasets on object storage", "object-storage"),
     _docs("A model for other programs", "export"),
+    _docs("Outputs: whole or absent", "outputs"),
 )
-PYTHON = _docs("From Python", "python")
-FORMATS = _docs("File formats", "formats")
-UNTRUSTED = _docs("Files that you don't trust", "untrusted")
+REFERENCE = (
+    _docs("From Python", "python"),
+    _docs("File formats", "formats"),
+    _docs("Words", "words"),
+)
 METHOD = (
     _docs("How a diagnosis comes about", "diagnosis"),
     _docs("The blind benchmark", "challenge"),
@@ -57,23 +63,8 @@ PROJECT = (
     _docs("Bad input, searched for", "fuzzing"),
     _docs("Do the tests notice?", "mutants"),
 )
-LEFT_OUT = {"docs/worklog.md"}  # for those who build it
 
 
 def pages() -> tuple[Page, ...]:
-    """Return every page of the repository that is in the site."""
-    return (HOME, TUTORIAL, *how_to(), PYTHON, FORMATS, UNTRUSTED, *METHOD, LIMITS, *PROJECT)
-
-
-def how_to() -> tuple[Page, ...]:
-    """Return the how-to pages: those named above, then whatever else docs/ holds."""
-    named = (HOME, TUTORIAL, *HOW_TO, PYTHON, FORMATS, *METHOD, LIMITS)
-    others = {f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")}
-    others -= LEFT_OUT | {page.source for page in named}
-    return (*HOW_TO, *(_docs(title_of(ROOT / p), Path(p).stem) for p in sorted(others)))
-
-
-def title_of(path: Path) -> str:
-    """Return the first heading of a page."""
-    found = re.search(r"^# (.+)$", path.read_text(encoding="utf-8"), re.MULTILINE)
-    return found[1] if found else path.stem
+    """Return every page of the repository that is in the site; the worklog is not."""
+    return (HOME, TUTORIAL, *HOW_TO, *REFERENCE, *METHOD, LIMITS, *PROJECT)
