@@ -24,26 +24,28 @@ SENSED = with_values(
         "force_sensor_offset.f_in_offset_N": 2.0,
         "force_sensor_offset.f_out_offset_N": -3.0,
         "force_sensor_drift.f_in_rate_N_per_s": 0.1,
+        "force_sensor_drift.f_in_session_rate_N_per_s": 0.01,
+        "force_sensor_drift.f_out_session_rate_N_per_s": -0.02,
     },
 )._replace(x_out_zero_mm=7.0)
-RAMP = 10.0 * TIMES
+RAMP, SESSION_S = 10.0 * TIMES, 300.0
 
 
 @pytest.mark.parametrize(
     ("channel", "late", "gain", "shift"),
     [
-        ("f_in_N", 0.0, 1.0, 2.0 + 0.1 * TIMES),
-        ("f_out_N", 0.5, 1.1, -3.0),
+        ("f_in_N", 0.0, 1.0, 5.0 + 0.1 * TIMES),
+        ("f_out_N", 0.5, 1.1, -9.0),
         ("x_out_mm", 0.25, 0.9, 7.0),
     ],
 )
 def test_a_channel_is_late_scaled_and_shifted(channel, late, gain, shift):
-    seen = reading(channel, RAMP, TIMES, SENSED)
+    seen = reading(channel, RAMP, TIMES, SESSION_S, SENSED)
     np.testing.assert_allclose(seen, gain * np.maximum(RAMP - 10.0 * late, 0.0) + shift)
-    back = true_value(channel, seen, TIMES, SENSED)
+    back = true_value(channel, seen, TIMES, SESSION_S, SENSED)
     np.testing.assert_allclose(back[1:-1], RAMP[1:-1])
-    still = reading(channel, RAMP, None, SENSED)
-    np.testing.assert_allclose(still, gain * RAMP + (2.0 if channel == "f_in_N" else shift))
+    still = reading(channel, RAMP, None, SESSION_S, SENSED)
+    np.testing.assert_allclose(still, gain * RAMP + (5.0 if channel == "f_in_N" else shift))
 
 
 def through_sensors(values, f_in, f_out, memory=None, boundary=DRIVEN, **how):
@@ -81,9 +83,9 @@ def test_a_low_pass_rests_at_first_and_then_follows_a_ramp_by_its_time():
         np.testing.assert_allclose(found, ramp - 10.0 * s * -np.expm1(-since / s))
         assert getattr(through_sensors(lags, ramp, ramp, x_out=ramp), name) is ramp
         for n in (1, 2, 6):  # the inverse to first order, by its rate
-            back = true_value(channel, ramp[:n], time_s[:n], late)
+            back = true_value(channel, ramp[:n], time_s[:n], 0.0, late)
             np.testing.assert_allclose(back, ramp[:n] + (10.0 * s if n > 1 else 0.0))
-        np.testing.assert_array_equal(true_value(channel, ramp, None, late), ramp)
+        np.testing.assert_array_equal(true_value(channel, ramp, None, 0.0, late), ramp)
 
 
 def test_tilt_and_crosstalk_are_of_each_force_that_is_not_given():
@@ -112,8 +114,8 @@ def test_a_scale_is_bent_and_a_wave_is_read_by_their_own_channels_alone():
     )
     for channel, seen in zip(CHANNELS, expected, strict=True):
         rig = with_values(GROUP_A, values)
-        np.testing.assert_allclose(reading(channel, true, time_s, rig), seen)
-        np.testing.assert_allclose(true_value(channel, seen, time_s, rig), true, atol=1e-9)
+        np.testing.assert_allclose(reading(channel, true, time_s, 0.0, rig), seen)
+        np.testing.assert_allclose(true_value(channel, seen, time_s, 0.0, rig), true, atol=1e-9)
 
 
 def test_the_laws_of_an_end_act_where_its_quantity_is_not_given():

@@ -1,14 +1,15 @@
-"""The reading of a force sensor drifts during a run.
+"""The reading of a force sensor drifts during a run, or from run to run.
 
 What one sees: the residual of one force channel grows steadily during the run, by the same amount
-on pull and release and at every tension; the other channels fit to the end. Every run starts
-without it.
+on pull and release and at every tension; the other channels fit to the end. With a rate of the
+session, later runs start further off; this needs `started` in the manifest.
 Equation: the reading is the tension plus a drift that starts at a rate and converges exponentially,
-as with a sensor that warms up; both sensors have one time constant. Not in the paper.
+as with a sensor that warms up, and a steady one over the session, as of a zero that nobody sets
+again; both sensors have one time constant. Not in the paper.
 Mistaken for: preload_loss (f_in and f_out fall together, coupled by the sheath's friction);
 friction_drift, bend_drift (opposite on pull and release); force_sensor_offset (present from the
 start, and constant).
-Not validated: drift that continues from one run to the next; creep that follows the force.
+Not validated: creep that follows the force.
 """
 
 from typing import NamedTuple
@@ -20,16 +21,18 @@ from tsas_cli.support.arrays import Values
 
 
 class ForceSensorDrift(NamedTuple):
-    """Initial rate of each force sensor's drift [N/s] and their inverse time constant [1/s]."""
+    """Rates of each force sensor's drift [N/s] and their inverse time constant in a run [1/s]."""
 
     f_in_rate_N_per_s: float = 0.0
     f_out_rate_N_per_s: float = 0.0
     settling_per_s: float = 0.0
+    f_in_session_rate_N_per_s: float = 0.0
+    f_out_session_rate_N_per_s: float = 0.0
 
 
 @kernel
 def drift_reading(force: float, rate: float, settling_per_s: float, time_s: Values) -> Values:
-    """Return the reading of a drifting sensor [N] at a time since the start of the run."""
+    """Return the reading of a drifting sensor [N] at a time since the drift began."""
     return force + exponential_drift(rate, settling_per_s, time_s)
 
 
@@ -38,12 +41,18 @@ FORCE_SENSOR_DRIFT = Effect(
     title="Drift of a force sensor",
     acts_on="sensor",
     closed_form=True,
-    equation="reading = T + rate·(1 − exp(−ν t))/ν",
+    equation="reading = T + rate·(1 − exp(−ν t))/ν + session_rate·t_start",
     doc=__doc__,
     parameters=(
         Parameter("f_in_rate_N_per_s", "N/s", neutral=0.0, start=0.02, lower=-100.0, upper=100.0),
         Parameter("f_out_rate_N_per_s", "N/s", neutral=0.0, start=0.02, lower=-100.0, upper=100.0),
         SETTLING,
+        Parameter(
+            "f_in_session_rate_N_per_s", "N/s", neutral=0.0, start=0.002, lower=-10.0, upper=10.0
+        ),
+        Parameter(
+            "f_out_session_rate_N_per_s", "N/s", neutral=0.0, start=0.002, lower=-10.0, upper=10.0
+        ),
     ),
     experiment="Hang a weight on each force sensor, switch it on, and record for as long as a run.",
 )

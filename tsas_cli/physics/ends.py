@@ -105,7 +105,7 @@ def ends_of(
     n = drive.values.size
     time_s = np.zeros(n) if drive.time_s is None else drive.time_s
     if drive.kind == "force":
-        at_drive = true_value("f_in_N", drive.values, drive.time_s, rig)
+        at_drive = true_value("f_in_N", drive.values, drive.time_s, drive.session_s, rig)
         position = speed = np.zeros(n)
     else:
         x = drive.values - rig.x_in_zero_mm
@@ -120,9 +120,9 @@ def ends_of(
             speed = rate_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
-        at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
+        at_load = true_value("f_out_N", drive.load_values, drive.time_s, drive.session_s, rig)
     if drive.load_values is not None and drive.load == "displacement":
-        at_load = true_value("x_out_mm", drive.load_values, drive.time_s, rig)
+        at_load = true_value("x_out_mm", drive.load_values, drive.time_s, drive.session_s, rig)
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
         step_s[1:] = time_s[1:] - time_s[:-1]

@@ -177,9 +177,9 @@ def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Pr
     """Return the readings of signals that passed the memory of the sensors."""
     return Prediction(
         drive.values if drive.kind == "displacement" else signals.x_in + rig.x_in_zero_mm,
-        reading("x_out_mm", signals.x_out, drive.time_s, rig),
-        reading("f_in_N", signals.f_in, drive.time_s, rig),
-        reading("f_out_N", signals.f_out, drive.time_s, rig),
+        reading("x_out_mm", signals.x_out, drive.time_s, drive.session_s, rig),
+        reading("f_in_N", signals.f_in, drive.time_s, drive.session_s, rig),
+        reading("f_out_N", signals.f_out, drive.time_s, drive.session_s, rig),
         signals.phase,
         solver,
     )

@@ -120,10 +120,13 @@ def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Fl
     return out
 
 
-def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
+def reading(
+    channel: Channel, values: Floats, time_s: Floats | None, session_s: float, rig: Rig
+) -> Floats:
     """Return a channel's readings of signals that passed `sensed`, shape (n,).
 
-    They are delayed, curved, scaled, shifted. Without times there is no delay, no drift.
+    They are delayed, curved, scaled, shifted. Without times there is no delay, no drift within the
+    run. `session_s` is the start of the run since that of the first one.
     """
     k = CHANNELS.index(channel)
     delayed = _delayed_by(values, time_s, rig.effects.channel_delay[k])
@@ -131,17 +134,20 @@ def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -
         delayed = rippled(delayed, rig.effects.position_sensor_ripple)
     elif channel != "x_out_mm" and rig.effects.force_sensor_curvature[k] != 0.0:
         delayed = read_curved(delayed, rig.effects.force_sensor_curvature[k])
-    return delayed * _gain(channel, time_s, rig) + _shift(channel, time_s, rig)
+    return delayed * _gain(channel, time_s, rig) + _shift(channel, time_s, session_s, rig)
 
 
-def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: Rig) -> Floats:
+def true_value(
+    channel: Channel, readings: Floats, time_s: Floats | None, session_s: float, rig: Rig
+) -> Floats:
     """Return the true values of a channel's readings, the inverse of `sensed` and `reading`.
 
     A low pass is inverted to first order in its time, by the rate of the signal: the exact inverse
     would multiply noise by the square of that time over the sampling period.
     """
     k = CHANNELS.index(channel)
-    delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, time_s, rig)
+    shift = _shift(channel, time_s, session_s, rig)
+    delayed = (readings - shift) / _gain(channel, time_s, rig)
     if channel == "x_out_mm" and not rig.effects.position_sensor_ripple.is_flat:
         delayed = without_wave(delayed, rig.effects.position_sensor_ripple)
     elif channel != "x_out_mm" and rig.effects.force_sensor_curvature[k] != 0.0:
@@ -168,12 +174,16 @@ def _gain(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     return gain if rate == 0.0 or time_s is None else drifted_gain(gain, rate, time_s)
 
 
-def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
+def _shift(
+    channel: Channel, time_s: Floats | None, session_s: float, rig: Rig
+) -> Floats | float:
     """Return the additive error: the zero of a displacement, offset and drift of a force."""
     if channel == "x_out_mm":
         return rig.x_out_zero_mm
     k, drift = CHANNELS.index(channel), rig.effects.force_sensor_drift
-    start = offset_reading(0.0, rig.effects.force_sensor_offset[k])
+    offset = offset_reading(0.0, rig.effects.force_sensor_offset[k])
+    session_rates = drift.f_in_session_rate_N_per_s, drift.f_out_session_rate_N_per_s
+    start = drift_reading(offset, session_rates[k], 0.0, session_s)
     if drift[k] == 0.0 or time_s is None:
         return start
     return drift_reading(start, drift[k], drift.settling_per_s, time_s)

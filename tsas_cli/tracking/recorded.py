@@ -54,7 +54,7 @@ def table_of(
     signals = sensed(true, time_s, rig, Boundary(DISPLACEMENT, SPRING), new_memory())
 
     def seen(channel: Channel, values: Floats, noise: float) -> Floats:
-        read = reading(channel, values, time_s, rig)
+        read = reading(channel, values, time_s, 0.0, rig)
         return read + noise * rng.standard_normal(read.size)
 
     table = {

@@ -107,11 +107,11 @@ def clean_run(
     bench: Bench, hidden: Iterable[Hidden], run: str, *, rate_Hz: float
 ) -> tuple[CleanRun, Sensors]:
     """Return one run with its causes, and the sensors that are to read it."""
-    rig, sensors = rig_of(bench, run), replace(SENSORS, rate_Hz=rate_Hz)
+    session_s = (bench.started[run] - bench.started["a"]).total_seconds()
+    rig, sensors = rig_of(bench, run), replace(SENSORS, rate_Hz=rate_Hz, session_s=session_s)
     rig, sensors = spoiled(bench.nuisance, run, rig, sensors)
     for cause in hidden:
         rig, sensors = hide(cause.cause, cause.parameters, rig, sensors)
-    session_s = (bench.started[run] - bench.started["a"]).total_seconds()
     return simulate(rig, motion(run, FINER * rate_Hz), session_s=session_s), sensors
 
 

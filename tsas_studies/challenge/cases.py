@@ -117,6 +117,8 @@ FULL: Mapping[str, tuple[Mapping[str, float], ...]] = {
         {"f_out_rate_N_per_s": 0.1, "settling_per_s": 0.0},
         {"f_in_rate_N_per_s": 0.3, "settling_per_s": 0.2},
         {"f_out_rate_N_per_s": 0.3, "settling_per_s": 0.2},
+        {"f_in_session_rate_N_per_s": 1e-3},
+        {"f_out_session_rate_N_per_s": 1e-3},
     ),
     "position_sensor_gain": ({"x_out_gain": 1.015},),
     "channel_delay": ({"f_in_delay_s": 0.014}, {"f_out_delay_s": 0.04}, {"x_out_delay_s": 0.007}),

@@ -66,6 +66,8 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "f_in_rate_N_per_s": ("f_in_N", "rate_per_s"),
         "f_out_rate_N_per_s": ("f_out_N", "rate_per_s"),
         "settling_per_s": ("forces", "settling_per_s"),
+        "f_in_session_rate_N_per_s": ("f_in_N", "session_rate_per_s"),
+        "f_out_session_rate_N_per_s": ("f_out_N", "session_rate_per_s"),
     },
     "position_sensor_gain": places("x_out_mm", x_out_gain="gain"),
     "channel_delay": {

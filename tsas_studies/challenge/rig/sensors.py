@@ -24,6 +24,7 @@ class Sensor:
     gain: float = 1.0  # the reading is gain × value + offset
     offset: float = 0.0
     rate_per_s: float = 0.0  # of an offset that grows at first at this rate
+    session_rate_per_s: float = 0.0  # of one that each run starts with
     settling_per_s: float = 0.0  # how fast that settles
     hum: float = 0.0  # amplitude of a sine that is picked up
     hum_Hz: float = 3.0
@@ -49,7 +50,7 @@ _POSITION, _FORCE = Sensor(noise=0.005, step=0.002), Sensor(noise=0.08, step=0.0
 class Sensors:
     """The sensors of a rig: one per column, and the sampling that they share.
 
-    `jitter_s` is the standard deviation of the true sampling instants about the clock that is
+    `session_s` is the start of the run after that of the first. `jitter_s` is the standard deviation of the true sampling instants about the clock that is
     written down; it is cut off so that instants stay in order. `f_in_of_f_out` is the share of
     f_out that the sensor of f_in picks up, and the other way round. `f_in_tilt_per_mm` is
     the change of the gain of f_in with x_in, that of f_out with x_out. `transducers` are what
@@ -57,6 +58,7 @@ class Sensors:
     """
 
     rate_Hz: float = 1000.0
+    session_s: float = 0.0
     jitter_s: float = 0.0
     x_in_mm: Sensor = _POSITION
     x_out_mm: Sensor = _POSITION
@@ -94,6 +96,7 @@ def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, Floats
             sensor = getattr(sensors, name)
             true = np.interp(instants - sensor.delay_s, clean.time_s, values)
             wrong = _systematic(true, sensor, instants)
+            wrong = wrong + sensor.session_rate_per_s * sensors.session_s
             columns[name] = _read_out(wrong, sensor, sensors.rate_Hz, rng)
     return columns
 
