@@ -52,7 +52,7 @@ def simulate_pieces(
     drive = next(upcoming)
     ends = ends_of(rig, drive)
     mesh = nodes_of(rig, drive, dynamics, nodes)
-    before = history(rig, ends, drive.start_f_in_N, mesh)
+    before = history(rig, ends, drive, mesh)
     past = ends.first().after(before)
     state, memory, start = at_rest(rig, past, mesh), new_memory(), None
     if before:

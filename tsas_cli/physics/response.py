@@ -119,7 +119,7 @@ def solve(
         return _dynamic(rig, drive, nodes or LUMPS, StepControl(*steps), looked_at)
     nodes = nodes_of(rig, drive, dynamics, nodes)
     ends = ends_of(rig, drive)
-    before = history(rig, ends, drive.start_f_in_N, nodes)
+    before = history(rig, ends, drive, nodes)
     skip, frames = len(before), None
     if looked_at is not None and nodes != STATIC:
         frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
@@ -144,7 +144,7 @@ def _dynamic(
     if rig.effects.antagonist.preload_N != 0.0:
         raise ValueError("the dynamic model has no antagonist")
     ends = ends_of(rig, drive)
-    before = history(rig, ends, drive.start_f_in_N, lumps)
+    before = history(rig, ends, drive, lumps)
     start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)
     neutral = Effects()
     without_speed = rig.effects._replace(
@@ -254,19 +254,20 @@ def _far(rig: Rig, ends: EndInputs, side: float, nodes: int) -> float:
     return past
 
 
-def history(rig: Rig, ends: EndInputs, target_f_in_N: float | None, nodes: int) -> list[float]:
-    """Return the drive position before the first sample for which f_in fits there, if needed.
+def history(rig: Rig, ends: EndInputs, drive: DriveInput, nodes: int) -> list[float]:
+    """Return the drive position before the first sample for which f_in fits there, if measured.
 
     From rest the drive moves beyond its first position and back; the distance determines the
     tension there, between those of contraction and loosening. It is found by bisection.
     """
+    target_f_in_N = drive.start_f_in_N
     if target_f_in_N is None or ends.boundary.drive == FORCE or nodes == STATIC:
         return []
 
     def f_in(before: list[float]) -> float:
         last = samples_of(_solve(rig, first.after(before), nodes), slice(-1, None))
         signals = sensed(last, None, rig, ends.boundary, new_memory())
-        return float(reading("f_in_N", signals.f_in, None, rig)[0])
+        return float(reading("f_in_N", signals.f_in, None, drive.session_s, rig)[0])
 
     x = float(ends.drive[0])
     first = ends.first()
