@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_studies.challenge.bench import RUNS, clean_run, drawn_bench, motion
+from tsas_studies.challenge.bench import RUNS, SENSORS, clean_run, drawn_bench, motion, recorded
 from tsas_studies.challenge.cases import Hidden, cases
 from tsas_studies.challenge.make import make
 from tsas_studies.challenge.truth import read_truth
@@ -114,6 +114,18 @@ def test_wear_over_the_session_is_counted_from_the_first_run():
         plain, _ = clean_run(bench, (), run, rate_Hz=25.0)
         later, _ = clean_run(bench, worn, run, rate_Hz=25.0)
         assert np.array_equal(plain.columns["f_in_N"], later.columns["f_in_N"]) is same
+
+
+def test_a_sensor_that_drifts_over_the_session_is_off_by_its_rate_times_the_runs_start():
+    bench = drawn_bench(np.random.default_rng(1))
+    drifting = (Hidden("force_sensor_drift", {"f_out_session_rate_N_per_s": 1e-3}),)
+    for run, began in bench.started.items():
+        plain = recorded(bench, (), run, rate_Hz=25.0, seed=1)
+        later = recorded(bench, drifting, run, rate_Hz=25.0, seed=1)
+        off = 1e-3 * (began - bench.started["a"]).total_seconds()
+        step = SENSORS.f_out_N.step
+        np.testing.assert_allclose(later["f_out_N"] - plain["f_out_N"], off, atol=step)
+        assert np.array_equal(later["f_in_N"], plain["f_in_N"])
 
 
 def test_a_case_has_the_same_bytes_in_any_set_and_order(sealed, tmp_path):
