@@ -174,9 +174,7 @@ def _gain(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     return gain if rate == 0.0 or time_s is None else drifted_gain(gain, rate, time_s)
 
 
-def _shift(
-    channel: Channel, time_s: Floats | None, session_s: float, rig: Rig
-) -> Floats | float:
+def _shift(channel: Channel, time_s: Floats | None, session_s: float, rig: Rig) -> Floats | float:
     """Return the additive error: the zero of a displacement, offset and drift of a force."""
     if channel == "x_out_mm":
         return rig.x_out_zero_mm

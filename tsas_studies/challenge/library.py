@@ -117,6 +117,7 @@ def terms(run: Prepared) -> Iterator[Term]:
         yield Term("force_sensor_offset", "1", {channel: np.ones_like(t)})
         yield Term("force_sensor_drift", "t", {channel: t})
         yield Term("force_sensor_drift", "1 − exp(−t)", {channel: settled})
+        yield Term("force_sensor_drift", "session", {channel: session})
         other = f_out if channel == "f_in_N" else f_in
         yield Term("force_crosstalk", "the other force", {channel: other})
         yield Term("force_sensor_gain_drift", "its product with t", {channel: clean[channel] * t})

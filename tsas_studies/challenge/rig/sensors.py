@@ -50,11 +50,11 @@ _POSITION, _FORCE = Sensor(noise=0.005, step=0.002), Sensor(noise=0.08, step=0.0
 class Sensors:
     """The sensors of a rig: one per column, and the sampling that they share.
 
-    `session_s` is the start of the run after that of the first. `jitter_s` is the standard deviation of the true sampling instants about the clock that is
-    written down; it is cut off so that instants stay in order. `f_in_of_f_out` is the share of
-    f_out that the sensor of f_in picks up, and the other way round. `f_in_tilt_per_mm` is
-    the change of the gain of f_in with x_in, that of f_out with x_out. `transducers` are what
-    channels do before they are sampled.
+    `session_s` is the start of the run since that of the first one. `jitter_s` is the standard
+    deviation of the true sampling instants about the clock that is written down; it is cut off so
+    that instants stay in order. `f_in_of_f_out` is the share of f_out that the sensor of f_in picks
+    up, and the other way round. `f_in_tilt_per_mm` is the change of the gain of f_in with x_in,
+    that of f_out with x_out. `transducers` are what channels do before they are sampled.
     """
 
     rate_Hz: float = 1000.0
