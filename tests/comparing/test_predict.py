@@ -3,6 +3,7 @@
 import json
 import shutil
 from dataclasses import replace
+from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
@@ -11,6 +12,9 @@ import tomlkit
 import tsas_cli as tsas
 from tests.comparing.made import NOMINAL, ROUGH, recorded
 from tests.counted import Counted
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.recordings.manifest import Session
 from tsas_cli.recordings.writing import columns_of
 
 CHANNELS = ["f_in_N", "f_out_N", "x_out_mm"]
@@ -133,6 +137,28 @@ def test_another_bend_is_outside_the_range_and_the_same_rig_is_inside(root):
     assert bend.here == (1.5, 1.5)
     assert bend.fitted == pytest.approx((np.pi, np.pi))
     assert any("(A): slow and fast, by total_bend_rad" in said for said in bent.record.findings)
+
+
+def test_what_drifts_over_the_session_goes_on_in_recordings_of_the_same_session(root, tmp_path):
+    """Of runs that begin later by 1000 s, friction of 0.1 that grows by 1e-4/s is one of 0.11."""
+    began = "started = 2026-05-04T12:16:40"
+    data = copied(root / "again", tmp_path, 'id = "slow"', f'{began}\nid = "slow"')
+    copied_of_both = data / "dataset.toml"
+    copied_of_both.write_text(
+        copied_of_both.read_text().replace('id = "fast"', f'{began}\nid = "fast"')
+    )
+    noon = datetime(2026, 5, 4, 12)  # noqa: DTZ001 # the clock of a rig has no zone
+    friction = Estimate("friction_coefficient", 0.1, "1", "given")
+    drift = Estimate("friction_drift.session_rate_per_s", 1e-4, "1/s", "given")
+    of_day, worn, other = (
+        Model((friction, drift), Session(noon, noon + timedelta(minutes=10))),
+        Model((replace(friction, value=0.11),)),
+        Model((friction, drift)),
+    )
+    for models, same in (([of_day, worn], True), ([other, worn], False)):
+        result = tsas.predict(models, data, runs=["slow"])
+        rmse = [rows(result, model=m, channel="f_out_N")[0].rmse for m in "AB"]
+        assert (rmse[0] == pytest.approx(rmse[1], rel=1e-3)) is same
 
 
 def test_a_model_that_does_not_say_its_range_leaves_it_open(root, tmp_path):

@@ -123,7 +123,7 @@ def test_a_fit_sees_even_samples_and_every_reversal(tmp_path, long):
     dataset = read_dataset(written(tmp_path / "d", recorded(), entry()))
     whole = prepare(dataset["a"])
     long()
-    run = open_long(dataset, dataset.runs[0]).prepared()
+    run = open_long(dataset, dataset.runs[0], None).prepared()
     assert run.every == 5
     assert ROWS / 5 < run.time_s.size < ROWS / 5 + 20 + whole.conditioned["x_in_mm"].reversals.size
     assert np.isin(whole.time_s[::5], run.time_s).all()
@@ -152,7 +152,7 @@ def test_the_calibration_finds_the_truth_and_says_what_it_has_seen(tmp_path, lon
 def test_a_run_of_as_many_rows_as_a_piece_is_read_whole(tmp_path, long):
     dataset = read_dataset(written(tmp_path / "d", recorded(rows=3000), entry()))
     long(3000)
-    assert open_long(dataset, dataset.runs[0]) is None
+    assert open_long(dataset, dataset.runs[0], None) is None
     assert tsas.calibrate(dataset).summary["cannot_tell"][0].startswith("x_out_zero_mm")
 
 
@@ -209,7 +209,7 @@ def test_memory_does_not_grow_with_the_recording(tmp_path, long, short_and_long,
             tsas.simulate(dataset, out=tmp_path / dataset.name)
         else:
             opened = read_dataset(dataset)
-            open_long(opened, opened.runs[0]).prepared()
+            open_long(opened, opened.runs[0], None).prepared()
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < peaks[0] + 0.3 * 8_000 * 5 * 8

@@ -1,5 +1,7 @@
 """What a model says of the rig of a run, and a data sheet of a model."""
 
+from datetime import UTC, datetime, timedelta
+
 import pytest
 
 from tests.identification.recorded import manifest, prepared
@@ -8,7 +10,7 @@ from tsas_cli.identification.model import CORRECTION, Model, _axial_stiffness, d
 from tsas_cli.identification.model_file import (
     stated_model,
 )
-from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.manifest import Manifest, Run, Session
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -89,6 +91,23 @@ def test_a_preload_is_fitted_or_stated_and_corrected_or_usual():
     assert Model(()).rig(stated).preload_N == 20.0
     corrected = Model((Estimate(CORRECTION, 1.5, "N", "fitted"),))
     assert corrected.rig(run("b", preload_N=0.0)).preload_N == 1.5
+
+
+@pytest.mark.parametrize(
+    ("minutes", "zone", "goes_on"),
+    [(0, None, True), (60, None, True), (61, None, False), (-1, None, False), (40, UTC, False)],
+)
+def test_a_dataset_goes_on_with_a_session_until_that_has_lasted_twice(minutes, zone, goes_on):
+    noon = datetime(2026, 5, 4, 12)  # noqa: DTZ001 # the clock of a rig has no zone
+    model = Model((), Session(noon, noon + timedelta(minutes=30)))
+    began = (noon + timedelta(minutes=minutes)).replace(tzinfo=zone)
+    later = Manifest.model_validate(
+        {"format": 1, "name": "x", "kind": "measured", "run": [run(started=began)]}
+    )
+    assert model.session_start(later) == (noon if goes_on else began)
+    assert Model(()).session_start(later) == began
+    unknown = later.model_copy(update={"run": (run(),)})
+    assert model.session_start(unknown) is None
 
 
 def test_a_run_s_own_value_comes_before_the_shared_one():

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,10 @@ from tsas_cli.identification.model_file import (
     write_model,
 )
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.recordings.manifest import Session
 from tsas_cli.support.errors import InputError
+
+SESSION = Session(datetime(2026, 5, 4, 12), datetime(2026, 5, 4, 12, 30))  # noqa: DTZ001
 
 
 def table(name, value="0.1", unit="1", more=""):
@@ -54,9 +58,11 @@ def file_of(folder, text):
 def test_what_is_written_is_read_back(tmp_path, ranges):
     path = tmp_path / "model.toml"
     dataset = {"name": "x", "hashes": {"a/b.parquet": "0"}}
-    write_model(path, MODEL, version="1", dataset=dataset, fitted_to=ranges)
+    model = replace(MODEL, session=SESSION)
+    write_model(path, model, version="1", dataset=dataset, fitted_to=ranges)
     for told in (path, tmp_path):  # the file, or the folder that calibrate has written
         assert set(read_model(told).estimates) == set(MODEL.estimates)
+        assert read_model(told).session == SESSION
         assert read_fitted_to(told) == ranges
 
 

@@ -9,7 +9,7 @@ from tsas_cli.comparing.sides import Side, same_runs
 from tsas_cli.identification.comparison import compare as simulated
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.own_values import with_own_values
-from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
+from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare, seconds_into
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
@@ -85,7 +85,7 @@ class Predictions:
         for run in dataset.runs:
             key = (dataset.folder.resolve(), run.id)
             if key not in self._prepared:
-                self._prepared[key] = prepare(dataset[run.id], dataset.manifest.session_start)
+                self._prepared[key] = prepare(dataset[run.id])
             ready = self._prepared[key]
             if side.model is None:  # what `tsas simulate` has written
                 path = result_file(side.path, run.id)
@@ -97,6 +97,8 @@ class Predictions:
                 out.append(ComparedRun(ready, unknown if f_in is None else f_in, columns))
             else:
                 model = _for_run(side.model, side.recordings, run)
+                start = model.session_start(dataset.manifest)
+                ready = replace(ready, session_s=seconds_into(start, run.started))
                 model = with_own_values(model, ready) if fit_own else model
                 found = simulated(ready, model, side.dynamics)
                 out.append(ComparedRun(ready, found.response.f_in_N, found.channels))
@@ -168,5 +170,6 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
             replace(e, run=run.id) if e.run == owner else e
             for e in model.estimates
             if e.run in (None, owner) or e.run != run.id
-        )
+        ),
+        model.session,
     )

@@ -87,7 +87,7 @@ def calibrate_runs(
         residual_notes = misfit(fit)
         if residual_notes and fitted is not None:
             wider = widened(fit, step)
-            model = Model(wider.estimates)
+            model = Model(wider.estimates).over(model)
             residual_notes.append(
                 f"The intervals are widened by the influence of {' or '.join(wider.effects)}, "
                 "which would explain most of the residual; `tsas diagnose` searches for the cause."

@@ -9,6 +9,7 @@ import math
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -134,7 +135,12 @@ class LongRun:
         return Rows(rows.start, rows.time_s[mask], parts, measured, rows.in_gap[mask])
 
 
-def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> LongRun | None:
+def open_long(
+    dataset: Dataset,
+    run: Run,
+    session_start: datetime | None,
+    copied: CopiedRows = NONE_COPIED,
+) -> LongRun | None:
     """Return a run that is too long for memory, without its `copied` rows; else None.
 
     InputError: as from `prepare`.
@@ -152,7 +158,7 @@ def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> L
     noise = _noise(columns, [n for n in CHANNELS if n in names and n not in driving])
     if not noise:
         raise nothing_to_compare(run, names)
-    session_s = seconds_into(dataset.manifest.session_start, run.started)
+    session_s = seconds_into(session_start, run.started)
     return LongRun(run, columns, driving[0], plans, noise, session_s, copied)
 
 

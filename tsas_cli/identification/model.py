@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import asdict, dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from tsas_cli.effects import EFFECTS, Effects
@@ -9,7 +10,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import NOMINAL, QUANTITIES
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run, Session
 from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
@@ -23,9 +24,13 @@ UNKNOWN_LENGTH_MM = 1000.0
 
 @dataclass(frozen=True)
 class Model:
-    """All estimates, shared or of a single run; an effect's is named effect.parameter."""
+    """All estimates, shared or of a single run; an effect's is named effect.parameter.
+
+    `session` is that of the recordings that the model was fitted to, where it is known.
+    """
 
     estimates: tuple[Estimate, ...]
+    session: Session | None = None
 
     def value(self, name: str, run: str | None = None) -> float | None:
         """Return a value for a run, else the shared one, else None."""
@@ -54,11 +59,20 @@ class Model:
         return pd.DataFrame([asdict(estimate) for estimate in self.estimates])
 
     def over(self, other: "Model") -> "Model":
-        """Return these estimates, and those of another model that are missing here."""
+        """Return these estimates, and what another model has that is missing here."""
         known = {(e.name, e.run) for e in self.estimates}
-        return Model(
-            (*self.estimates, *(e for e in other.estimates if (e.name, e.run) not in known))
-        )
+        others = (e for e in other.estimates if (e.name, e.run) not in known)
+        return Model((*self.estimates, *others), self.session or other.session)
+
+    def session_start(self, manifest: Manifest) -> datetime | None:
+        """Return when the session began that a dataset's runs belong to, None where it is unknown.
+
+        It is the model's where the dataset goes on with it, else that of the dataset.
+        """
+        start = manifest.session_start
+        if start is None or self.session is None or not self.session.goes_on_at(start):
+            return start
+        return self.session.first
 
     def rig(self, run: Run) -> Rig:
         """Return the rig of a run, calibrated or not; unknown parameters have defaults.
@@ -114,7 +128,7 @@ def data_sheet(manifest: Manifest) -> Model:
         for run in manifest.run
         if run.preload_N is not None
     ]
-    return Model((*estimates, *preloads))
+    return Model((*estimates, *preloads), manifest.session)
 
 
 def _stated(name: str, value: float, run: str | None = None) -> Estimate:

@@ -1,6 +1,7 @@
 """`model.toml`: a model written, read and checked, and the record of the model that was given."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -12,7 +13,7 @@ from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import read_from
-from tsas_cli.recordings.manifest import Manifest, parse, read_toml
+from tsas_cli.recordings.manifest import Manifest, Session, parse, read_toml
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range
@@ -37,7 +38,7 @@ def model_of(given: Model | Path) -> Model:
         content = {name: value for name, value in vars(e).items() if name not in ("name", "run")}
         stored = parse(StoredValue, content, f"the model in memory, {e.name}{of}")
         values.append((e.name, e.run, stored))
-    return _checked(values, "the model in memory")
+    return _checked(values, "the model in memory", given.session)
 
 
 def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
@@ -46,7 +47,9 @@ def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
     InputError: as from `read_model`.
     """
     stated = data_sheet(manifest)
-    return stated if given is None else model_of(given).over(stated)
+    if given is None:
+        return stated
+    return replace(model_of(given).over(stated), session=stated.session)
 
 
 def source_of(
@@ -73,6 +76,7 @@ class _ModelTables(StrictTable):
     kind: Literal["model"] = "model"
     version: str = ""
     dataset: dict[str, object] = Field(default_factory=dict)
+    session: Session | None = None
     fitted_to: FittedTo | None = None
     parameters: dict[str, StoredValue] = Field(default_factory=dict)
     runs: dict[str, dict[str, StoredValue]] = Field(default_factory=dict)
@@ -89,7 +93,13 @@ def write_model(
     fitted_to: FittedTo | None = None,
 ) -> None:
     """Write `model.toml`, with the recordings that the model was fitted to and their ranges."""
-    file = _ModelTables(format=1, version=version, dataset=dict(dataset), fitted_to=fitted_to)
+    file = _ModelTables(
+        format=1,
+        version=version,
+        dataset=dict(dataset),
+        session=model.session,
+        fitted_to=fitted_to,
+    )
     for e in model.estimates:
         entry = StoredValue.model_validate(e, from_attributes=True)
         group, _, name = e.name.rpartition(".")
@@ -133,7 +143,7 @@ def read_model(path: Path) -> Model:
                 expected="one of both",
                 remedy="delete the value that does not hold",
             )
-    return _checked(values, where)
+    return _checked(values, where, file.session)
 
 
 def read_fitted_to(path: Path) -> FittedTo | None:
@@ -149,7 +159,7 @@ def _read(path: Path) -> _ModelTables:
     return parse(_ModelTables, read_toml(path), path)
 
 
-def _checked(values: Sequence[_Value], where: object) -> Model:
+def _checked(values: Sequence[_Value], where: object, session: Session | None) -> Model:
     """Return the model of these values, each with its name and its run, if they can be."""
     ranges = {
         name: Range(q.lower, q.upper, q.unit, or_zero=name in MAY_BE_ZERO)
@@ -172,5 +182,6 @@ def _checked(values: Sequence[_Value], where: object) -> Model:
         seen.add((name, run))
         check_value(name, value, ranges[name], where)
     return Model(
-        tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
+        tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values),
+        session,
     )

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from datetime import date, datetime
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal, Self, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
 
 import tomlkit
 from pydantic import (
@@ -136,6 +136,19 @@ class Run(_ManifestTable):
         return str(path)
 
 
+class Session(NamedTuple):
+    """Starts of the first and the last run of a dataset."""
+
+    first: datetime
+    last: datetime
+
+    def goes_on_at(self, started: datetime) -> bool:
+        """Return whether a run is of it: one that starts later by no more than it has lasted."""
+        if len({at.tzinfo is None for at in (started, *self)}) > 1 or started < self.first:
+            return False
+        return started - self.last <= self.last - self.first
+
+
 class Manifest(_ManifestTable):
     """The whole manifest."""
 
@@ -150,11 +163,17 @@ class Manifest(_ManifestTable):
     ingest: dict[str, object] | None = None  # the input files and the map of `tsas ingest`
 
     @property
-    def session_start(self) -> datetime | None:
-        """Start of the first run; None unless all runs state theirs."""
+    def session(self) -> Session | None:
+        """Starts of the first and the last run; None unless all runs state theirs."""
         started = [run.started for run in self.run if run.started is not None]
         zones = {at.tzinfo is None for at in started}
-        return min(started) if len(started) == len(self.run) and len(zones) == 1 else None
+        known = len(started) == len(self.run) and len(zones) == 1
+        return Session(min(started), max(started)) if known else None
+
+    @property
+    def session_start(self) -> datetime | None:
+        """Start of the first run; None unless all runs state theirs."""
+        return None if self.session is None else self.session.first
 
     @model_validator(mode="after")
     def _ids_differ(self) -> "Manifest":

@@ -157,7 +157,7 @@ def calibrate(
         prepared = []
         for run in counted.dataset.runs:
             copied = counted.copied_of(run.id)
-            if (long := open_long(data, run, copied)) is not None:
+            if (long := open_long(data, run, data.manifest.session_start, copied)) is not None:
                 prepared.append(long.prepared())  # of the samples that the fit takes
             else:
                 prepared.append(prepare(data[run.id], data.manifest.session_start, copied))

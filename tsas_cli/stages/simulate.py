@@ -122,6 +122,7 @@ def simulate(
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
     taken = data_sheet(data.manifest) if known is None else model_of(known)
+    session_start = taken.session_start(data.manifest)
     record = records.SimulationFile(
         **data.header(path),
         model=source_of(known, path),
@@ -136,12 +137,12 @@ def simulate(
             (folder / "runs").mkdir()
         step.ahead(len(data.runs))
         for entry in data.runs:
-            long = open_long(data, entry)
+            long = open_long(data, entry, session_start)
             if long is not None:
                 own = with_own_values(taken, long.prepared()) if fit_own else taken
                 summary, run = simulate_long(long, own, dynamics, nodes, folder and folder / "runs")
             else:
-                run = prepare(data[entry.id], data.manifest.session_start)
+                run = prepare(data[entry.id], session_start)
                 own = with_own_values(taken, run) if fit_own else taken
                 compared = compare(run, own, dynamics, nodes)
                 summary = compared.summary

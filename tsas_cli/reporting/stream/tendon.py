@@ -6,7 +6,7 @@ little over half a turn; beyond, where its ends would meet, as a helix of a gent
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -15,7 +15,7 @@ import rerun.blueprint as rrb
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import read_model
-from tsas_cli.identification.prepared import prepare
+from tsas_cli.identification.prepared import prepare, seconds_into
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.response import Dynamics, simulate
 from tsas_cli.physics.rig import Rig
@@ -80,13 +80,14 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
     if given is None:
         return
     dataset, entry = cast("Dataset", run.inputs.dataset), run.file.run
-    drive = prepare(read_recording(dataset.folder, entry), dataset.manifest.session_start).drive
+    drive = prepare(read_recording(dataset.folder, entry)).drive
     there = written_in(run.inputs.folders[given.stage], run.id)
     at = moments(run.time_s, [run.written(n, given.stage) for n in TENSIONS if n in there])
     followed: dict[Source, tuple[Rig, Frames]] = {}
     for source, model in given.models.items():
-        rig = model.rig(entry)
-        found = simulate(rig, drive, given.dynamics, nodes=given.nodes, looked_at=at)
+        rig, start = model.rig(entry), model.session_start(dataset.manifest)
+        of_session = replace(drive, session_s=seconds_into(start, entry.started))
+        found = simulate(rig, of_session, given.dynamics, nodes=given.nodes, looked_at=at)
         if found.frames is not None:
             followed[source] = rig, found.frames
     record_tendons(recorder, run.entity("tendon"), run.times.at(at), followed)
