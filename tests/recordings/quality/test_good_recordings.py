@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
 from tests.recordings.quality.bench import Bench, columns, motion, remarks, spring, trial
 from tsas_cli.recordings.quality import RUN_CHECKS
@@ -211,6 +212,21 @@ def test_harmonics_of_a_stroke_that_repeats_are_no_noise_behind_a_filter(first):
     positions = {"x_in_mm": counted(x, 5e-4), "x_out_mm": counted(x_out, 0.005, 0.3)}
     forces = {"f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
     assert "filtered" not in complaints({"time_s": time, **positions, **forces})
+
+
+@pytest.mark.parametrize("felt", [True, False])
+def test_what_an_unsteady_drive_does_is_not_filtered_where_a_force_feels_it(felt):
+    """Steps of a few counts at random, up to 8 Hz, on the way of 10 mm; else it is a sensor's."""
+    time, rng = np.arange(4000) / 200.0, np.random.default_rng(3)
+    way = 5.0 - 5.0 * np.cos(0.8 * time)
+    unrest = sosfiltfilt(butter(2, 8.0, fs=200.0, output="sos"), rng.normal(size=time.size))
+    x_in = way + 0.02 * unrest
+    forces = {
+        name: 20.0 + slope * (x_in if felt else way) + 0.005 * rng.normal(size=time.size)
+        for name, slope in (("f_in_N", 2.0), ("f_out_N", 1.5))
+    }
+    found = complaints({"time_s": time, "x_in_mm": np.round(x_in, 3), **forces})
+    assert ("filtered" in found) is not felt
 
 
 @pytest.mark.parametrize("rows", [0, 200])

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
-from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.support.arrays import Complex, Floats, Mask
 
 _DEGREE = 4  # of the polynomial that is taken out of a segment
 _FEWEST_ROWS = 32
@@ -188,6 +188,44 @@ def noise_spectrum(time_s: Floats, values: Floats, segment_s: float) -> NoiseSpe
 
     Times and values have the shape (n,), without gaps; `segment_s` is the length of a segment [s].
     """
+    found = _of_segments(time_s, values, segment_s)
+    if found is None:
+        return None
+    frequency, spectra = found
+    power = np.abs(spectra) ** 2
+    inside = _bands(frequency.size)
+    of_band = np.array([power[:, at].mean(axis=1) for at in inside])
+    calm, usual = np.quantile(of_band, (_CALM, _USUAL), axis=1)
+    return NoiseSpectrum(
+        np.array([frequency[at].mean() for at in inside]),
+        usual,
+        calm > _ALIKE * usual,
+        calm > _STEADY * usual,
+    )
+
+
+def locked_phase(
+    time_s: Floats, values: Floats, other: Floats, segment_s: float
+) -> tuple[Floats, Floats]:
+    """Return frequencies [Hz] and how alike the phase between two channels is in all segments.
+
+    1 where it is always the same, about one over the number of segments for independent noise. Each
+    segment counts alike, so that a few in which a motion is larger than the noise count little. The
+    channels are as for `noise_spectrum`, with enough segments.
+    """
+    both = [_of_segments(time_s, one, segment_s) for one in (values, other)]
+    (frequency, first), (_, second) = (found for found in both if found is not None)
+    cross = first * second.conj()
+    size = np.abs(cross)
+    phase = np.divide(cross, size, out=np.zeros_like(cross), where=size > 0.0)
+    return frequency, np.abs(phase.mean(axis=0)) ** 2
+
+
+def _of_segments(time_s: Floats, values: Floats, segment_s: float) -> tuple[Floats, Complex] | None:
+    """Return frequencies (k,) [Hz] and the spectra of segments without their slow motion, (m, k).
+
+    Their squares are power per hertz. None for too few segments.
+    """
     step = float(time_s[-1] - time_s[0]) / (time_s.size - 1)
     rows = max(round(segment_s / step), _FEWEST_ROWS)
     starts = np.arange(0, values.size - rows + 1, rows // 2)
@@ -198,17 +236,8 @@ def noise_spectrum(time_s: Floats, values: Floats, segment_s: float) -> NoiseSpe
     basis = np.linalg.qr(np.vander(np.linspace(-1.0, 1.0, rows), _DEGREE + 1))[0]
     window = np.hanning(rows + 2)[1:-1]
     left = (segments - (segments @ basis) @ basis.T) * window
-    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 * 2.0 * step / float(window @ window)
-    frequency = np.fft.rfftfreq(rows, step)
-    inside = _bands(frequency.size)
-    of_band = np.array([power[:, at].mean(axis=1) for at in inside])
-    calm, usual = np.quantile(of_band, (_CALM, _USUAL), axis=1)
-    return NoiseSpectrum(
-        np.array([frequency[at].mean() for at in inside]),
-        usual,
-        calm > _ALIKE * usual,
-        calm > _STEADY * usual,
-    )
+    spectra = np.fft.rfft(left, axis=1) * np.sqrt(2.0 * step / float(window @ window))
+    return np.asarray(np.fft.rfftfreq(rows, step), dtype=np.float64), spectra
 
 
 def _bands(count: int) -> list[slice]:

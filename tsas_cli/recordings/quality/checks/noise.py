@@ -6,7 +6,7 @@ import numpy as np
 
 from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
-from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, noise_spectrum
+from tsas_cli.recordings.quality.samples import NoiseSpectrum, is_held, locked_phase, noise_spectrum
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
@@ -173,6 +173,7 @@ _FLOOR = 0.1  # of the rounding: below, nothing is rounded
 _EVEN = 5.0  # factor within which the noise below the end of a filter is even,
 _FEWEST_BANDS = 2, 3  # in so many bands above rounding, or above nothing: a motion falls all along
 _MATTERS = 10.0  # times the noise
+_LOCKED = 0.2  # phase to another channel; that of independent noises is below a tenth
 
 
 def filtered(trial: RunSignals) -> Findings:
@@ -186,8 +187,10 @@ def filtered(trial: RunSignals) -> Findings:
     smooth motion leaves falls too, and may be alike in all parts of the run; but it falls slower
     than noise behind a filter, so that the highest frequencies at which anything stands out are
     the motion's then, and differ from part to part. Those of a stroke that repeats are the same in
-    all parts, but they are lines, with little between them. Not reported: noise that grows slower
-    towards low frequencies, a fast amplifier, a recording without noise.
+    all parts, but they are lines, with little between them. An unsteady drive moves the tendon at
+    random, up to the frequency that it follows; another channel feels that, but not the noise of a
+    sensor. Not reported: noise that grows slower towards low frequencies, a fast amplifier, a
+    recording without noise.
     """
     segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
     for name, values in trial.mechanical.items():
@@ -197,6 +200,8 @@ def filtered(trial: RunSignals) -> Findings:
         rounding = size.step**2 / 6.0 * trial.step_s  # its power per hertz [unit²/Hz]
         end_Hz = None if spectrum is None else _end_of_noise(spectrum, rounding)
         if end_Hz is None or spectrum is None or _are_lines(values, trial.step_s, end_Hz):
+            continue
+        if _is_felt_elsewhere(trial, name, end_Hz, segment_s):
             continue
         below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
         noise = float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
@@ -220,6 +225,19 @@ def _are_lines(values: Floats, step_s: float, end_Hz: float) -> bool:
     below = power[(frequency_Hz > 0.5 * end_Hz) & (frequency_Hz < end_Hz)]
     top = power[frequency_Hz > _TOP * frequency_Hz[-1]]
     return below.size > 0 and float(np.median(below)) < _FALLS * float(np.median(top))
+
+
+def _is_felt_elsewhere(trial: RunSignals, name: str, end_Hz: float, segment_s: float) -> bool:
+    """Return whether another channel moves along with what ends at a frequency."""
+    values = trial.mechanical[name]
+    for other, others in trial.mechanical.items():
+        if other == name or not np.isfinite(others).all():
+            continue
+        frequency_Hz, locked = locked_phase(trial.time_s, values, others, segment_s)
+        below = (frequency_Hz > 0.5 * end_Hz) & (frequency_Hz <= end_Hz)
+        if float(np.median(locked[below])) > _LOCKED:
+            return True
+    return False
 
 
 def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
