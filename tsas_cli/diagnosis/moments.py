@@ -46,9 +46,8 @@ def at_moments(
     for name in bench.channels:
         if _is_late(np.concatenate([run[name] for run in delays if name in run])):
             late.append(name)
-        least_mm = LONGEST_MM if name.endswith("_mm") else 0.0
         if any(
-            _is_brief(part[name], least_mm / run.weights[name][run.samples[name]])
+            _is_brief(part[name], _unseen(run, name) / run.weights[name][run.samples[name]])
             for (run, _), part in zip(pairs, parts, strict=True)
             if name in part
         ):
@@ -56,15 +55,25 @@ def at_moments(
     return tuple(late), tuple(brief)
 
 
+def _unseen(run: RunErrors, name: str) -> float:
+    """Return by how much x_out may be off unseen [mm]: a contact's travel, a count of x_in."""
+    drive = run.run.drive_column
+    if not name.endswith("_mm") or not drive.endswith("_mm"):
+        return 0.0
+    return max(LONGEST_MM, run.run.conditioned[drive].step)
+
+
 def _is_brief(errors: Floats, least: Floats | float = 0.0) -> bool:
     """Return whether what a run's errors exceed the noise by comes at a few moments.
 
-    Noise is as large at any time, and seldom far beyond its own standard deviation. Errors up to
-    `least` count for none: every contact gives way by so much before it slides.
+    Noise is as large at any time, and seldom far beyond its own standard deviation, or that which
+    the weights of the errors say. Errors up to `least` count for none: every contact gives way by
+    so much before it slides.
     """
-    sd = float(np.median(np.abs(errors - np.median(errors)))) / UPPER_QUARTILE
-    if sd == 0.0:  # most errors are the same, as of a coarse channel
+    own = float(np.median(np.abs(errors - np.median(errors)))) / UPPER_QUARTILE
+    if own == 0.0:  # most errors are the same, as of a coarse channel
         return False
+    sd = max(own, 1.0)
     size = np.minimum(np.abs(errors) / sd, FARTHEST)
     beyond = np.where((size > FAR) & (np.abs(errors) > least), size, 0.0) ** 2
     brief = np.count_nonzero(beyond) >= FEWEST_FAR and float(np.mean(beyond)) > BRIEF

@@ -11,7 +11,7 @@ from tsas_cli.diagnosis.beside_others import (
     may_be_anywhere,
 )
 from tsas_cli.diagnosis.constancy import Split, absorbed_by, beside_tolerances, worst_split
-from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain, gain_percent
+from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain_percent
 from tsas_cli.diagnosis.friction_scatter import scatter_is_no_effect, within_scatter
 from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses, judged_sets, reweighted_hypotheses
@@ -25,7 +25,7 @@ from tsas_cli.diagnosis.proof import (
     of_one_size,
     split_in_words,
 )
-from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
+from tsas_cli.diagnosis.refitted import HeldOutFit, gain_anywhere, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
@@ -167,7 +167,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     own = [e for e in estimates if e.name.startswith(f"{name}.")]
     ids = tuple(run.run.run.id for run in judged.bench.closed)
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids, last.tolerated)
-    again = gain(fewer.squares, all_of_them.squares)
+    again = gain_anywhere(fewer, all_of_them)
     zero = _may_be_zero(last, name)
     failed = failures(
         *(name, own, again, fewer, all_of_them),

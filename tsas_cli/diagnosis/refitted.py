@@ -6,17 +6,20 @@ a plausible friction of its own where that is mere scatter, as its own preload a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER
 from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
-from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 
 @dataclass(frozen=True)
@@ -25,13 +28,33 @@ class HeldOutFit:
 
     `rmse` is the RMS of each channel, in its unit, `normalised` that over its noise where the noise
     rules, not a steep reversal, `by_run` the RMS of each run's number and channel; `squares` the
-    sum of squares of the weighted residuals in each block, shape (blocks,).
+    sum of squares of the weighted residuals in each block, shape (blocks,), and `raw_squares` that
+    of each channel's errors in its unit.
     """
 
     rmse: dict[str, float]
     normalised: dict[str, float]
     squares: Floats
     by_run: dict[tuple[int, str], float]
+    raw_squares: dict[str, Floats] = field(default_factory=dict)
+
+
+def gain_anywhere(without: HeldOutFit, with_it: HeldOutFit) -> Reduction:
+    """Return the reduction of the weighted squares, or if only that is convincing, of the raw ones.
+
+    What has the shape of a misplaced reversal has next to no weight, however large it is and
+    however often it comes; each channel then counts by what it has without the effect.
+    """
+    weighted = gain(without.squares, with_it.squares)
+    if weighted.convincing or not without.raw_squares:
+        return weighted
+    sums = {name: float(of.sum()) for name, of in without.raw_squares.items()}
+    before, after = (
+        np.sum([fit.raw_squares[name] / total for name, total in sums.items()], axis=0)
+        for fit in (without, with_it)
+    )
+    raw = gain(before, after)
+    return raw if raw.convincing else weighted
 
 
 def refitted(
@@ -45,6 +68,7 @@ def refitted(
     raw: dict[tuple[int, str], list[Floats]] = {}
     over_noise: dict[str, list[Floats]] = {}
     weighted = np.empty(folds.fold.size)
+    raw_squares = {name: np.zeros(folds.blocks) for name in bench.channels}
     starts = np.concatenate(([0], np.cumsum(trial.sizes)))
     for fold in range(int(folds.fold.max()) + 1):
         held_out = np.split(folds.fold == fold, starts[1:-1])
@@ -59,6 +83,8 @@ def refitted(
             rig = rig_at(bench.rigs[k], k, trial.unknowns, own)
             here = weighted[starts[k] : starts[k + 1]]
             here[held_out[k]] = run.residuals(rig)[held_out[k]]
+            block = folds.block[starts[k] : starts[k + 1]]
+            _add_raw_squares(raw_squares, run, rig, held_out[k], block)
             for name, errors in run.raw(rig).items():
                 there = run.spread(name, held_out[k])
                 raw.setdefault((k, name), []).append(errors[there])
@@ -70,7 +96,18 @@ def refitted(
     }
     normalised = {name: rms_of(parts) for name, parts in over_noise.items()}
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
-    return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run)
+    return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run, raw_squares)
+
+
+def _add_raw_squares(
+    squares: dict[str, Floats], run: RunErrors, rig: Rig, chosen: Mask, block: Indices
+) -> None:
+    """Add the squares of a run's unweighted errors in each block, of the chosen residuals."""
+    start = 0
+    for name, of_channel in run.raw_squares(rig).items():
+        here = slice(start, start + of_channel.size)
+        np.add.at(squares[name], block[here], of_channel * chosen[here])
+        start += of_channel.size
 
 
 def _with_own_friction(
