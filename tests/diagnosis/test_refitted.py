@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from tsas_cli.diagnosis import refitted as module
 from tsas_cli.diagnosis.held_out import folds_of, held_out_values
-from tsas_cli.diagnosis.refitted import refitted, refitted_values
+from tsas_cli.diagnosis.refitted import HeldOutFit, gain_anywhere, refitted, refitted_values
 from tsas_cli.identification.fit import Unknown, solve
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
@@ -56,7 +56,10 @@ def fitted():
     )
     rig_at = lambda rig, k, names, values: {"rate": values[0], "offset": values[1 + k]}  # noqa: E731
     bench = SimpleNamespace(
-        rigs=[None] * RUNS, errors_for=lambda trial: runs, tolerance_at=lambda mean_square: 1e-5
+        rigs=[None] * RUNS,
+        channels=["f_in_N"],
+        errors_for=lambda trial: runs,
+        tolerance_at=lambda mean_square: 1e-5,
     )
     found = solve(
         unknowns, RUNS, lambda k, v: runs[k].residuals(rig_at(None, k, (), v)), tolerance=1e-10
@@ -105,6 +108,22 @@ def test_errors_are_those_of_each_run_predicted_by_the_others(fitted):
     assert found.rmse["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
     last = found.squares[-4:].sum() * NOISE**2
     assert last == pytest.approx(float(errors[3] @ errors[3]), rel=1e-2)
+    np.testing.assert_allclose(found.raw_squares["f_in_N"], found.squares * NOISE**2)
+
+
+def errors_of(weighted, raw):
+    return HeldOutFit({}, {}, np.array(weighted), {}, {"f_in_N": np.array(raw)})
+
+
+@pytest.mark.parametrize(("raw", "part"), [(2.0, 0.8), (9.9, 0.1), (11.0, 0.1)])
+def test_what_has_no_weight_is_a_gain_where_most_of_the_raw_squares_go(raw, part):
+    """Where the weighted squares fall in half of the blocks alone, by a tenth of all."""
+    without, with_it = errors_of([10.0] * 8, [10.0] * 8), errors_of([7.0, 11.0] * 4, [raw] * 8)
+    found = gain_anywhere(without, with_it)
+    assert found.part == pytest.approx(part)
+    assert found.convincing is (raw == 2.0)
+    clear = errors_of([5.0] * 8, [raw] * 8)
+    assert gain_anywhere(without, clear).part == pytest.approx(0.5)
 
 
 def test_a_held_out_run_has_a_plausible_friction_of_its_own(fitted):

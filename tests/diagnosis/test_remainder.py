@@ -23,7 +23,7 @@ class Run:
     """A run with errors at its samples, or at some of them."""
 
     def __init__(self, errors, time_s=TIME_S, x=X, reversals=REVERSALS, samples=None):
-        drive = SimpleNamespace(values=x, reversals=reversals)
+        drive = SimpleNamespace(values=x, reversals=reversals, step=0.002)
         self.run = SimpleNamespace(
             time_s=time_s,
             drive_column="x_in_mm",
@@ -170,6 +170,9 @@ def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not
     assert _is_brief(some)
     assert not _is_brief(np.where(np.arange(noise.size) % 3 == 0, noise, 0.0))  # mostly the same
     assert not any(map(_is_brief, (noise, 2.0 * noise, noise + slow, few)))
+    mostly_less = np.where(np.arange(noise.size) % 25 < 13, 0.1, 1.6) * noise
+    assert float(np.mean(mostly_less**2)) > 1.15
+    assert not _is_brief(mostly_less)  # than the weights say
 
 
 @pytest.mark.parametrize(

@@ -28,8 +28,10 @@ def made(monkeypatch):
     return search_over(monkeypatch)
 
 
-@pytest.mark.parametrize(("period_mm", "part"), [(19.9, False), (20.1, True)])
-def test_a_wave_longer_than_the_strokes_is_part_of_one(period_mm, part):
+@pytest.mark.parametrize(("period_mm", "part"), [(13.3, False), (13.4, True)])
+def test_a_wave_that_the_strokes_hold_less_than_one_and_a_half_times_is_part_of_one(
+    period_mm, part
+):
     bench = SimpleNamespace(longest_stroke_mm=20.0)
     trial = SimpleNamespace(values=lambda: {"load_ripple.period_mm": period_mm})
     assert s._is_part_of_a_wave(bench, trial, OF["load_ripple"]) == part

@@ -16,6 +16,7 @@ LEAST_DIFFERENCE = 0.01  # least reduction of the squares that distinguishes a c
 LEAST_REDUCTION_PER_COMPLEXITY = (
     0.03  # least reduction of the squares by a cause with more parameters than another
 )
+REPEATS = 1.5  # periods of a wave in the longest stroke: any curve is a part of fewer
 RESAMPLED = 2000  # bootstrap samples
 
 

@@ -15,7 +15,7 @@ from typing import Self
 import numpy as np
 
 from tsas_cli.diagnosis.constancy import Split
-from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.evidence import REPEATS, Reduction
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.diagnosis.signals import RUN, signal_in_words
 from tsas_cli.effects import EFFECTS, Effect, Parameter
@@ -108,9 +108,10 @@ def failures(
         values = [f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in known.items()]
         out.append(f"may not be there: {', '.join(values) or 'nothing is known of its size'}")
     out += [
-        f"has a period of {e.value:.3g} mm, longer than the strokes of {stroke_mm:.3g} mm"
+        f"has a period of up to {longest:.3g} mm, which strokes of {stroke_mm:.3g} mm hardly repeat"
         for name, e in own.items()
-        if parameters[name].period and e.value > stroke_mm
+        if parameters[name].period
+        and REPEATS * (longest := max(e.value, e.interval_high or 0.0)) > stroke_mm
     ]
     if effect in BOTH_SENSORS:
         out += _alike_in_both(effect, [e for e in sizes.values() if not e.at_bound], zero=zero)

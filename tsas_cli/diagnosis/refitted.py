@@ -17,9 +17,8 @@ from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
-from tsas_cli.identification.run_errors import RunErrors
-from tsas_cli.physics.rig import Rig
-from tsas_cli.support.arrays import Floats, Indices, Mask
+from tsas_cli.identification.run_simulation import mean_edges
+from tsas_cli.support.arrays import Floats, Mask
 
 
 @dataclass(frozen=True)
@@ -81,11 +80,15 @@ def refitted(
                 known = held_out[k] if folds.by_run else ~held_out[k]
                 own = _with_own_friction(bench, trial, values, k, known)
             rig = rig_at(bench.rigs[k], k, trial.unknowns, own)
-            here = weighted[starts[k] : starts[k + 1]]
-            here[held_out[k]] = run.residuals(rig)[held_out[k]]
-            block = folds.block[starts[k] : starts[k + 1]]
-            _add_raw_squares(raw_squares, run, rig, held_out[k], block)
+            of_run = weighted[starts[k] : starts[k + 1]]
+            of_run[held_out[k]] = run.residuals(rig)[held_out[k]]
+            first = starts[k]
             for name, errors in run.raw(rig).items():
+                of_means = np.add.reduceat(errors**2, mean_edges(errors.size))
+                here = slice(first, first + of_means.size)  # residuals of this channel
+                chosen = of_means * (folds.fold[here] == fold)
+                raw_squares[name] += np.bincount(folds.block[here], chosen, folds.blocks)
+                first += of_means.size
                 there = run.spread(name, held_out[k])
                 raw.setdefault((k, name), []).append(errors[there])
                 over_noise.setdefault(name, []).append(run.over_noise(name, errors, there))
@@ -97,17 +100,6 @@ def refitted(
     normalised = {name: rms_of(parts) for name, parts in over_noise.items()}
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
     return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run, raw_squares)
-
-
-def _add_raw_squares(
-    squares: dict[str, Floats], run: RunErrors, rig: Rig, chosen: Mask, block: Indices
-) -> None:
-    """Add the squares of a run's unweighted errors in each block, of the chosen residuals."""
-    start = 0
-    for name, of_channel in run.raw_squares(rig).items():
-        here = slice(start, start + of_channel.size)
-        np.add.at(squares[name], block[here], of_channel * chosen[here])
-        start += of_channel.size
 
 
 def _with_own_friction(

@@ -17,6 +17,7 @@ import numpy as np
 from tsas_cli.diagnosis.evidence import (
     LEAST_REDUCTION,
     LEAST_REDUCTION_PER_COMPLEXITY,
+    REPEATS,
     Reduction,
 )
 from tsas_cli.diagnosis.fits import Fits
@@ -126,10 +127,10 @@ def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reducti
 
 
 def _is_part_of_a_wave(bench: Bench, trial: HypothesisFit, effect: Effect) -> bool:
-    """Return whether an effect is a wave whose period is longer than the strokes: any curve is."""
+    """Return whether an effect is a wave that the strokes do not repeat: any curve is."""
     if effect.period is None:
         return False
-    return trial.values()[effect.period] > bench.longest_stroke_mm
+    return REPEATS * trial.values()[effect.period] > bench.longest_stroke_mm
 
 
 def _better(fits: Fits, names: Names) -> list[Names]:

@@ -122,10 +122,6 @@ class RunErrors:
         """Return means of neighbouring residuals, scaled to unit variance, channel by channel."""
         return _means(self.errors(rig))
 
-    def raw_squares(self, rig: Rig) -> dict[str, Floats]:
-        """Return the squares of the unweighted errors of each channel, summed as the residuals."""
-        return {n: np.add.reduceat(e**2, mean_edges(e.size)) for n, e in self.raw(rig).items()}
-
     def changed(self, changes: Mapping[str, Floats]) -> Floats:
         """Return the change of the residuals where predicted minus measured changes by so much.
 
