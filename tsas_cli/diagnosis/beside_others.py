@@ -7,11 +7,13 @@ from tsas_cli.diagnosis.remainder import Remainder, share_left
 from tsas_cli.effects.channel_delay import CHANNEL_DELAY
 from tsas_cli.effects.sensor_lag import SENSOR_LAG
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.support.wording import listed
 
 SENSORS = ("f_in", "f_out", "x_out")
 MOST_OF_A_SENSOR = 2  # errors of one sensor; more are a law of it that the catalogue lacks
 HARMONIC = 0.1  # relative, of the ratio of two periods
 PARTS = 4  # of a rig that effects act at: drive, tendon, load, sensors
+SOME_PARTS = 3  # of them, where more than noise is left
 MOST_LEFT = 0.1  # of what could be explained, by all causes together
 TIMES = (CHANNEL_DELAY.name, SENSOR_LAG.name)
 OPPOSITE = 0.3  # of a lag, that a lead differs from it by at most
@@ -90,14 +92,18 @@ def beside_what_is_left(
 ) -> FoundCause:
     """Return a cause, refused where much is left: an effect that is alike may take the rest too.
 
-    A delay by less than half a sample interval is where anything is left: what is wrong at each
-    reversal looks so.
+    So may what effects of three parts of a rig do as well. A delay by less than half a sample
+    interval is where anything is left: what is wrong at each reversal looks so.
     """
     if after.complete:
         return cause
     left = share_left(start, after)
     if left > MOST_LEFT:
         cause = cause.refused(f"leaves {100.0 * left:.0f} % of what could be explained")
+    parts = parts_of((cause.effect, *cause.rivals))
+    if len(parts) >= SOME_PARTS:
+        said = f"does what effects of the {listed(sorted(parts))} do as well, and more is wrong"
+        cause = cause.refused(said)
     if cause.effect == CHANNEL_DELAY.name and all(
         abs(e.value) < 0.5 * interval_s for e in cause.parameters
     ):
@@ -107,7 +113,12 @@ def beside_what_is_left(
 
 def may_be_anywhere(names: Iterable[str]) -> bool:
     """Return whether effects that are indistinguishable act at every part of a rig."""
-    return len({BY_NAME[name].acts_on for name in names}) == PARTS
+    return len(parts_of(names)) == PARTS
+
+
+def parts_of(names: Iterable[str]) -> set[str]:
+    """Return the parts of a rig that effects act at."""
+    return {BY_NAME[name].acts_on for name in names}
 
 
 def may_be_of_the_law_of(effect: str, other: str) -> bool:
