@@ -4,7 +4,7 @@ What one sees: x_out moves less than predicted, by an amount in proportion to th
 bands are softer in f_in over x_in (proximal length), loaded slopes fall slightly (both).
 Equation: a free length l under tension F is longer by (F − F0) l/(EA), Hooke's law as in Yang
 2025, Eq. (3), without friction. The paper supposes this effect under its Fig. 4 and does not
-test it.
+test it. A sheath that is straight at an end, where the tendon hardly rubs, adds to that length.
 Mistaken for: drive_compliance (the same as a proximal length, c = l/EA); sheath_compression, a
 lower tendon modulus (recordings with two sheath lengths separate them); position_sensor_gain
 (x_out over f_out is wrong too); a soft load spring.
