@@ -152,6 +152,19 @@ def test_what_is_the_same_for_both_sensors_may_be_of_the_tendon(effect, paramete
     name = f"force_sensor_{effect}"
     both = [estimate(f"{name}.{f}_{parameter}", 0.01, 0.009, 0.011) for f in ("f_in", "f_out")]
     assert bool(failures(name, both, CLEAR, SAME, SAME)) == refused
+
+
+@pytest.mark.parametrize(("f_out", "refused"), [(0.0104, True), (0.02, False)])
+def test_of_two_drifts_only_one_that_is_there_is_compared_between_sensors(f_out, refused):
+    """Within the runs nothing is known of either; over the session both are."""
+    drifts = [
+        estimate(f"force_sensor_drift.{name}_N_per_s", size, size - apart, size + apart)
+        for name, size, apart in (
+            *(("f_in_rate", 0.001, 1.0), ("f_out_rate", 0.001, 1.0)),
+            *(("f_in_session_rate", 0.01, 0.001), ("f_out_session_rate", f_out, 0.001)),
+        )
+    ]
+    assert bool(failures("force_sensor_drift", drifts, CLEAR, SAME, SAME)) == refused
     apart = [replace(both[0], value=0.0099), replace(both[1], value=0.0085)]
     assert failures(name, apart, CLEAR, SAME, SAME) == ()
     unsure = [replace(e, interval_low=0.004, interval_high=0.012) for e in apart]

@@ -36,6 +36,7 @@ ALIKE = 0.1  # relative difference of two sensors' errors within which they are 
 # c added to both, a force along the way that the tendon passes on is a tilt of both, a load that
 # softens takes a share of both.
 BOTH_SENSORS = {
+    "force_sensor_drift": "friction that changes and does not vanish with the tension",
     "force_sensor_gain_drift": "a load whose stiffness changes",
     "force_sensor_offset": "friction that does not vanish with the tension",
     "force_sensor_tilt": "a force along the way of the tendon",
@@ -114,15 +115,21 @@ def failures(
         and REPEATS * (longest := max(e.value, e.interval_high or 0.0)) > stroke_mm
     ]
     if effect in BOTH_SENSORS:
-        out += _alike_in_both(effect, [e for e in sizes.values() if not e.at_bound], zero=zero)
+        for pair in _of_both_sensors({n: e for n, e in sizes.items() if not e.at_bound}):
+            out += _alike_in_both(effect, pair, zero=zero)
     out += _worse_channels(without, with_it, tolerance_N or {})
     return tuple(out)
 
 
-def _alike_in_both(effect: str, sensors: Sequence[Estimate], *, zero: bool) -> list[str]:
+def _of_both_sensors(sizes: Mapping[str, Estimate]) -> list[tuple[Estimate, Estimate]]:
+    """Return the sizes of both force sensors; of several kinds those that are not zero."""
+    others = {name: sizes.get(name.replace("f_in", "f_out", 1)) for name in sizes if "f_in" in name}
+    pairs = [(sizes[name], other) for name, other in others.items() if other is not None]
+    return [pair for pair in pairs if len(pairs) == 1 or not all(e.holds(0.0) for e in pair)]
+
+
+def _alike_in_both(effect: str, sensors: tuple[Estimate, Estimate], *, zero: bool) -> list[str]:
     """Return that both force sensors are wrong by the same amount, where they are or may be."""
-    if len(sensors) < 2:
-        return []
     both = [e.value for e in sensors]
     apart, size = np.ptp(both), abs(np.mean(both))
     near, unsure = apart < ALIKE * size, not zero and all(e.holds(*both) for e in sensors)
