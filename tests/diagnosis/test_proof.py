@@ -153,6 +153,15 @@ def test_what_is_the_same_for_both_sensors_may_be_of_the_tendon(effect, paramete
     both = [estimate(f"{name}.{f}_{parameter}", 0.01, 0.009, 0.011) for f in ("f_in", "f_out")]
     assert bool(failures(name, both, CLEAR, SAME, SAME)) == refused
 
+    apart = [replace(both[0], value=0.0099), replace(both[1], value=0.0085)]
+    assert failures(name, apart, CLEAR, SAME, SAME) == ()
+    unsure = [replace(e, interval_low=0.004, interval_high=0.012) for e in apart]
+    failed = failures(name, unsure, CLEAR, SAME, SAME)
+    assert bool(failed) == refused
+    far = [unsure[0], replace(unsure[1], value=0.0079)]
+    assert failures(name, far, CLEAR, SAME, SAME) == ()
+    assert not failed or failed[0].startswith("may be the same for both sensors (0.0099 and 0.0085")
+
 
 @pytest.mark.parametrize(("f_out", "refused"), [(0.0104, True), (0.02, False)])
 def test_of_two_drifts_only_one_that_is_there_is_compared_between_sensors(f_out, refused):
@@ -165,14 +174,6 @@ def test_of_two_drifts_only_one_that_is_there_is_compared_between_sensors(f_out,
         )
     ]
     assert bool(failures("force_sensor_drift", drifts, CLEAR, SAME, SAME)) == refused
-    apart = [replace(both[0], value=0.0099), replace(both[1], value=0.0085)]
-    assert failures(name, apart, CLEAR, SAME, SAME) == ()
-    unsure = [replace(e, interval_low=0.004, interval_high=0.012) for e in apart]
-    failed = failures(name, unsure, CLEAR, SAME, SAME)
-    assert bool(failed) == refused
-    far = [unsure[0], replace(unsure[1], value=0.0079)]
-    assert failures(name, far, CLEAR, SAME, SAME) == ()
-    assert not failed or failed[0].startswith("may be the same for both sensors (0.0099 and 0.0085")
 
 
 @pytest.mark.parametrize("effect", ["drive_ripple", "load_ripple", "position_sensor_ripple"])
