@@ -34,6 +34,8 @@ def read_hysteresis(force: float, element_N: float, share: float) -> float:
     return force - share * element_N
 
 
+_LEAD = -0.2  # share at most by which a reading leads: more, over a short span, is drive_friction
+
 FORCE_SENSOR_HYSTERESIS = Effect(
     name="force_sensor_hysteresis",
     title="Hysteresis of a force sensor",
@@ -42,8 +44,8 @@ FORCE_SENSOR_HYSTERESIS = Effect(
     equation="reading = T − share·z,  dz = dT while |z| < span",
     doc=__doc__,
     parameters=(
-        Parameter("f_in_share", "1", neutral=0.0, start=0.02, lower=-0.5, upper=0.5),
-        Parameter("f_out_share", "1", neutral=0.0, start=0.02, lower=-0.5, upper=0.5),
+        Parameter("f_in_share", "1", neutral=0.0, start=0.02, lower=_LEAD, upper=0.5),
+        Parameter("f_out_share", "1", neutral=0.0, start=0.02, lower=_LEAD, upper=0.5),
         shape("span_N", "N", 10.0, lower=0.1, upper=1000.0, starts=(3.0, 10.0, 30.0)),
     ),
     experiment="Load the sensor by weights one by one and unload it the same way: half the gap "

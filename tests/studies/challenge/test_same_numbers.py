@@ -19,8 +19,8 @@ from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
 from tsas_studies.challenge.rig.tendon import simulate as run_rig
 
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")
-RATE_HZ = 100.0
-SENSORS = replace(PERFECT, rate_Hz=RATE_HZ)
+RATE_HZ, SESSION_S = 100.0, 600.0
+SENSORS = replace(PERFECT, rate_Hz=RATE_HZ, session_s=SESSION_S)
 WHOLE = motion("b", RATE_HZ)
 MOTION = Motion(WHOLE.time_s[:670], WHOLE.x_in_mm[:670])  # two periods
 _, _, RADIUS, BEND = RUNS["b"]
@@ -31,7 +31,6 @@ VIRTUAL = VirtualRig(
     cells=40,
 )
 MODEL = Rig(0.125, VIRTUAL.axial_stiffness, 1.579, RADIUS * BEND, BEND, 25.0)
-SESSION_S = 600.0
 # By how much of its RMS a change may differ: by 0.5 % from mesh to mesh, and more for a reason.
 APART = {
     "antagonist": 0.02,  # a reversal of a loop as wide as ten times that of other effects

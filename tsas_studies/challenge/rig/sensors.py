@@ -50,15 +50,15 @@ _POSITION, _FORCE = Sensor(noise=0.005, step=0.002), Sensor(noise=0.08, step=0.0
 class Sensors:
     """The sensors of a rig: one per column, and the sampling that they share.
 
-    `session_s` is the start of the run since that of the first one. `jitter_s` is the standard
-    deviation of the true sampling instants about the clock that is written down; it is cut off so
-    that instants stay in order. `f_in_of_f_out` is the share of f_out that the sensor of f_in picks
-    up, and the other way round. `f_in_tilt_per_mm` is the change of the gain of f_in with x_in,
-    that of f_out with x_out. `transducers` are what channels do before they are sampled.
+    `jitter_s` is the standard deviation of the true sampling instants about the clock that is
+    written down; it is cut off so that instants stay in order. `f_in_of_f_out` is the share of
+    f_out that the sensor of f_in picks up, and the other way round. `f_in_tilt_per_mm` is
+    the change of the gain of f_in with x_in, that of f_out with x_out. `transducers` are what
+    channels do before they are sampled. `session_s` is the start of the run since that of the
+    first one.
     """
 
     rate_Hz: float = 1000.0
-    session_s: float = 0.0
     jitter_s: float = 0.0
     x_in_mm: Sensor = _POSITION
     x_out_mm: Sensor = _POSITION
@@ -73,6 +73,7 @@ class Sensors:
     x_out_transducer: Transducer = field(default_factory=Transducer)
     f_in_transducer: Transducer = field(default_factory=Transducer)
     f_out_transducer: Transducer = field(default_factory=Transducer)
+    session_s: float = 0.0
 
 
 PERFECT = Sensors(x_in_mm=Sensor(), x_out_mm=Sensor(), f_in_N=Sensor(), f_out_N=Sensor())
