@@ -22,6 +22,7 @@ from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.manifest import Session
 from tsas_cli.support.errors import InputError
 
+NOON = "2026-05-04T12:00:00"
 SESSION = Session(datetime(2026, 5, 4, 12), datetime(2026, 5, 4, 12, 30))  # noqa: DTZ001
 
 
@@ -90,6 +91,9 @@ def test_a_range_that_cannot_be_is_one_line(tmp_path, entry, says):
     [
         ("kind = 'model'\n", "format is missing"),
         ("format = 2\n", "format: input should be 1, got 2"),
+        (f"format = 1\nsession = [{NOON}, 2026-05-04T11:59:59]\n", "session ends before it begins"),
+        (f"format = 1\nsession = [{NOON}, {NOON}Z]\n", "or one of both has a time zone"),
+        (f"format = 1\nsession = [{NOON}]\n", "session"),
         ("format = 1\nkind = 'dataset'\n", "kind: input should be 'model', got 'dataset'"),
         ("format = \n", "is not TOML"),
         ("format = 1\nparametres = 1\n", "did you mean parameters"),

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 import tomlkit
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.identification.fitted_to import FittedTo
@@ -82,6 +82,12 @@ class _ModelTables(StrictTable):
     runs: dict[str, dict[str, StoredValue]] = Field(default_factory=dict)
     bristles: dict[str, StoredValue] = Field(default_factory=dict)
     effects: dict[str, dict[str, StoredValue]] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _session_is_in_order(self) -> Self:
+        if self.session is not None and not self.session.goes_on_at(self.session.last):
+            raise ValueError("session ends before it begins, or one of both has a time zone")
+        return self
 
 
 def write_model(
