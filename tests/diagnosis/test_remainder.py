@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.moments import _is_brief, _is_late
+from tsas_cli.diagnosis.moments import _is_brief, _is_late, at_moments
 from tsas_cli.diagnosis.remainder import Remainder, SlowPart, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
@@ -34,12 +34,13 @@ class Run:
         self.samples = dict.fromkeys(errors, everything if samples is None else samples)
         self.weights = dict.fromkeys(errors, np.ones(time_s.size))
         self.given, self.f_in = errors, 7.0 * everything
+        self.lags, self.delay_unit = np.array([0.1, -0.2, 0.1, 0.0]), 0.001
 
     def errors(self, rig):
         return self.given
 
     def delays(self, rig):
-        return dict.fromkeys(self.given, np.array([0.1, -0.2, 0.1, 0.0]))
+        return dict.fromkeys(self.given, self.lags)
 
     def predict(self, rig):
         return {"f_in_N": self.f_in}
@@ -151,6 +152,16 @@ def test_an_error_far_above_the_noise_is_no_slow_noise():
 def test_strokes_that_all_lag_are_late(delays, late):
     assert _is_late(np.array(delays)) == late
     assert not Remainder(1.0, {}, (), late=("f_in_N",)).complete
+
+
+@pytest.mark.parametrize(
+    ("unit_mm", "late"), [(0.0019, ("f_in_N",)), (0.0022, ("f_in_N", "x_out_mm"))]
+)
+def test_a_displacement_is_late_by_more_than_a_contact_gives_way(unit_mm, late):
+    """By three units: 5.7 µm are within the elastic travel, 6.6 µm are not."""
+    run = Run({"f_in_N": noise(1), "x_out_mm": noise(2)})
+    run.lags, run.delay_unit = np.array([3.0, 3.1, 3.0, 3.1]), unit_mm
+    assert at_moments(bench_of(run), [run], [None])[0] == late
 
 
 def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():

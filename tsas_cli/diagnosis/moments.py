@@ -44,7 +44,12 @@ def at_moments(
     delays, parts = [run.delays(rig) for run, rig in pairs], [run.errors(rig) for run, rig in pairs]
     late, brief = [], []
     for name in bench.channels:
-        if _is_late(np.concatenate([run[name] for run in delays if name in run])):
+        seen = [
+            of_run[name] * (np.abs(of_run[name]) * run.delay_unit > _unseen(run, name))
+            for (run, _), of_run in zip(pairs, delays, strict=True)
+            if name in of_run
+        ]
+        if _is_late(np.concatenate(seen)):
             late.append(name)
         if any(
             _is_brief(part[name], _unseen(run, name) / run.weights[name][run.samples[name]])

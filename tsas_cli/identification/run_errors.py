@@ -104,11 +104,16 @@ class RunErrors:
                     squares[name] += (moved[name] - plain[name])[at] ** 2 / len(draws)
         return {name: np.sqrt(values) for name, values in squares.items()}
 
+    @property
+    def delay_unit(self) -> float:
+        """The unit of `delays`: `REVERSAL_SD` standard deviations of the driving end."""
+        return REVERSAL_SD * float(np.median(self.run.conditioned[self.run.drive_column].sd))
+
     def delays(self, rig: Rig) -> dict[str, Floats]:
         """Return by how much each stroke lags behind the model's, in each channel.
 
-        In units of `REVERSAL_SD` standard deviations of the driving end, shape (strokes,): what
-        the weighted residuals leave out as an error of the position of a reversal.
+        In units of `delay_unit`, shape (strokes,): what the weighted residuals leave out as an
+        error of the position of a reversal.
         """
         out = {}
         for name, errors in self.errors(rig).items():
