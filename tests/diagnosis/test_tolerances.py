@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.physics.references import GROUP_A
 from tsas_cli.diagnosis.friction_scatter import is_in_line, is_scatter, within_scatter
 from tsas_cli.diagnosis.held_out import folds_of, held_out_squares
 from tsas_cli.diagnosis.tolerances import (
@@ -14,9 +15,11 @@ from tsas_cli.diagnosis.tolerances import (
     with_tolerances,
     within_tolerances,
     without_tolerances,
+    zeros_are_tolerated,
 )
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.physics.rig import with_values
 
 RUNS, ROWS = 4, 500
 RUN = np.repeat(np.arange(RUNS), ROWS)
@@ -138,6 +141,28 @@ def test_what_a_free_parameter_does_is_not_left_out_for_a_second_time():
 def test_an_effect_that_does_what_a_plausible_load_cell_does_is_within_tolerances(amount, within):
     trial = fit(amount * CELL, (CROSSTALK, CELL))
     assert within_tolerances(trial, "force_crosstalk", CELL[:, None], 0.0) == within
+
+
+@pytest.mark.parametrize(
+    ("parameter", "rate", "tolerated"),
+    [
+        ("f_in_session_rate_N_per_s", -0.9e-4, True),
+        ("f_in_session_rate_N_per_s", -1.1e-4, False),
+        ("f_in_rate_N_per_s", 0.0049, True),
+        ("f_in_rate_N_per_s", 0.0051, False),
+        ("f_out_rate_N_per_s", 1.0, True),  # nobody reads that sensor
+    ],
+)
+def test_a_zero_that_moves_by_two_thousandths_of_the_largest_force_is_a_tolerance(
+    parameter, rate, tolerated
+):
+    """0.1 N of 50 N, after 1000 s of the session or in 20 s of a run."""
+    forces = {"f_in_N": np.array([-50.0, 20.0])}
+    recorded = SimpleNamespace(measured=forces, session_s=1000.0, time_s=np.array([3.0, 23.0]))
+    run = SimpleNamespace(run=recorded, samples={"f_in_N": np.array([0, 1])})
+    rig = with_values(GROUP_A, {f"force_sensor_drift.{parameter}": rate})
+    bench = SimpleNamespace(closed=[run], channels=("f_in_N",), rig=lambda trial, k: rig)
+    assert zeros_are_tolerated(bench, None) == tolerated
 
 
 def test_an_effect_of_another_shape_is_not_within_tolerances():

@@ -34,8 +34,10 @@ from tsas_cli.diagnosis.tolerances import (
     largest_forces,
     tolerances,
     within_tolerances,
+    zeros_are_tolerated,
 )
 from tsas_cli.diagnosis.tolerated_travel import is_tolerated, with_tolerated_travel
+from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
@@ -186,6 +188,8 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     reduction = float(fewer.squares.sum() - all_of_them.squares.sum())
     if name == PRESLIDING:
         tolerated = is_tolerated(judged.bench, judged.trial(named))
+    elif name == FORCE_SENSOR_DRIFT.name and zeros_are_tolerated(judged.bench, judged.trial(named)):
+        tolerated = True
     else:
         tolerated = within_tolerances(judged.trial(named), name, last.tolerated, reduction)
     if tolerated:

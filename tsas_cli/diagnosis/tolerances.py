@@ -5,12 +5,14 @@ few micrometres and not at once, a sheath that is bent unevenly; beside them the
 run (`friction_scatter`).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER, friction_of_runs
+from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
@@ -28,6 +30,8 @@ GROWTH = f"{PRESLIDING}.growth"
 TRAVEL, TRAVEL_MM = f"{PRESLIDING}.length_mm", 0.003  # asperities of metal give way by so much
 LONGEST_MM = PLAUSIBLE * TRAVEL_MM
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
+ZERO = 0.001  # the same of its zero, from run to run
+FORCES = "f_in_N", "f_out_N"
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.
 LOAD_CELLS = {
@@ -174,6 +178,20 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduct
     plausible = bool(np.all(np.abs(amounts) <= PLAUSIBLE))
     squares = float(change @ change)
     return plausible and squares - float(left @ left) > 0.5 * max(squares, reduction)
+
+
+def zeros_are_tolerated(bench: Bench, trial: HypothesisFit) -> bool:
+    """Return whether force sensors drift by no more than a zero that nobody sets again does."""
+    largest = largest_forces(bench)
+    for k, run in enumerate(bench.closed):
+        drift, time_s = bench.rig(trial, k).effects.force_sensor_drift, run.run.time_s
+        session_rates = drift.f_in_session_rate_N_per_s, drift.f_out_session_rate_N_per_s
+        for name, rate, session_rate in zip(FORCES, drift[:2], session_rates, strict=True):
+            start = drift_reading(0.0, session_rate, 0.0, run.run.session_s)
+            end = drift_reading(start, rate, drift.settling_per_s, float(time_s[-1] - time_s[0]))
+            if max(abs(start), abs(end)) > PLAUSIBLE * ZERO * largest.get(name, math.inf):
+                return False
+    return True
 
 
 def with_tolerances(trial: HypothesisFit, tolerated: Floats) -> HypothesisFit:
