@@ -57,8 +57,7 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
     "drive_damping": (sized(coefficient_N_s_per_mm=0.1),),
     "force_sensor_curvature": (sized(False, f_in_per_N=1e-3), sized(False, f_out_per_N=1e-3)),
     "force_sensor_hysteresis": (
-        sized(False, f_in_share=0.1, span_N=(5.0, 15.0)),
-        sized(False, f_out_share=0.1, span_N=(5.0, 15.0)),
+        sized(f_in_share=0.1, span_N=(5.0, 15.0)), sized(f_out_share=0.1, span_N=(5.0, 15.0)),
     ),
     "force_crosstalk": (sized(False, f_in_of_f_out=0.04), sized(False, f_out_of_f_in=0.04)),
     "force_sensor_gain_drift": (
