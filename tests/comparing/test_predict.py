@@ -14,7 +14,7 @@ from tests.comparing.made import NOMINAL, ROUGH, recorded
 from tests.counted import Counted
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.recordings.manifest import Session
+from tsas_cli.recordings.session import Session
 from tsas_cli.recordings.writing import columns_of
 
 CHANNELS = ["f_in_N", "f_out_N", "x_out_mm"]
@@ -142,11 +142,7 @@ def test_another_bend_is_outside_the_range_and_the_same_rig_is_inside(root):
 def test_what_drifts_over_the_session_goes_on_in_recordings_of_the_same_session(root, tmp_path):
     """Of runs that begin later by 1000 s, friction of 0.1 that grows by 1e-4/s is one of 0.11."""
     began = "started = 2026-05-04T12:16:40"
-    data = copied(root / "again", tmp_path, 'id = "slow"', f'{began}\nid = "slow"')
-    copied_of_both = data / "dataset.toml"
-    copied_of_both.write_text(
-        copied_of_both.read_text().replace('id = "fast"', f'{began}\nid = "fast"')
-    )
+    data = copied(root / "again", tmp_path, "[[run]]", f"[[run]]\n{began}")
     noon = datetime(2026, 5, 4, 12)  # noqa: DTZ001 # the clock of a rig has no zone
     friction = Estimate("friction_coefficient", 0.1, "1", "given")
     drift = Estimate("friction_drift.session_rate_per_s", 1e-4, "1/s", "given")

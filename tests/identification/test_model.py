@@ -10,7 +10,8 @@ from tsas_cli.identification.model import CORRECTION, Model, _axial_stiffness, d
 from tsas_cli.identification.model_file import (
     stated_model,
 )
-from tsas_cli.recordings.manifest import Manifest, Run, Session
+from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.session import Session
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.rig.tendon import Rig
 

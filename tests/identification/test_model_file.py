@@ -19,7 +19,7 @@ from tsas_cli.identification.model_file import (
     write_model,
 )
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.recordings.manifest import Session
+from tsas_cli.recordings.session import Session
 from tsas_cli.support.errors import InputError
 
 NOON = "2026-05-04T12:00:00"

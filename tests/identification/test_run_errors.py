@@ -11,15 +11,12 @@ import pytest
 from scipy.linalg import fractional_matrix_power
 
 from tests.identification.recorded import manifest, prepared
+from tsas_cli.identification.end_errors import REVERSAL_SD, advanced, beside, reversed_at_rest
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.run_errors import (
-    REVERSAL_SD,
     ReversalShapes,
     RunErrors,
-    _advanced,
-    _beside,
     _reversal_shapes,
-    _reversed_at_rest,
     run_errors,
 )
 from tsas_cli.identification.run_simulation import fitted_samples
@@ -177,7 +174,7 @@ def test_a_stroke_that_a_wrong_turn_does_not_change_keeps_its_errors():
 
 
 def test_every_stroke_is_moved_on_its_own_way():
-    moved = _advanced(conditioned(0.25)) - X
+    moved = advanced(conditioned(0.25)) - X
     assert moved.tolist() == [0.25] * 5 + [-0.25] * 4 + [0.25]
 
 
@@ -194,12 +191,12 @@ def test_where_the_drive_rests_it_may_have_turned_back(sd, step, back):
         step=step,
         window_s=2.0,
     )
-    turned = _reversed_at_rest(resting, np.arange(10.0)) - RESTING
+    turned = reversed_at_rest(resting, np.arange(10.0)) - RESTING
     expected = np.zeros(10)
     expected[[3, 5]] = -back
     expected[9] = back  # the run ends: whether it moves on is unknown
     assert turned == pytest.approx(expected)
-    assert _beside(turned) == pytest.approx(back * np.array([0, 0, 1, 1, 1, 1, 1, 0, 1, 1]))
+    assert beside(turned) == pytest.approx(back * np.array([0, 0, 1, 1, 1, 1, 1, 0, 1, 1]))
 
 
 @pytest.mark.parametrize(("hunting_mm", "count_mm"), [(0.0005, 0.001), (0.002, 0.004)])

@@ -79,7 +79,7 @@ def model(monkeypatch):
     monkeypatch.setattr(rs, "mechanics_of", lambda rig, drive: rig)
     monkeypatch.setattr(rs, "is_closed", lambda rig, drive: False)
     monkeypatch.setattr(rs, "points", lambda run: EVERY)
-    monkeypatch.setattr(r, "_reversed_at_rest", lambda conditioned, time_s: conditioned.values)
+    monkeypatch.setattr(r, "reversed_at_rest", lambda conditioned, time_s: conditioned.values)
     return made
 
 

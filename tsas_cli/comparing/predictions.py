@@ -9,10 +9,11 @@ from tsas_cli.comparing.sides import Side, same_runs
 from tsas_cli.identification.comparison import compare as simulated
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.own_values import with_own_values
-from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare, seconds_into
+from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.session import seconds_into
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.comparison import ErrorRow
@@ -81,6 +82,7 @@ class Predictions:
         """Return what a side answers to the runs of a dataset, none where it is not there."""
         if dataset is None:
             return []
+        start = None if side.model is None else side.model.session_start(dataset.manifest)
         out = []
         for run in dataset.runs:
             key = (dataset.folder.resolve(), run.id)
@@ -97,7 +99,6 @@ class Predictions:
                 out.append(ComparedRun(ready, unknown if f_in is None else f_in, columns))
             else:
                 model = _for_run(side.model, side.recordings, run)
-                start = model.session_start(dataset.manifest)
                 ready = replace(ready, session_s=seconds_into(start, run.started))
                 model = with_own_values(model, ready) if fit_own else model
                 found = simulated(ready, model, side.dynamics)

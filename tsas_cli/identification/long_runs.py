@@ -27,10 +27,16 @@ from tsas_cli.identification.prepared import (
     is_empty,
     noise_of,
     nothing_to_compare,
-    seconds_into,
 )
-from tsas_cli.numerics.conditioning import Conditioned
-from tsas_cli.numerics.conditioning_pieces import Cleaned, CleaningPlan, Samples, cleaned, plan
+from tsas_cli.numerics.conditioning_pieces import (
+    Aligned,
+    Cleaned,
+    CleaningPlan,
+    Samples,
+    cleaned,
+    joined,
+    plan,
+)
 from tsas_cli.physics.by_pieces import simulate_pieces
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import Dynamics
@@ -41,8 +47,9 @@ from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.run_files import RunColumns
+from tsas_cli.recordings.session import seconds_into
 from tsas_cli.recordings.writing import parquet_writer, table_of
-from tsas_cli.support.arrays import Floats, Indices, Mask
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
 
 FEW = 16  # samples of a stroke, below which no transition is detected (`phases`)
@@ -81,7 +88,7 @@ class LongRun:
         """Yield the cleaned rows of the run in order, a piece at a time."""
         overlap = int(OVERLAP_SHARE * reading.MOST_ROWS)
         streams = {
-            name: _Aligned(cleaned(_samples(self.columns, name, 2 * overlap), overlap, known))
+            name: Aligned(cleaned(_samples(self.columns, name, 2 * overlap), overlap, known))
             for name, known in self.plans.items()
         }
         for piece in pieces(self.columns, [TIME, *self.noise]):
@@ -99,7 +106,7 @@ class LongRun:
         """Return the run for a fit, from the rows returned by `thin`."""
         time_s = np.concatenate([rows.time_s for rows in thinned_rows])
         conditioned = {
-            name: _conditioned([rows.cleaned[name] for rows in thinned_rows], known, time_s.size)
+            name: joined([rows.cleaned[name] for rows in thinned_rows], known, time_s.size)
             for name, known in self.plans.items()
         }
         measured = {
@@ -194,53 +201,6 @@ def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, float]:
 def _samples(run: RunColumns, name: str, overlap: int) -> Iterator[Samples]:
     for piece in pieces(run, [TIME, name], overlap=overlap):
         yield piece.start, piece.columns[TIME], piece.columns[name]
-
-
-class _Aligned:
-    """A cleaned signal, returned in pieces of any number of rows."""
-
-    def __init__(self, stream: Iterator[Cleaned]) -> None:
-        self.stream = stream
-        self.pending = next(stream)
-
-    def take(self, rows: int) -> Cleaned:
-        """Return the next rows, with the reversals within them."""
-        waiting, count = [self.pending], self.pending.values.size
-        while count < rows:
-            waiting.append(next(self.stream))
-            count += waiting[-1].values.size
-        whole = _concatenated(waiting)
-        # The reversal that ends the final samples comes with them, but belongs to the next rows.
-        border = int(np.searchsorted(whole.reversals, whole.start + rows))
-        self.pending = _part(whole, slice(rows, None), whole.reversals[border:])
-        return _part(whole, slice(0, rows), whole.reversals[:border])
-
-
-def _part(whole: Cleaned, rows: slice, reversals: Indices) -> Cleaned:
-    return Cleaned(whole.start + (rows.start or 0), whole.samples[:, rows], reversals)
-
-
-def _concatenated(parts: Sequence[Cleaned]) -> Cleaned:
-    return Cleaned(
-        parts[0].start,
-        np.hstack([part.samples for part in parts]),
-        np.concatenate([part.reversals for part in parts]),
-    )
-
-
-def _conditioned(parts: Sequence[Cleaned], known: CleaningPlan, size: int) -> Conditioned:
-    starts = np.cumsum([0, *(part.values.size for part in parts)])
-    reversals = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
-    whole = _concatenated(parts)
-    return Conditioned(
-        whole.values,
-        whole.sd,
-        whole.unseen,
-        known.window_s,
-        known.noise,
-        np.unique(np.concatenate(([0], *reversals, [size - 1]))),
-        known.smallest_reversal,
-    )
 
 
 def simulate_long(

@@ -10,7 +10,8 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import NOMINAL, QUANTITIES
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.recordings.manifest import Manifest, RigSheet, Run, Session
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
+from tsas_cli.recordings.session import Session
 from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:

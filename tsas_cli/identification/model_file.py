@@ -13,7 +13,8 @@ from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import read_from
-from tsas_cli.recordings.manifest import Manifest, Session, parse, read_toml
+from tsas_cli.recordings.manifest import Manifest, parse, read_toml
+from tsas_cli.recordings.session import Session
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range

@@ -15,6 +15,7 @@ from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Load, Run
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
+from tsas_cli.recordings.session import seconds_into
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
 
@@ -133,13 +134,6 @@ def drive_of(
         session_s=session_s,
         motor_mm=motor_mm,
     )
-
-
-def seconds_into(session_start: datetime | None, started: datetime | None) -> float:
-    """Return the start of a run since that of its dataset's first, 0 where it is unknown [s]."""
-    if session_start is None or started is None:
-        return 0.0
-    return (started - session_start).total_seconds()
 
 
 def prepare(

@@ -9,11 +9,11 @@ uncertain, and is reduced accordingly.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from tsas_cli.identification.end_errors import REVERSAL_SD, advanced, beside, reversed_at_rest
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_simulation import (
     Predictions,
@@ -24,7 +24,6 @@ from tsas_cli.identification.run_simulation import (
     run_simulation,
     with_steps_at,
 )
-from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
@@ -32,7 +31,6 @@ from tsas_cli.support.arrays import Floats, Indices, Mask
 
 LEAST_NOISE = 1e-9  # of a channel, in its unit
 STEEP = 2.0  # times a channel's noise: a standard deviation that is that of the driven ends
-REVERSAL_SD = 3.0  # error of the position of a reversal, in standard deviations
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the correlation length of a cleaned drive's error
 
 
@@ -229,15 +227,15 @@ def _weighted(
     for column in drive_last:
         conditioned = run.conditioned[column]
         end = "values" if column == run.drive_column else "load_values"
-        moved = predict_driven(simulation, rig, **{end: _advanced(conditioned)})
+        moved = predict_driven(simulation, rig, **{end: advanced(conditioned)})
         with_small_reversals = conditioned.values + conditioned.unseen
         disturbed = predict_driven(simulation, rig, **{end: with_small_reversals})
-        with_reversals_at_rest = _reversed_at_rest(conditioned, run.time_s)
+        with_reversals_at_rest = reversed_at_rest(conditioned, run.time_s)
         hidden = predict_driven(simulation, rig, **{end: with_reversals_at_rest})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
             values += change[name] ** 2 + (disturbed[name] - plain[name]) ** 2
-            values += _beside(hidden[name] - plain[name]) ** 2
+            values += beside(hidden[name] - plain[name]) ** 2
     weights = {name: np.sqrt(values) for name, values in square.items()}
     reversals = run.conditioned[run.drive_column].reversals
     turns = {
@@ -267,39 +265,3 @@ def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:
     """Return the blocks of each run's residuals at its rig, enough of them in total."""
     longest = sum(run.length for run in runs) // FEWEST_BLOCKS
     return [run.blocks(rig, longest) for run, rig in zip(runs, rigs, strict=True)]
-
-
-def _reversed_at_rest(conditioned: Conditioned, time_s: Floats) -> Floats:
-    """Return the values with every other sample moved back where the drive hardly moves.
-
-    There it may have reversed unseen, by an error or by a quantisation step, as a drive does whose
-    controller hunts. Friction along the sheath makes of a micrometre a large part of the loop.
-    """
-    x = conditioned.values
-    samples = max(round(0.5 * conditioned.window_s / float(np.median(np.diff(time_s)))), 1)
-    padded = np.pad(x, samples, mode="edge")
-    moved = np.minimum(np.abs(padded[2 * samples :] - x), np.abs(x - padded[: -2 * samples]))
-    rests = moved < np.maximum(REVERSAL_SD * conditioned.sd, conditioned.step)
-    back = np.where(rests, np.maximum(conditioned.sd, conditioned.step), 0.0)
-    back[::2] = 0.0
-    for first, end in pairwise(conditioned.reversals):
-        back[first + 1 : end + 1] *= 1.0 if x[end] >= x[first] else -1.0
-    return np.asarray(x - back)
-
-
-def _beside(change: Floats) -> Floats:
-    """Return the larger change of every other sample and its neighbours."""
-    size = np.pad(np.abs(change), 1)
-    return np.asarray(np.maximum(size[1:-1], np.maximum(size[:-2], size[2:])))
-
-
-def _advanced(conditioned: Conditioned) -> Floats:
-    """Return the values with each stroke advanced by one standard deviation."""
-    moved = conditioned.values.copy()
-    for first, end in pairwise(conditioned.reversals):
-        up = conditioned.values[end] >= conditioned.values[first]
-        part = slice(
-            first + 1 if first else 0, end + 1
-        )  # a reversal belongs to the stroke that it ends
-        moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
-    return moved

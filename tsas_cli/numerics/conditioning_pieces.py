@@ -7,12 +7,17 @@ separates into two. Only a rest or a creep longer than two pieces is cut: later 
 bounded by the last value already returned.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from tsas_cli.numerics.conditioning import noise_and_memory, smallest_reversal, smooth_out
+from tsas_cli.numerics.conditioning import (
+    Conditioned,
+    noise_and_memory,
+    smallest_reversal,
+    smooth_out,
+)
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -228,3 +233,51 @@ def _over_all_rows(start: int, time_s: Floats, known: Floats, reversals: Indices
     apart_s[(before < 0) | (after >= at.size)] = np.inf
     over_all = [np.interp(time_s, at_s, column) for column in (clean, sd, smooth - clean)]
     return Cleaned(start, np.array([*over_all, apart_s]), reversals)
+
+
+class Aligned:
+    """A cleaned signal, returned in pieces of any number of rows."""
+
+    def __init__(self, stream: Iterator[Cleaned]) -> None:
+        self.stream = stream
+        self.pending = next(stream)
+
+    def take(self, rows: int) -> Cleaned:
+        """Return the next rows, with the reversals within them."""
+        waiting, count = [self.pending], self.pending.values.size
+        while count < rows:
+            waiting.append(next(self.stream))
+            count += waiting[-1].values.size
+        whole = _concatenated(waiting)
+        # The reversal that ends the final samples comes with them, but belongs to the next rows.
+        border = int(np.searchsorted(whole.reversals, whole.start + rows))
+        self.pending = _part(whole, slice(rows, None), whole.reversals[border:])
+        return _part(whole, slice(0, rows), whole.reversals[:border])
+
+
+def _part(whole: Cleaned, rows: slice, reversals: Indices) -> Cleaned:
+    return Cleaned(whole.start + (rows.start or 0), whole.samples[:, rows], reversals)
+
+
+def _concatenated(parts: Sequence[Cleaned]) -> Cleaned:
+    return Cleaned(
+        parts[0].start,
+        np.hstack([part.samples for part in parts]),
+        np.concatenate([part.reversals for part in parts]),
+    )
+
+
+def joined(parts: Sequence[Cleaned], known: CleaningPlan, size: int) -> Conditioned:
+    """Return the conditioned signal of so many rows, from all its parts in order."""
+    starts = np.cumsum([0, *(part.values.size for part in parts)])
+    reversals = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
+    whole = _concatenated(parts)
+    return Conditioned(
+        whole.values,
+        whole.sd,
+        whole.unseen,
+        known.window_s,
+        known.noise,
+        np.unique(np.concatenate(([0], *reversals, [size - 1]))),
+        known.smallest_reversal,
+    )

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from datetime import date, datetime
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 import tomlkit
 from pydantic import (
@@ -22,6 +22,7 @@ from pydantic import (
     model_validator,
 )
 
+from tsas_cli.recordings.session import Session
 from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
@@ -136,19 +137,6 @@ class Run(_ManifestTable):
         return str(path)
 
 
-class Session(NamedTuple):
-    """Starts of the first and the last run of a dataset."""
-
-    first: datetime
-    last: datetime
-
-    def goes_on_at(self, started: datetime) -> bool:
-        """Return whether a run is of it: one that starts later by no more than it has lasted."""
-        if len({at.tzinfo is None for at in (started, *self)}) > 1 or started < self.first:
-            return False
-        return started - self.last <= self.last - self.first
-
-
 class Manifest(_ManifestTable):
     """The whole manifest."""
 
@@ -173,7 +161,8 @@ class Manifest(_ManifestTable):
     @property
     def session_start(self) -> datetime | None:
         """Start of the first run; None unless all runs state theirs."""
-        return None if self.session is None else self.session.first
+        session = self.session
+        return None if session is None else session.first
 
     @model_validator(mode="after")
     def _ids_differ(self) -> "Manifest":

@@ -154,13 +154,13 @@ def calibrate(
         checked = errors_and_warnings(data, despite, step)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
-        prepared = []
+        prepared, session_start = [], data.manifest.session_start
         for run in counted.dataset.runs:
             copied = counted.copied_of(run.id)
-            if (long := open_long(data, run, data.manifest.session_start, copied)) is not None:
+            if (long := open_long(data, run, session_start, copied)) is not None:
                 prepared.append(long.prepared())  # of the samples that the fit takes
             else:
-                prepared.append(prepare(data[run.id], data.manifest.session_start, copied))
+                prepared.append(prepare(data[run.id], session_start, copied))
             step()
         for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
             step.say(sentence)

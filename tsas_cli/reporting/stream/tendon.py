@@ -15,12 +15,13 @@ import rerun.blueprint as rrb
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import read_model
-from tsas_cli.identification.prepared import prepare, seconds_into
+from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.response import Dynamics, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.recordings.session import seconds_into
 from tsas_cli.records.base import StageFile
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisFile
