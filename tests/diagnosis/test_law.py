@@ -177,7 +177,7 @@ def test_a_law_that_makes_a_run_or_a_channel_worse_is_refused(force, length, wor
             name: np.sqrt(np.mean([v**2 for (_, n), v in by_run.items() if n == name]))
             for name in ("f_in_N", "x_out_mm")
         }
-        return HeldOutFit(rmse, {}, np.zeros(0), by_run)
+        return HeldOutFit(rmse, {}, np.zeros(0), by_run, {})
 
     plain = errors((1.0, 1.0), (1.0, 1.0))
     assert _worse(plain, errors(force, length)) == worse
@@ -191,7 +191,7 @@ def test_the_share_that_exceeds_the_noise_and_the_share_that_a_law_takes(tmp_pat
 
     def held_out(squares):
         rmse = {name: floor * np.sqrt(squares) for name, floor in noise.items()}
-        return HeldOutFit(rmse, {}, np.zeros(0), {})
+        return HeldOutFit(rmse, {}, np.zeros(0), {}, {})
 
     assert _excess(noise, held_out(9.0)) == pytest.approx(8.0 / 9.0)
     assert _excess(noise, held_out(0.9)) == 0.0

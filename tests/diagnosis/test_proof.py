@@ -16,7 +16,7 @@ NOISE = {"f_in_N": 0.05, "x_out_mm": 0.01}
 
 
 def errors(rmse, noise=NOISE):
-    return HeldOutFit(rmse, {n: v / noise[n] for n, v in rmse.items()}, np.zeros(0), {})
+    return HeldOutFit(rmse, {n: v / noise[n] for n, v in rmse.items()}, np.zeros(0), {}, {})
 
 
 SAME_N_mm = {"f_in_N": 0.1, "x_out_mm": 0.01}
@@ -152,7 +152,6 @@ def test_what_is_the_same_for_both_sensors_may_be_of_the_tendon(effect, paramete
     name = f"force_sensor_{effect}"
     both = [estimate(f"{name}.{f}_{parameter}", 0.01, 0.009, 0.011) for f in ("f_in", "f_out")]
     assert bool(failures(name, both, CLEAR, SAME, SAME)) == refused
-
     apart = [replace(both[0], value=0.0099), replace(both[1], value=0.0085)]
     assert failures(name, apart, CLEAR, SAME, SAME) == ()
     unsure = [replace(e, interval_low=0.004, interval_high=0.012) for e in apart]

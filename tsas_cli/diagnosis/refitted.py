@@ -6,7 +6,7 @@ a plausible friction of its own where that is mere scatter, as its own preload a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class HeldOutFit:
     normalised: dict[str, float]
     squares: Floats
     by_run: dict[tuple[int, str], float]
-    raw_squares: dict[str, Floats] = field(default_factory=dict)
+    raw_squares: dict[str, Floats]
 
 
 def gain_anywhere(without: HeldOutFit, with_it: HeldOutFit) -> Reduction:
@@ -45,7 +45,7 @@ def gain_anywhere(without: HeldOutFit, with_it: HeldOutFit) -> Reduction:
     however often it comes; each channel then counts by what it has without the effect.
     """
     weighted = gain(without.squares, with_it.squares)
-    if weighted.convincing or not without.raw_squares:
+    if weighted.convincing:
         return weighted
     sums = {name: float(of.sum()) for name, of in without.raw_squares.items()}
     before, after = (

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsas_cli.diagnosis.friction_scatter import FRICTION, PLAUSIBLE, SCATTER, friction_of_runs
-from tsas_cli.effects.force_sensor_drift import drift_reading
+from tsas_cli.effects.force_sensor_drift import reading_in_session
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import rig_at, unknown_of
@@ -185,11 +185,10 @@ def zeros_are_tolerated(bench: Bench, trial: HypothesisFit) -> bool:
     largest = largest_forces(bench)
     for k, run in enumerate(bench.closed):
         drift, time_s = bench.rig(trial, k).effects.force_sensor_drift, run.run.time_s
-        session_rates = drift.f_in_session_rate_N_per_s, drift.f_out_session_rate_N_per_s
-        for name, rate, session_rate in zip(FORCES, drift[:2], session_rates, strict=True):
-            start = drift_reading(0.0, session_rate, 0.0, run.run.session_s)
-            end = drift_reading(start, rate, drift.settling_per_s, float(time_s[-1] - time_s[0]))
-            if max(abs(start), abs(end)) > PLAUSIBLE * ZERO * largest.get(name, math.inf):
+        ends_s = np.array([0.0, time_s[-1] - time_s[0]])
+        for sensor, name in enumerate(FORCES):
+            off = np.abs(reading_in_session(0.0, drift, sensor, ends_s, run.run.session_s))
+            if np.any(off > PLAUSIBLE * ZERO * largest.get(name, math.inf)):
                 return False
     return True
 

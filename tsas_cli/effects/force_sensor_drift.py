@@ -17,7 +17,7 @@ from typing import NamedTuple
 from tsas_cli.effects.effect import SETTLING, Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.settling import exponential_drift
-from tsas_cli.support.arrays import Values
+from tsas_cli.support.arrays import Floats, Values
 
 
 class ForceSensorDrift(NamedTuple):
@@ -34,6 +34,21 @@ class ForceSensorDrift(NamedTuple):
 def drift_reading(force: float, rate: float, settling_per_s: float, time_s: Values) -> Values:
     """Return the reading of a drifting sensor [N] at a time since the drift began."""
     return force + exponential_drift(rate, settling_per_s, time_s)
+
+
+def reading_in_session(
+    force: float, drift: ForceSensorDrift, sensor: int, time_s: Floats | None, session_s: float
+) -> Floats | float:
+    """Return the reading of a drifting sensor [N], the first (f_in) or the second one (f_out).
+
+    `time_s` counts from the start of the run, None for a run without time, and `session_s` is that
+    start since the first run's.
+    """
+    session_rates = drift.f_in_session_rate_N_per_s, drift.f_out_session_rate_N_per_s
+    start = drift_reading(force, session_rates[sensor], 0.0, session_s)
+    if drift[sensor] == 0.0 or time_s is None:
+        return start
+    return drift_reading(start, drift[sensor], drift.settling_per_s, time_s)
 
 
 FORCE_SENSOR_DRIFT = Effect(

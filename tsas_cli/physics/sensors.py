@@ -11,7 +11,7 @@ import numpy as np
 
 from tsas_cli.effects.force_crosstalk import with_crosstalk
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
-from tsas_cli.effects.force_sensor_drift import drift_reading
+from tsas_cli.effects.force_sensor_drift import reading_in_session
 from tsas_cli.effects.force_sensor_gain import read_gain
 from tsas_cli.effects.force_sensor_gain_drift import drifted_gain
 from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
@@ -178,13 +178,9 @@ def _shift(channel: Channel, time_s: Floats | None, session_s: float, rig: Rig) 
     """Return the additive error: the zero of a displacement, offset and drift of a force."""
     if channel == "x_out_mm":
         return rig.x_out_zero_mm
-    k, drift = CHANNELS.index(channel), rig.effects.force_sensor_drift
+    k = CHANNELS.index(channel)
     offset = offset_reading(0.0, rig.effects.force_sensor_offset[k])
-    session_rates = drift.f_in_session_rate_N_per_s, drift.f_out_session_rate_N_per_s
-    start = drift_reading(offset, session_rates[k], 0.0, session_s)
-    if drift[k] == 0.0 or time_s is None:
-        return start
-    return drift_reading(start, drift[k], drift.settling_per_s, time_s)
+    return reading_in_session(offset, rig.effects.force_sensor_drift, k, time_s, session_s)
 
 
 @kernel
