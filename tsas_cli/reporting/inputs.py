@@ -27,14 +27,14 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import in_subfolders, read_json
 
-STAGES: tuple[type[StageFile], ...] = (
+STAGES: tuple[type[StageFile], ...] = (  # in the order of their commands
+    ClosingFile,
+    TrackingFile,
     CheckFile,
     CalibrationFile,
     SimulationFile,
     DiagnosisFile,
     DriveFile,
-    TrackingFile,
-    ClosingFile,
     PredictionFile,
 )
 Stage = TypeVar("Stage", bound=StageFile)
