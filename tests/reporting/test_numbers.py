@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from tsas_cli.records.tracking import Spread
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned, with_interval, with_spread
 
 
@@ -47,10 +48,11 @@ def test_plain_numbers_have_significant_digits():
         (0.0, 0.0, "0"),
         (None, None, ABSENT),
         (math.inf, 1.0, ABSENT),
+        (0.8673, math.nan, "0.8673"),
     ],
 )
 def test_a_spread_stands_beside_its_value(value, spread, shown):
-    assert with_spread(value, spread) == shown
+    assert with_spread(Spread(mean=value, sd=spread)) == shown
 
 
 def test_a_span_leaves_gaps_out_and_says_where_there_is_nothing():

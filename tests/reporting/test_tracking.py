@@ -60,7 +60,7 @@ def test_the_page_is_well_formed_leads_with_tracking_and_leaves_out_what_was_not
 def test_scores_stand_with_their_spread_and_the_limit_where_it_was_reached(whole):
     header, first, *_, last = cells(whole, "Scores, mean ± standard deviation over 5 seeds")
     assert first[:3] == ["pid", "undisturbed", "0.200 ± 0.003"]
-    assert first[3:] == ["−2.50 ± 0.02", "1.50 ± 0.02", "0", "353.6 ± 0.1", "1234", "–"]
+    assert first[3:] == ["−2.50 ± 0.02", "1.50 ± 0.02", "353.6 ± 0.1", "1234", "0", "–"]
     assert (header[-1], last[-1]) == ("at its limit [%]", "12.5 ± 0.5")
 
 

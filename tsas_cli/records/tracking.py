@@ -1,12 +1,21 @@
 """What `tracking.json` holds (docs/formats.md)."""
 
+from collections.abc import Callable
 from typing import ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
-from tsas_cli.records.base import ModelFile, Number, Record, StageFile
+from tsas_cli.records.base import ModelFile, Number, Record, StageFile, number_text
 
 ADAPTIVE = "adaptive-sliding-mode"
+SCORES = {
+    "rmse_N": "RMSE [N]",
+    "lowest_error_N": "lowest [N]",
+    "highest_error_N": "highest [N]",
+    "effort_rpm": "effort [rpm]",
+    "chatter_rpm_per_s": "chatter [rpm/s]",
+    "outside_percent": "outside 2 % [%]",
+}
 Three = tuple[float, float, float]
 
 
@@ -135,3 +144,19 @@ class TrackingFile(StageFile):
     conditions: dict[str, tuple[ConditionChange, ...]]
     results: tuple[TrackedResult, ...] = Field(min_length=1)
     notes: tuple[str, ...] = ()
+
+    def scores(self, shown: Callable[[Spread], str]) -> tuple[list[str], list[list[str]]]:
+        """Return header and rows of the scores, beside the RMSE of the paper where it applies.
+
+        `shown` makes the text of a score.
+        """
+        header = ["controller", "condition", *SCORES.values()]
+        rows = [
+            [row.controller, row.condition, *(shown(row.scores[score]) for score in SCORES)]
+            for row in self.results
+        ]
+        if any(row.printed_rmse_N is not None for row in self.results):
+            header.insert(3, "Table 5 [N]")
+            for cells, row in zip(rows, self.results, strict=True):
+                cells.insert(3, number_text(row.printed_rmse_N, "g"))
+        return header, rows

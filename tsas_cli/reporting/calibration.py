@@ -1,11 +1,10 @@
 """What a calibration says: the stiffness of each phase, the transfer of tension, the parameters."""
 
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any
 
-from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model_file import read_model
-from tsas_cli.records.base import ParameterValue
+from tsas_cli.records.base import ParameterValue, parameters_of
 from tsas_cli.records.calibration import CalibrationFile, Stiffness
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
@@ -13,10 +12,9 @@ from tsas_cli.reporting.content import Picture, Section, Table, missing, table_o
 from tsas_cli.reporting.drawing import legend, picture, shortened
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import PHASES, label_of, role_of_phase
-from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.numbers import ABSENT, plain, value_and_interval
 
 _PARAMETERS_TITLE = "Parameters"
-Shown = TypeVar("Shown", ParameterValue, Estimate)
 _TRANSFER_TITLE = "Tension passed on"
 _TRANSFER = (
     "While the whole tendon slips, the tension at the drive is a ratio times the tension at the "
@@ -79,15 +77,14 @@ def _table(rows: tuple[Stiffness, ...]) -> Table:
 
 
 def _row(row: Stiffness) -> tuple[str, ...]:
-    kr = (row.kr.value, row.kr.interval_low, row.kr.interval_high) if row.kr else (None,) * 3
     return (
         row.run,
         label_of(row.phase),
-        *with_interval(row.km.value, row.km.interval_low, row.km.interval_high),
+        *value_and_interval(row.km),
         plain(row.expected_N_per_mm),
         plain(row.theory_N_per_mm),
         plain(row.theory_elastic_N_per_mm),
-        *with_interval(*kr),
+        *value_and_interval(row.kr),
         str(row.occurrences),
     )
 
@@ -157,10 +154,7 @@ def transfer_section(inputs: Inputs) -> Section:
         return missing("transfer", _TRANSFER_TITLE, what="calibration", stage="calibrate")
     if not calibration.transfer:
         return Section("transfer", _TRANSFER_TITLE, (_TRANSFER, _NO_TRANSFER))
-    rows = [
-        (p.run or "all", p.name, *with_interval(p.value, p.interval_low, p.interval_high), p.unit)
-        for p in calibration.transfer
-    ]
+    rows = [(p.run or "all", p.name, *value_and_interval(p), p.unit) for p in calibration.transfer]
     header = ("runs", "what", "value", "95 % interval", "unit")
     table = table_of("Ratios and intercepts", header, rows)
     return Section("transfer", _TRANSFER_TITLE, (_TRANSFER, _INTERCEPTS), tables=(table,))
@@ -178,36 +172,32 @@ def parameters_section(inputs: Inputs) -> Section:
     intro = ["The origin says which values are fitted, and which are taken as given."]
     tables, notes = [], tuple[str, ...]()
     if extended is not None:
-        tables.append(parameter_table("The extended model", _shown(extended.estimates, inputs)))
+        parameters = parameters_of(extended.estimates)
+        tables.append(_parameter_table("The extended model", parameters, inputs))
     if calibration is not None:
         if not calibration.fit.converged:
             intro.append(f"The fit did not converge: {calibration.fit.message}")
         if notes := calibration.cannot_tell:
             intro.append("Keep in mind of the calibrated model:")
-        tables.append(
-            parameter_table("The calibrated model", _shown(calibration.parameters, inputs))
-        )
+        tables.append(_parameter_table("The calibrated model", calibration.parameters, inputs))
     return Section(
         "parameters", _PARAMETERS_TITLE, tuple(intro), tables=tuple(tables), points=notes
     )
 
 
-def _shown(parameters: Sequence[Shown], inputs: Inputs) -> list[Shown]:
-    return [p for p in parameters if inputs.concerns(p.name)]
-
-
-def parameter_table(caption: str, parameters: Sequence[ParameterValue | Estimate]) -> Table:
-    """Return a model's parameters with their intervals."""
+def _parameter_table(caption: str, parameters: Sequence[ParameterValue], inputs: Inputs) -> Table:
+    """Return a model's parameters with their intervals, but those of channels in no run."""
     rows = tuple(
         (
             p.name,
             p.run or "all",
-            *with_interval(p.value, p.interval_low, p.interval_high),
+            *value_and_interval(p),
             p.unit,
             p.origin,
             "yes" if p.at_bound else "no",
         )
         for p in parameters
+        if inputs.concerns(p.name)
     )
     header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
     return table_of(caption, header, rows)

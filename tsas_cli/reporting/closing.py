@@ -47,7 +47,7 @@ def table(closing: ClosingFile) -> Table:
         (
             case.case,
             row.controller,
-            *(with_spread(rmse.mean, rmse.sd) for rmse in row.by_model.values()),
+            *map(with_spread, row.by_model.values()),
             plain(row.over_limit, 3),
         )
         for case in closing.cases

@@ -245,7 +245,7 @@ def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
             continue
         first, second = (side[WANTED] - side[TRUE] for side in (a, b))
         panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
-        in_a, in_b = (with_spread(r.scores.rmse_N.mean, r.scores.rmse_N.sd) for r in results)
+        in_a, in_b = (with_spread(result.scores.rmse_N) for result in results)
         of = f"{results[0].controller}, {results[0].condition}"
         words = f"{of}: RMSE {in_a} N in A, {in_b} N in B."
         yield picture(

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from statistics import median
 
+from tsas_cli.records.base import span_text
 from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.diagnosis import VERDICTS, DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.records.drive import DriveDiagnosis, DriveFile
@@ -14,7 +15,7 @@ from tsas_cli.reporting import before_after
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import heading_of, in_words, title_of, within
-from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.support.wording import listed
 
 _REDUCTION = "normalised residual"
@@ -141,7 +142,7 @@ def _of_simulation(simulation: SimulationFile) -> Glance | None:
     if not ratios:
         return None
     worst = max(map(max, ratios.values()))
-    facts = (Fact(in_words(name), ranged(found), "") for name, found in ratios.items())
+    facts = (Fact(in_words(name), span_text(found)) for name, found in ratios.items())
     return Glance(
         "Simulation against measurement",
         f"Within {plain(worst, 2)} times the noise",

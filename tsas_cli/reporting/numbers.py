@@ -1,10 +1,11 @@
 """How numbers are printed: as many digits as the interval bears."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
+from tsas_cli.records.base import Value
+from tsas_cli.records.tracking import Spread
 from tsas_cli.support.arrays import Floats
 
 MINUS = "\N{MINUS SIGN}"
@@ -72,18 +73,26 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
     return _fixed(value, decimals), f"{_fixed(low, decimals)} to {_fixed(high, decimals)}"
 
 
-def with_spread(value: float | None, spread: float | None) -> str:
-    """Return a value and its standard deviation: four digits, or up to the spread's first.
+def value_and_interval(shown: Value | None) -> tuple[str, str]:
+    """Return a value and its interval, as `with_interval` does; en dashes where there is none."""
+    if shown is None:
+        return ABSENT, ABSENT
+    return with_interval(shown.value, shown.interval_low, shown.interval_high)
 
-    >>> with_spread(0.867303, 0.000108), with_spread(0.867303, 0.12), with_spread(0.0, 0.0)
-    ('0.8673 ± 0.0001', '0.9 ± 0.1', '0')
+
+def with_spread(score: Spread) -> str:
+    """Return a mean and its standard deviation: four digits, or up to the deviation's first.
+
+    >>> with_spread(Spread(mean=0.867303, sd=0.000108)), with_spread(Spread(mean=0.867303, sd=0.12))
+    ('0.8673 ± 0.0001', '0.9 ± 0.1')
     """
-    if value is None or not math.isfinite(value):
+    mean, sd = score.mean, score.sd
+    if mean is None:
         return ABSENT
-    if not spread or not math.isfinite(spread):
-        return plain(value) if value else "0"
-    decimals = min(-_exponent(spread), 3 - _exponent(value))
-    return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
+    if not sd:
+        return plain(mean) if mean else "0"
+    decimals = min(-_exponent(sd), 3 - _exponent(mean))
+    return f"{_fixed(mean, decimals)} ± {plain(sd, 1)}"
 
 
 def spanned(values: Floats) -> str:
@@ -97,16 +106,6 @@ def spanned(values: Floats) -> str:
     if not there.size:
         return ABSENT
     return f"{plain(float(there.min()), 3)} to {plain(float(there.max()), 3)}"
-
-
-def ranged(values: Sequence[float]) -> str:
-    """Return the lowest and the highest of some numbers, or the one that both are.
-
-    >>> ranged([1.234, 0.5]), ranged([0.5])
-    ('0.50 to 1.2', '0.50')
-    """
-    low, high = plain(min(values), 2), plain(max(values), 2)
-    return low if low == high else f"{low} to {high}"
 
 
 def fixed(value: float | None, decimals: int) -> str:

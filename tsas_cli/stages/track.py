@@ -19,7 +19,6 @@ from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.records import tracking as records
-from tsas_cli.records.base import number_text
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.records.tracking import TrackingFile
@@ -45,15 +44,6 @@ from tsas_cli.verifying.claims import change_notes
 DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")
 COMPARED_SEEDS = 10
 
-COLUMNS = (
-    ("RMSE [N]", "rmse_N"),
-    ("lowest [N]", "lowest_error_N"),
-    ("highest [N]", "highest_error_N"),
-    ("effort [rpm]", "effort_rpm"),
-    ("chatter [rpm/s]", "chatter_rpm_per_s"),
-    ("outside 2 % [%]", "outside_percent"),
-)
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class TrackingResult(Result):
@@ -72,21 +62,8 @@ class TrackingResult(Result):
         return recording_of(self.runs, run)
 
     def tables(self) -> list[Table]:
-        """Return the scores of each controller and condition, beside those of the paper's Table 5.
-
-        These are left out where they do not apply.
-        """
-        results = self.record.results
-        header = ["controller", "condition", *(name for name, _ in COLUMNS)]
-        rows = [
-            [row.controller, row.condition, *(row.scores[key].text() for _, key in COLUMNS)]
-            for row in results
-        ]
-        if any(row.printed_rmse_N is not None for row in results):
-            header.insert(3, "Table 5 [N]")
-            for cells, row in zip(rows, results, strict=True):
-                cells.insert(3, number_text(row.printed_rmse_N, "g"))
-        return [(self.titled("tracking"), header, rows)]
+        """Return the scores of each controller and condition."""
+        return [(self.titled("tracking"), *self.record.scores(records.Spread.text))]
 
     def sentences(self) -> list[str]:
         """Return what of the runs is not to be trusted or not to be reached, and why."""

@@ -16,7 +16,7 @@ from tsas_cli.reporting.content import Section, anchor
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import EFFECT, heading_of, sentence_of, title_of, within
-from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.numbers import ABSENT, plain, value_and_interval, with_interval
 from tsas_cli.support.wording import listed
 
 Numbers = tuple[float, ...]
@@ -52,7 +52,7 @@ def parameters_of(parameters: Mapping[str, Value], inputs: Inputs) -> Iterator[s
     """Yield each parameter with its interval, unit and whether it is at its bound."""
     for name, p in parameters.items():
         if inputs.concerns(name):
-            value, interval = with_interval(p.value, p.interval_low, p.interval_high)
+            value, interval = value_and_interval(p)
             said = f"`{name}` {value} {p.unit or ''}".removesuffix(" 1").rstrip()
             said += "" if interval == ABSENT else f", 95 % interval {interval}"
             yield f"{said}, at its bound" if p.at_bound else said

@@ -8,7 +8,7 @@ import numpy as np
 
 from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.base import ModelFile
-from tsas_cli.records.tracking import ADAPTIVE, Adaptive, Spread, StatedSettings, TrackingFile
+from tsas_cli.records.tracking import ADAPTIVE, Adaptive, StatedSettings, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section, Table, table_by_column, table_of
 from tsas_cli.reporting.drawing import bound, kept_cells, line, picture
@@ -127,33 +127,13 @@ def _name(model: ModelFile) -> str:
     return "the data sheet" if model.sha256 is None else model.file
 
 
-_COLUMNS = (
-    ("RMSE [N]", "rmse_N"),
-    ("lowest [N]", "lowest_error_N"),
-    ("highest [N]", "highest_error_N"),
-    ("outside 2 % [%]", "outside_percent"),
-    ("effort [rpm]", "effort_rpm"),
-    ("chatter [rpm/s]", "chatter_rpm_per_s"),
-)
-
-
 def _scores(tracking: TrackingFile) -> Table:
     """Return the scores, with their spread where there is more than one seed."""
-    rows = tuple(
-        (
-            result.controller,
-            result.condition,
-            *(_cell(getattr(result.scores, key)) for _, key in _COLUMNS),
-            _cell(limit) if (limit := result.scores.at_limit_percent).mean else ABSENT,
-        )
-        for result in tracking.results
-    )
-    header = ("controller", "condition", *(title for title, _ in _COLUMNS), "at its limit [%]")
-    return table_of(f"Scores{over_seeds(*tracking.seeds)}", header, rows)
-
-
-def _cell(number: Spread) -> str:
-    return with_spread(number.mean, number.sd)
+    header, rows = tracking.scores(with_spread)
+    for cells, result in zip(rows, tracking.results, strict=True):
+        at_limit = result.scores.at_limit_percent
+        cells.append(with_spread(at_limit) if at_limit.mean else ABSENT)
+    return table_of(f"Scores{over_seeds(*tracking.seeds)}", [*header, "at its limit [%]"], rows)
 
 
 def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:
