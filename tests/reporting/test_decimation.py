@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.reporting.drawing import kept_cells, kept_samples
+from tsas_cli.reporting.drawing import CELLS, kept_cells, kept_samples
 
 
 def test_a_single_spike_and_the_last_sample_are_kept():
@@ -38,13 +38,13 @@ def test_a_curve_that_hurries_and_waits_keeps_its_shape():
     angle = np.minimum(np.arange(10_000) / 50, 1.0) * 2 * np.pi
     noise = np.random.default_rng(4).normal(scale=1e-4, size=(2, angle.size))
     x, y = np.cos(angle) + noise[0], np.sin(angle) + noise[1]
-    kept = kept_cells(x, y, cells=100)
+    kept = kept_cells(x, y)
     assert {*range(51), angle.size - 1} <= set(kept)
     slow = np.linspace(0.0, 2 * np.pi, 10_000)
     x, y = np.cos(slow), np.sin(slow)
-    kept = kept_cells(x, y, cells=100)
-    assert kept.size < 450
-    assert np.hypot(np.diff(x[kept]), np.diff(y[kept])).max() < 2 / 100 * np.sqrt(2)
+    kept = kept_cells(x, y)
+    assert kept.size < 4.5 * CELLS
+    assert np.hypot(np.diff(x[kept]), np.diff(y[kept])).max() < 2 / CELLS * np.sqrt(2)
 
 
 def test_a_short_series_is_kept_whole_and_a_curve_that_does_not_move_is_its_ends():

@@ -12,6 +12,13 @@ from tsas_cli.identification.run_simulation import mean_edges
 from tsas_cli.support.arrays import Floats
 
 DIRECTION, RUN = "direction", "run"
+SIGNALS = {  # that are no columns of a recording: in words, and the unit
+    "time_s": ("time in the run", "s"),
+    "speed_mm_per_s": ("speed", "mm/s"),
+    "travel_since_reversal_mm": ("travel since the last reversal", "mm"),
+    DIRECTION: ("direction", ""),
+}
+_COLUMNS = {"f_in_N": "tension at the drive", "x_in_mm": "displacement of the drive"}
 
 
 @dataclass(frozen=True)
@@ -56,16 +63,9 @@ def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
 
 def signal_in_words(signal: str) -> str:
     """Return a signal's name in words, for a sentence."""
-    words = {
-        "f_in_N": "the tension at the drive",
-        "time_s": "the time in the run",
-        "x_in_mm": "the displacement of the drive",
-        "speed_mm_per_s": "the speed",
-        "travel_since_reversal_mm": "the travel since the last reversal",
-        DIRECTION: "the direction",
-    }
+    words = _COLUMNS | {name: words for name, (words, _) in SIGNALS.items()}
     name, _, rest = signal.partition(" ")
-    return f"{words.get(name, name)} {rest}".rstrip()
+    return f"{f'the {words[name]}' if name in words else name} {rest}".rstrip()
 
 
 def _since_reversal(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:

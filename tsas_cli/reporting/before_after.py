@@ -13,11 +13,11 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
-from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture
+from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, stacked
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import in_words
+from tsas_cli.reporting.names import X_IN, in_words, quantity_of
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.simulation import X_IN, channels_of, diagnosed_models, rms
+from tsas_cli.reporting.simulation import channels_of, diagnosed_models, rms
 from tsas_cli.support.arrays import Floats, Indices
 
 _FEWEST = 10  # samples that make a picture
@@ -86,18 +86,18 @@ def pictures(inputs: Inputs) -> tuple[Picture, ...]:
 def _picture(
     loop: ShownFit, below: ShownFit | None, *, mark: Box | None = None, window: Box | None = None
 ) -> Picture:
-    loops = f"Run {loop.run}, {_short(loop.channel)} over x_in"
+    loops = f"Run {loop.run}, {quantity_of(loop.channel)} over x_in"
     if window:
         loops += (
             f", enlarged where the {'models differ' if loop.models[1:] else 'residual is'} most"
         )
-    under = "" if below is None else f" Below: residual of {_short(below.channel)} over time."
+    under = "" if below is None else f" Below: residual of {quantity_of(below.channel)} over time."
     fit = below or loop
     sizes = ", ".join(f"{label} {plain(rms(fit.measured - v), 3)}" for label, _, v in fit.models)
     noise = f"noise level {plain(fit.noise, 3)} {BY_NAME[fit.channel].unit}"
     said = f"RMS: {sizes}, {noise} (dashed: twice that)."
     channels = dict.fromkeys(fit.channel for fit in (loop, below) if fit is not None)
-    words = "; ".join(f"{_short(name)} is the {in_words(name)}" for name in channels)
+    words = "; ".join(f"{quantity_of(name)} is the {in_words(name)}" for name in channels)
     return picture(
         partial(draw_before_after, loop=loop, below=below, mark=mark, window=window),
         key=f"first-{loop.channel}-{'near' if window else 'whole'}",
@@ -108,10 +108,6 @@ def _picture(
     )
 
 
-def _short(channel: str) -> str:
-    return channel.rsplit("_", 1)[0]
-
-
 def draw_before_after(
     figure: Any, *, loop: ShownFit, below: ShownFit | None, mark: Box | None, window: Box | None
 ) -> None:
@@ -120,7 +116,7 @@ def draw_before_after(
     `mark` is framed in the loop.
     """
     heights = (1,) if below is None else (3, 2)
-    rows = figure.subplots(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
+    rows = stacked(figure, len(heights), height_ratios=heights)
     draw_loop(rows[0], loop, mark=mark, window=window)
     if below is not None:
         draw_residuals(rows[1], below)
@@ -140,7 +136,7 @@ def draw_loop(
         width = 3.0 if role == "measured" else 1.3
         style = {"color": STAND_IN[role], "linewidth": width, "label": label}
         axes.plot(x[kept], np.where(gaps, np.nan, values[kept]), **style)
-    axes.set(xlabel="x_in [mm]", ylabel=f"{_short(fit.channel)} [{BY_NAME[fit.channel].unit}]")
+    axes.set(xlabel="x_in [mm]", ylabel=f"{quantity_of(fit.channel)} [{BY_NAME[fit.channel].unit}]")
     if window is not None:
         axes.set(xlim=window[:2], ylim=window[2:])
     if mark is not None:
@@ -158,7 +154,7 @@ def draw_residuals(axes: Any, fit: ShownFit) -> None:
     noise_bounds(axes, fit.noise)
     unit = BY_NAME[fit.channel].unit
     axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"residual {_short(fit.channel)} [{unit}]", fontsize=9)
+    axes.set_ylabel(f"residual {quantity_of(fit.channel)} [{unit}]", fontsize=9)
 
 
 def _kept(fit: ShownFit) -> Indices:

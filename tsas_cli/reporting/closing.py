@@ -8,7 +8,7 @@ from typing import Any
 from tsas_cli.records.closing import ClosedCase, ClosingFile, Row
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, table_of
-from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.drawing import legend, picture, stacked
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import as_printed, over_seeds, plain, with_spread
 from tsas_cli.support.wording import listed
@@ -67,12 +67,12 @@ def dots(closing: ClosingFile) -> Picture:
         )
         for name, rows in controllers.items()
     }
-    said = "; ".join(f"{name}: {of}" for name, of in sizes.items())
+    errors = "; ".join(f"{name}: {by_case}" for name, by_case in sizes.items())
     return picture(
         partial(draw_dots, controllers=controllers),
         key="closing-rmse",
         alt="RMSE of the force in newton on a logarithmic axis, with the model of the data sheet, "
-        f"calibrated, extended and true, by controller and case. {said}.",
+        f"calibrated, extended and true, by controller and case. {errors}.",
         caption="RMSE of the force by controller, case and model, on a logarithmic axis: further "
         "left is better, and the true model is the limit.",
         height_in=1.0 + sum(_PANEL_IN + _ROW_IN * len(rows) for rows in controllers.values()),
@@ -122,9 +122,7 @@ def draw_dots(figure: Any, *, controllers: Mapping[str, Mapping[str, Row]]) -> N
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     heights = [len(rows) + 0.2 for rows in controllers.values()]
-    panels = figure.subplots(
-        len(controllers), 1, sharex=True, squeeze=False, height_ratios=heights
-    )[:, 0]
+    panels = stacked(figure, len(controllers), sharex=True, height_ratios=heights)
     for axes, (name, rows) in zip(panels, controllers.items(), strict=True):
         _draw_panel(axes, rows)
         axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)

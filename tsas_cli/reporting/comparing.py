@@ -18,9 +18,25 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.records.comparison import ComparisonFile, ModelComparison, ParameterPair, shared_name
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, rendered, table_of
+from tsas_cli.reporting.content import (
+    MOST_RUNS,
+    Group,
+    Picture,
+    Section,
+    rendered,
+    runs_drawn,
+    table_of,
+)
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
-from tsas_cli.reporting.drawing import Residuals, draw_two_residuals, height_in, legend, picture
+from tsas_cli.reporting.drawing import (
+    Residuals,
+    draw_two_residuals,
+    height_in,
+    legend,
+    picture,
+    stacked,
+)
+from tsas_cli.reporting.names import quantity_of
 from tsas_cli.reporting.numbers import plain, with_spread
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 
@@ -110,25 +126,20 @@ def _maps(it: Comparison) -> Section:
         for signal, bins in signals.items()
     ]
     shown = pictures(panels, key="map", names=("A", "B"))
-    intro = () if it.shared else (_OWN,)
-    return Section("maps", "Where the errors are", (*intro, _MAPS if shown else _NOTHING),
-                   pictures=shown)  # fmt: skip
-
-
-_MOST_RUNS = 10
+    intro = (_MAPS if shown else _NOTHING,) if it.shared else (_OWN, _MAPS if shown else _NOTHING)
+    return Section("maps", "Where the errors are", intro, pictures=shown)
 
 
 def _residuals(it: Comparison) -> Section:
     """Return the section of the residuals, one group per run that both answer to."""
-    left = len(it.shared) - _MOST_RUNS
-    more = f" The first {_MOST_RUNS} of {len(it.shared)} runs are shown." if left > 0 else ""
     groups = tuple(
         Group(f"Run {shared_name(*both.ids)}", pictures)
-        for number, both in enumerate(it.shared[:_MOST_RUNS])
+        for number, both in enumerate(it.shared[:MOST_RUNS])
         if (pictures := _pictures(both, number))
     )
     what = "Measured minus simulated. Noise alone leaves 95 % between the dashed lines."
-    return Section("residuals", "Residuals over time", (what + more,), groups=groups)
+    intro = (what, *runs_drawn(len(it.shared)))
+    return Section("residuals", "Residuals over time", intro, groups=groups)
 
 
 def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
@@ -141,7 +152,7 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
         if any(error is None or not np.isfinite(error).any() for error in errors):
             continue
         unit = BY_NAME[name].unit
-        label = f"{name.rsplit('_', 1)[0]} [{unit}]"
+        label = f"{quantity_of(name)} [{unit}]"
         time_s, noise = a.run.time_s, a.noise(name)
         panels.append(Residuals(label, time_s, a.errors[name], b.errors[name], noise))
         said.append(f"{name} A {plain(a.rmse(name), 3)}, B {plain(b.rmse(name), 3)} {unit}")
@@ -190,7 +201,7 @@ def _label(pair: ParameterPair) -> str:
 def _draw_values(figure: Any, strips: Sequence[ParameterPair]) -> None:
     """Draw the strips below each other, A above B in each; a star marks those that differ."""
     look = {"marker": "o", "markersize": 5, "capsize": 3, "elinewidth": 1.6, "linestyle": "none"}
-    rows = figure.subplots(len(strips), 1, squeeze=False)[:, 0]
+    rows = stacked(figure, len(strips))
     for axes, pair in zip(rows, strips, strict=True):
         for name, side, role, y in (("A", pair.a, "before", 1.0), ("B", pair.b, "after", 0.0)):
             if side is not None and side.value is not None:

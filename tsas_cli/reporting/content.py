@@ -14,6 +14,7 @@ from tsas_cli.reporting.numbers import ABSENT, MINUS
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
 
+MOST_RUNS = 10  # of which a section has pictures
 _NUMBER = re.compile(f"(?:[-{MINUS}]?\\d.{{0,22}}|{ABSENT}|none|)$")  # a cell among numbers
 
 
@@ -127,6 +128,15 @@ def anchor(*words: str) -> str:
     ('diagnosis-free_tendon', 'map-a.20b')
     """
     return "-".join(re.sub(r"[^\w-]", lambda letter: f".{ord(letter[0]):x}", w) for w in words)
+
+
+def runs_drawn(count: int) -> tuple[str, ...]:
+    """Return the sentence on how many of the runs have pictures, where not all have.
+
+    >>> runs_drawn(12), runs_drawn(10)
+    (('10 of 12 runs are drawn.',), ())
+    """
+    return (f"{MOST_RUNS} of {count} runs are drawn.",) if count > MOST_RUNS else ()
 
 
 def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:

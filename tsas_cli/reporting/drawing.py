@@ -173,6 +173,11 @@ def _own(name: str, value: str, key: str) -> str:
     return value.replace("url(#", f"url(#{key}-")
 
 
+def stacked(figure: Any, count: int, **options: Any) -> Any:
+    """Return so many axes below each other; the options are those of `Figure.subplots`."""
+    return figure.subplots(count, 1, squeeze=False, **options)[:, 0]
+
+
 def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:
     """Draw values over time, with as many points as the plot can show."""
     kept = kept_samples(values)
@@ -220,7 +225,7 @@ def draw_two_residuals(
     figure: Any, *, panels: Sequence[Residuals], names: tuple[str, str] = ("A", "B")
 ) -> None:
     """Draw panel below panel; the larger residual lies below the smaller one."""
-    rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    rows = stacked(figure, len(panels), sharex=True)
     for axes, panel in zip(rows, panels, strict=True):
         both = panel.first, panel.second
         least = min(float(np.nanstd(values)) for values in both)
@@ -269,16 +274,14 @@ def shared_points(curves: int, total: int) -> int:
     return min(max(total // max(curves, 1), FEWEST), POINTS)
 
 
-def kept_cells(x: Floats, y: Floats, *, cells: int = CELLS) -> Indices:
+def kept_cells(x: Floats, y: Floats) -> Indices:
     """Return the samples at which a curve in a plane enters another cell of an even grid.
 
-    A curve that hurries here and waits there keeps its shape everywhere, to within a cell.
-
-    `x` and `y` have shape (n,), without gaps; `cells` is how many there are along each axis of the
-    curve's own range.
+    The curve keeps its shape to within a cell, whatever its speed along it. `x` and `y` have shape
+    (n,), without gaps; the grid has `CELLS` cells along each axis of the curve's range.
     """
     both = np.stack((x, y))
     spans = np.ptp(both, axis=1, keepdims=True)
     shares = (both - both.min(axis=1, keepdims=True)) / np.where(spans > 0.0, spans, 1.0)
-    enters = (np.diff(np.floor(shares * cells)) != 0).any(axis=0)
+    enters = (np.diff(np.floor(shares * CELLS)) != 0).any(axis=0)
     return np.unique(np.concatenate(([0], np.flatnonzero(enters) + 1, [x.size - 1])))

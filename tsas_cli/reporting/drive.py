@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.drive.json import tables
+from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.records.drive import DriveFile, FrequencyResponses
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, table_of
@@ -20,6 +21,7 @@ from tsas_cli.reporting.drawing import (
     picture,
 )
 from tsas_cli.reporting.inputs import Inputs, series_of
+from tsas_cli.reporting.names import X_IN
 from tsas_cli.reporting.numbers import RAISED, plain, spanned
 
 
@@ -157,12 +159,12 @@ def _bode_in_words(response: FrequencyResponses) -> str:
 def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
     panels, said = [], []
     for recording in inputs.recordings:
-        run, x_in = drive.runs.get(recording.run.id), recording.get("x_in_mm")
+        run, x_in = drive.runs.get(recording.run.id), recording.get(X_IN)
         if run is None or x_in is None or run.noise is None:
             continue
         nominal, fitted = (
             x_in - series_of(inputs.folders[DriveFile], recording.run.id, x_in.size, column)
-            for column in ("x_in_nominal_mm", "x_in_mm")
+            for column in (nominal_name(X_IN), X_IN)
         )
         label = f"{recording.run.id} [mm]"
         panels.append(Residuals(label, recording.time_s, nominal, fitted, run.noise))

@@ -5,23 +5,16 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.diagnosis.signals import SIGNALS
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.diagnosis import NamedCause
 from tsas_cli.support.arrays import Floats
 
+X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")
 EFFECT = {effect.name: effect for effect in EFFECTS}
-_SIGNALS = {  # in words, and the unit
-    "speed_mm_per_s": ("speed of the drive", "mm/s"),
-    "travel_since_reversal_mm": ("travel since the last reversal", "mm"),
-    "time_s": ("time in the run", "s"),
-    "direction": ("direction of the drive", ""),
-    "phase": ("phase of the cycle", ""),
-    "run": ("run", ""),
-}
-
-
+_SIGNALS = SIGNALS | {"phase": ("phase of the cycle", "")}
 PHASES = {  # by their keys in the files, the numbers beside the curve
     "contraction": "1",
     "dead_band_down": "2",
@@ -65,7 +58,7 @@ def in_words(name: str) -> str:
     """Return what a column or a signal means in a few words; any other text as it is.
 
     >>> in_words("f_in_N"), in_words("direction"), in_words("my_column")
-    ('tension at the drive', 'direction of the drive', 'my_column')
+    ('tension at the drive', 'direction', 'my_column')
     """
     return _meaning(name)[0]
 
@@ -78,6 +71,15 @@ def at_axis(name: str) -> str:
     """
     words, unit = _meaning(name)
     return f"{words} [{unit}]" if unit else words
+
+
+def quantity_of(column: str) -> str:
+    """Return a column's name without its unit.
+
+    >>> quantity_of("f_in_N")
+    'f_in'
+    """
+    return column.rsplit("_", 1)[0]
 
 
 def _meaning(name: str) -> tuple[str, str]:

@@ -12,16 +12,14 @@ from tsas_cli.recordings.columns import name_by
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.reporting.colours import MODELS
-from tsas_cli.reporting.content import Group, Picture, Section, table_of
+from tsas_cli.reporting.content import MOST_RUNS, Group, Picture, Section, runs_drawn, table_of
 from tsas_cli.reporting.drawing import picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import in_words
+from tsas_cli.reporting.names import TENSIONS, X_IN, in_words
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.simulation import X_IN, Simulated, channels_of, draw_comparison
+from tsas_cli.reporting.simulation import Simulated, channels_of, draw_comparison
 
-_MOST_RUNS = 10
 _POINTS = 30_000  # of all curves
-_SHOWN = ("f_in_N", "f_out_N")
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -36,14 +34,13 @@ def section(inputs: Inputs) -> Section | None:
         Simulated(f"model {it.name}", role, folder, partial(name_by, model=it.name))
         for it, role in zip(prediction.models, cycle((*MODELS[1:], MODELS[0])), strict=False)
     ]
-    curves = len(_SHOWN) * min(len(shown), _MOST_RUNS) * (1 + 2 * len(models))
+    curves = len(TENSIONS) * min(len(shown), MOST_RUNS) * (1 + 2 * len(models))
     points = shared_points(curves, _POINTS)
     groups = tuple(
         Group(f"Run {run}", pictures)
-        for number, run in enumerate(shown[:_MOST_RUNS])
+        for number, run in enumerate(shown[:MOST_RUNS])
         if (pictures := tuple(_pictures(inputs, recordings[run], models, number, points)))
     )
-    left = len(shown) - _MOST_RUNS
     return Section(
         "prediction",
         "Predicted, not fitted",
@@ -51,7 +48,7 @@ def section(inputs: Inputs) -> Section | None:
         points=(*prediction.findings, *prediction.notes[1:]),
         tables=tuple(table_of(*table) for table in tables(prediction)),
         groups=groups,
-        closing=(f"{left} more runs are in the table.",) if left > 0 else (),
+        closing=runs_drawn(len(shown)),
     )
 
 
@@ -74,7 +71,7 @@ def _pictures(
     """Yield the loop of each tension over x_in, and under it what each model leaves."""
     x = models[0].driven(recording) if models else None
     for it in channels_of(inputs, recording, models):
-        if it.channel not in _SHOWN or x is None or not np.isfinite(x + it.measured).any():
+        if it.channel not in TENSIONS or x is None or not np.isfinite(x + it.measured).any():
             continue
         names = {model: model.label.removeprefix("model ") for model in it.by_model}
         said = ", ".join(f"{n} {plain(it.rmse(m), 3)} {it.unit}" for m, n in names.items())

@@ -15,11 +15,22 @@ from tsas_cli.records.base import PhaseSegment
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Group, Picture, Section, Table, table_by_column, table_of
+from tsas_cli.reporting.content import (
+    MOST_RUNS,
+    Group,
+    Picture,
+    Section,
+    Table,
+    runs_drawn,
+    table_by_column,
+    table_of,
+)
 from tsas_cli.reporting.drawing import kept_samples, legend, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import (
     PHASES,
+    TENSIONS,
+    X_IN,
     at_axis,
     in_words,
     label_of,
@@ -29,9 +40,6 @@ from tsas_cli.reporting.names import (
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 from tsas_cli.support.arrays import Floats, Mask
 
-_TENSIONS = ("f_in_N", "f_out_N")
-_X = "x_in_mm"
-_MOST_RUNS = 10
 _POINTS = 20_000  # of all loops
 Keys = npt.NDArray[np.object_]
 _SEVERITIES = ("error", "warning", "note")
@@ -108,35 +116,35 @@ def loops_section(inputs: Inputs) -> Section | None:
         intro = "Without a folder written by `tsas calibrate`, the phases are unknown."
     segments = calibration.segments if calibration else {}
     runs = len(inputs.dataset.runs)
-    points = shared_points(len(_TENSIONS) * min(runs, _MOST_RUNS), _POINTS)
+    points = shared_points(len(TENSIONS) * min(runs, MOST_RUNS), _POINTS)
     groups = tuple(
         Group(f"Run {one.run.id}", pictures)
-        for number, one in enumerate(islice(inputs.recordings, _MOST_RUNS))
+        for number, one in enumerate(islice(inputs.recordings, MOST_RUNS))
         if (pictures := tuple(_pictures(one, segments.get(one.run.id, ()), number, points)))
     )
     if not groups:
         intro = "No run holds x_in_mm and a tension: there is no loop to show."
-    more = (f"The first {_MOST_RUNS} of {runs} runs are shown.",) if runs > _MOST_RUNS else ()
-    return Section("loops", "Loops and phases", (intro, *more), groups=groups, given=bool(groups))
+    sentences = (intro, *runs_drawn(runs))
+    return Section("loops", "Loops and phases", sentences, groups=groups, given=bool(groups))
 
 
 def _pictures(
     recording: Recording, segments: tuple[PhaseSegment, ...], number: int, points: int
 ) -> Iterator[Picture]:
     phase = phase_of_samples(recording.time_s, segments)
-    x = recording.get(_X)
-    for column in _TENSIONS:
+    x = recording.get(X_IN)
+    for column in TENSIONS:
         y = recording.get(column)
         if x is None or y is None or not np.isfinite(x + y).any():
             continue
-        whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
+        whole = f"{at_axis(column)} {spanned(y)} over {at_axis(X_IN)} {spanned(x)}"
         shown = [key for key in PHASES if PHASES[key] and np.isfinite(y[phase == key]).any()]
         each = "; ".join(f"{label_of(key)} {spanned(y[phase == key])}" for key in shown)
         yield picture(
             partial(_draw_loop, x=x, y=y, phase=phase, column=column, points=points),
             key=f"loop-{number}-{column}",
             alt=f"Loop of run {recording.run.id}: {whole}. By phase: {each or 'unknown'}.",
-            caption=f"{in_words(column).capitalize()} over {in_words(_X)}.",
+            caption=f"{in_words(column).capitalize()} over {in_words(X_IN)}.",
         )
 
 
@@ -153,7 +161,7 @@ def _draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, column: str, p
             style = {"color": colour, "label": f"{number} {label_of(key)}".strip()}
             axes.plot(x[kept], np.where(joined, y[kept], np.nan), **style)
             _number(axes, x, y, inside, number, colour)
-    axes.set(xlabel=at_axis(_X), ylabel=at_axis(column))
+    axes.set(xlabel=at_axis(X_IN), ylabel=at_axis(column))
     if (phase != "unknown").any():
         legend(figure)
 

@@ -18,27 +18,27 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import (
+    MOST_RUNS,
     Group,
     Picture,
     Section,
     Table,
     missing,
+    runs_drawn,
     table_by_column,
     table_of,
 )
 from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, shared_points
 from tsas_cli.reporting.inputs import Inputs, series_of, written_in
-from tsas_cli.reporting.names import at_axis, in_words
+from tsas_cli.reporting.names import X_IN, at_axis, in_words, quantity_of
 from tsas_cli.reporting.numbers import over, plain, spanned
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import sha256_of
 
-X_IN = "x_in_mm"
 NOMINAL, EXTENDED = "nominal model", "extended model"
 _LINES = ("-", "--", ":")
 _ROLES = ("simulated", "dead-band-up", "alike", "rest")
 _TITLE = "Simulation and measurement"
-_MOST_RUNS = 10
 _POINTS = 50_000  # of all curves
 
 
@@ -103,19 +103,17 @@ def section(inputs: Inputs) -> Section:
         return missing("simulation", _TITLE, what="simulation", stage="simulate")
     compared = [c for one in inputs.recordings for c in channels_of(inputs, one, models)]
     runs = list(dict.fromkeys(one.run for one in compared))
-    shown = [one for one in compared if one.run in runs[:_MOST_RUNS]]
+    shown = [one for one in compared if one.run in runs[:MOST_RUNS]]
     points = shared_points(sum(1 + 2 * len(one.by_model) for one in shown), _POINTS)
     groups = tuple(
         Group(f"Run {run}", tuple(_picture(one, number, points) for one in shown if one.run == run))
-        for number, run in enumerate(runs[:_MOST_RUNS])
+        for number, run in enumerate(runs[:MOST_RUNS])
     )
-    left = len(runs) - _MOST_RUNS
-    more = (f"{left} more runs are in the table.",) if left > 0 else ()
     given = [record for record, _ in inputs.simulations.values()]
     return Section(
         "simulation",
         _TITLE,
-        (*_intro(inputs), *more),
+        (*_intro(inputs), *runs_drawn(len(runs))),
         tables=(_table(compared, models), *_inputs(inputs)),
         groups=groups,
         points=tuple(dict.fromkeys(note for record in given for note in record.notes)),
@@ -231,7 +229,7 @@ def draw_comparison(figure: Any, *, it: ShownChannel, points: int) -> None:
         draw(upper, values, linewidth=1.1, label=model.label, **style)
         draw(lower, it.measured - values, linewidth=0.7, **style)
         drawn[model.role] += 1
-    upper.set_ylabel(f"{it.channel.rsplit('_', 1)[0]} [{it.unit}]")
+    upper.set_ylabel(f"{quantity_of(it.channel)} [{it.unit}]")
     noise_bounds(lower, it.noise)
     lower.set(xlabel=label, ylabel=f"residual [{it.unit}]")
     figure.align_ylabels()

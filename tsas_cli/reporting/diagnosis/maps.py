@@ -9,8 +9,8 @@ from typing import Any
 from tsas_cli.records.diagnosis import Bin, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section
-from tsas_cli.reporting.drawing import legend, picture
-from tsas_cli.reporting.names import at_axis, in_words, label_of
+from tsas_cli.reporting.drawing import legend, picture, stacked
+from tsas_cli.reporting.names import at_axis, in_words, label_of, quantity_of
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.support.wording import listed
 
@@ -119,7 +119,7 @@ def draw_residual_map(
 
     The error is in units of noise; `names` are those of the two series.
     """
-    rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    rows = stacked(figure, len(panels), sharex=True)
     by_label = all(b.low == b.high for panel in panels for b in panel.before)
     for axes, panel in zip(rows, panels, strict=True):
         axes.axhspan(-1.0, 1.0, color=STAND_IN["muted"], alpha=0.3, linewidth=0, label="± noise")
@@ -136,7 +136,7 @@ def draw_residual_map(
                 look = {"marker": "o", "markersize": 4, "elinewidth": 0.9, "linestyle": joined}
                 means, yerr = [b.mean for b in bins], [b.sd for b in bins]
                 axes.errorbar(at, means, yerr=yerr, color=STAND_IN[role], label=name, **look)
-        axes.set_ylabel(f"{panel.channel.rsplit('_', 1)[0]} / noise")
+        axes.set_ylabel(f"{quantity_of(panel.channel)} / noise")
         axes.margins(x=0.04)
     if by_label:  # every second or third where they are many
         named = panels[0].before

@@ -10,9 +10,9 @@ from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause, Tried
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, Table, missing, table_by_column, table_of
 from tsas_cli.reporting.diagnosis import causes, maps, similarity
-from tsas_cli.reporting.drawing import legend, picture
+from tsas_cli.reporting.drawing import legend, picture, stacked
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.names import in_words
+from tsas_cli.reporting.names import in_words, quantity_of
 from tsas_cli.reporting.numbers import ABSENT, fixed, over, plain
 
 _NORMALISED = "Normalised: over the noise level, which is then 1. "
@@ -179,7 +179,7 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
 
     With `named` a cause is named, so that there is an error after to show.
     """
-    rows = figure.subplots(len(channels), 1, squeeze=False)[:, 0]
+    rows = stacked(figure, len(channels))
     for axes, (name, channel) in zip(rows, channels.items(), strict=True):
         _bar(axes, channel.rmse_before, at=0.2 * named, role="before", label="nominal model")
         if named:
@@ -188,9 +188,8 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
         if channel.less_attainable:
             _mark(axes, channel.attainable, linestyle=(0, (2, 1.5)), label="attainable")
         axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
-        axes.set_ylabel(
-            f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"
-        )
+        label = f"{quantity_of(name)} [{channel.unit}]"
+        axes.set_ylabel(label, rotation=0, ha="right", va="center")
         axes.spines["left"].set_visible(False)
     legend(figure, rows[0])
 

@@ -21,6 +21,7 @@ from tsas_cli.reporting.colours import dark, role_of_controller
 from tsas_cli.reporting.drawing import kept_samples
 from tsas_cli.reporting.names import (
     PHASES,
+    X_IN,
     at_axis,
     in_words,
     label_of,
@@ -29,7 +30,7 @@ from tsas_cli.reporting.names import (
 )
 from tsas_cli.reporting.numbers import as_printed
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, X_IN, Channel, SeenRun
+from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, Channel, SeenRun
 from tsas_cli.reporting.tracking import runs as tracked
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -141,7 +142,7 @@ class LoopPlane:
         self.recorder.static(f"{self.entity}/names", names)
 
 
-def series_of(run: SeenRun) -> dict[str, list[str]]:
+def entities_of(run: SeenRun) -> dict[str, list[str]]:
     """Return the entities of all series, by the column that they are shown with."""
     found: dict[str, list[str]] = {}
     for channel in run.channels:

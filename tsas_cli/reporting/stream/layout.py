@@ -5,19 +5,19 @@ from collections.abc import Callable, Mapping, Sequence
 import rerun.blueprint as rrb
 from rerun.blueprint import Blueprint, Container, Grid, Horizontal, Tabs, Vertical, View
 
-from tsas_cli.reporting.names import at_axis
+from tsas_cli.reporting.names import X_IN, at_axis
 from tsas_cli.reporting.stream.channels import (
     ERROR,
     FORCE,
     SPEED,
     STATES,
+    entities_of,
     faults_of,
     residuals_of,
-    series_of,
     view_of,
 )
 from tsas_cli.reporting.stream.recorder import T
-from tsas_cli.reporting.stream.seen import MEASURED, WANTED, X_IN, SeenRun
+from tsas_cli.reporting.stream.seen import MEASURED, WANTED, SeenRun
 from tsas_cli.reporting.stream.tendon import view_of_tendon
 
 Part = Container | View
@@ -87,7 +87,7 @@ def _tabs(parts: Sequence[Part]) -> Part | None:
 
 
 def _run(run: SeenRun) -> Part | None:
-    rows = _over_phases(run, series_of(run))
+    rows = _over_phases(run, entities_of(run))
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
     if faults_of(run):
         faults = f"+ {run.entity('faults')}"

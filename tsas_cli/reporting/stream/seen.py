@@ -18,11 +18,11 @@ from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs, series_of, written_in
+from tsas_cli.reporting.names import TENSIONS, X_IN
 from tsas_cli.reporting.stream.recorder import Times, times_of
 from tsas_cli.support.arrays import Floats
 
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
-X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")
 _TENDON = frozenset({*TENSIONS, "x_out_mm"})
 _BROKEN = {"unreadable", "time-order"}
 _WISHES = {"f_out_ref_N": "f_out_N"}  # shown with what they are wishes of

@@ -28,8 +28,9 @@ from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisF
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import written_in
+from tsas_cli.reporting.names import TENSIONS
 from tsas_cli.reporting.stream.recorder import Recorder, Times
-from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, TENSIONS, SeenRun, Source
+from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, SeenRun, Source
 from tsas_cli.support.arrays import Floats, Indices
 
 PER_SECOND = 15.0

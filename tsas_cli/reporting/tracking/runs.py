@@ -11,8 +11,9 @@ from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.records.tracking import ADAPTIVE, ConditionChange, TrackedResult, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section
-from tsas_cli.reporting.drawing import bound, legend, line, picture
+from tsas_cli.reporting.drawing import bound, legend, line, picture, stacked
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import X_IN
 from tsas_cli.reporting.numbers import plain, spanned
 from tsas_cli.reporting.simulation import rms
 from tsas_cli.support.arrays import Floats
@@ -29,7 +30,7 @@ _EFFORT = (
     "thick chatters."
 )
 WANTED, TRUE, ASKED = "f_out_ref_N", "f_out_true_N", "motor_speed_rpm"
-X_IN, X_INV = "x_in_mm", "x_inv_mm"
+X_INV = "x_inv_mm"
 ESTIMATES = ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm")
 _COLUMNS = ("time_s", WANTED, TRUE, ASKED, X_IN, X_INV)
 
@@ -208,7 +209,7 @@ def draw_panels(
     same_scale: bool = False,
 ) -> None:
     """Draw one panel for each curve, its name above it; `band` is drawn to both sides of zero."""
-    rows = figure.subplots(len(curves), 1, sharex=True, sharey=same_scale, squeeze=False)[:, 0]
+    rows = stacked(figure, len(curves), sharex=True, sharey=same_scale)
     for axes, curve in zip(rows, curves, strict=True):
         axes.axhline(0.0, color=STAND_IN["muted"], linewidth=0.9)
         line(axes, time_s, curve.values, color=of_controller(curve.controller), linewidth=0.9)

@@ -11,13 +11,13 @@ from tsas_cli.records.base import ModelFile
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive, StatedSettings, TrackingFile
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section, Table, table_by_column, table_of
-from tsas_cli.reporting.drawing import bound, kept_cells, line, picture
+from tsas_cli.reporting.drawing import bound, kept_cells, line, picture, stacked
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.names import X_IN
 from tsas_cli.reporting.numbers import ABSENT, over_seeds, plain, with_spread
 from tsas_cli.reporting.tracking.runs import (
     ESTIMATES,
     WANTED,
-    X_IN,
     X_INV,
     RunsUnderCondition,
     TrackedRun,
@@ -231,7 +231,7 @@ def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adap
 
     def draw(figure: Any) -> None:
         """Draw a panel for each estimate, its axis in powers of ten where all is positive."""
-        rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
+        rows = stacked(figure, len(estimates), sharex=True)
         for axes, it in zip(rows, estimates, strict=True):
             line(axes, run.time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
             for value in (it.lowest, it.highest):
