@@ -55,7 +55,7 @@ def span_text(values: Iterable[float | None]) -> str:
 
 
 def check_interval(value: float | None, low: float | None, high: float | None) -> None:
-    """Raise ValueError where an interval has one end, swapped ends, or its value outside."""
+    """Raise ValueError for an interval with one end, with swapped ends, or without its value."""
     if (low is None) != (high is None):
         raise ValueError("interval_low and interval_high go together")
     if low is not None and high is not None and low > high:
@@ -80,7 +80,7 @@ def value_text(
 
 
 def _none_if_not_finite(value: Any, info: ValidationInfo) -> Any:
-    """Take a number that is not finite for none; in a file there is none, and it is refused."""
+    """Return None for a number that is not finite; in a file such a number is an error."""
     made = isinstance(value, float) and not (info.context or {}).get("file")
     return None if made and not math.isfinite(value) else value
 
@@ -110,7 +110,7 @@ class DatasetSource(Record):
     """The recordings that were read: their dataset, where it was, and which of its runs.
 
     `folder` is relative to that of the file; `chosen` are the runs, None where it is all;
-    `conditions` what was said of them in place of the manifest's.
+    `conditions` are values given in place of the manifest's.
     """
 
     SPARSE = frozenset({"chosen", "conditions"})
@@ -151,7 +151,7 @@ class DatasetSource(Record):
 
 
 class StageFile(Record):
-    """What all stages say; `FILE` is the file's name."""
+    """The fields of every stage's file; `FILE` is its name."""
 
     FILE: ClassVar[str]
     format: Literal[1] = 1
@@ -164,7 +164,7 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says of a dataset; `chosen` and `conditions` as of `DatasetSource`.
+    """The file of a stage that reads a dataset; `chosen` and `conditions` as in `DatasetSource`.
 
     `despite` are the errors in the recordings that were accepted, `warnings` what the checks warn
     of.
@@ -187,23 +187,23 @@ class OfDataset(StageFile):
 
     def source(self) -> DatasetSource:
         """Return the recordings as a model file names them."""
-        said = {"chosen": self.chosen, "conditions": self.conditions}
-        return self.dataset.model_copy(update=said)
+        stated = {"chosen": self.chosen, "conditions": self.conditions}
+        return self.dataset.model_copy(update=stated)
 
 
 def _sentences(opening: str, findings: Sequence[Finding]) -> list[str]:
     kinds: dict[tuple[str, str | None], list[Finding]] = {}
     for one in findings:
         kinds.setdefault((one.code, one.column), []).append(one)
-    said = []
+    sentences = []
     for (code, _), alike in kinds.items():
         runs = [f"run {one.run}" if one.run else "the manifest" for one in alike]
         each = list(dict.fromkeys(runs))
         same = len({one.sentence for one in alike}) == 1
         where = _named(each) if same else each[0]
         others = "" if same or len(each) < 2 else f"; others of the kind in {_named(each[1:])}"
-        said.append(f"{opening} {where}: {alike[0].sentence} (`{code}`){others}.")
-    return said
+        sentences.append(f"{opening} {where}: {alike[0].sentence} (`{code}`){others}.")
+    return sentences
 
 
 def _named(runs: Sequence[str]) -> str:
@@ -212,7 +212,7 @@ def _named(runs: Sequence[str]) -> str:
 
 
 class ModelFile(Record):
-    """The model that a stage has read: its file and checksum, None for that of the data sheet."""
+    """The model that a stage has read: its file and checksum, None for the data sheet's model."""
 
     SPARSE = frozenset({"folder", "sha256"})
     file: str
@@ -270,7 +270,7 @@ class ParameterValue(Value):
 
 
 def parameters_of(estimates: Iterable[object]) -> tuple[ParameterValue, ...]:
-    """Return estimates as they are written down."""
+    """Return estimates as the files hold them."""
     return tuple(ParameterValue.model_validate(e, from_attributes=True) for e in estimates)
 
 

@@ -17,7 +17,7 @@ MODEL_FILE = "model.toml"  # beside it, and beside a simulation: the model that 
 
 
 class Stiffness(Record):
-    """One phase of one run: its stiffness as fitted, by theory, and as a fit should find it."""
+    """One phase of one run: its stiffness measured, by theory, and of the calibrated model."""
 
     run: str
     phase: str
@@ -32,7 +32,7 @@ class Stiffness(Record):
 
 
 class NominalFit(Fit):
-    """How the joint fit of the nominal parameters ended, and what simulated the runs."""
+    """How the joint fit of the nominal parameters ended, and the solvers of the simulation."""
 
     solver: tuple[str, ...] | str = ()
 

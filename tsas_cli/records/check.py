@@ -19,4 +19,4 @@ class CheckFile(OfDataset):
         runs: dict[tuple[str, str], list[str]] = {}
         for silent in self.not_checked:
             runs.setdefault((silent.code, silent.reason), []).append(silent.run or "")
-        return [(*key, ", ".join(of)) for key, of in runs.items()]
+        return [(*key, ", ".join(ids)) for key, ids in runs.items()]

@@ -147,7 +147,7 @@ class ModelComparison(ComparisonFile):
 
 
 class Setting(Record):
-    """Something that was asked for in another way; None where a side does not have it."""
+    """A setting that differs between the sides; None where a side does not have it."""
 
     name: str
     a: Any  # whatever a settings file can hold

@@ -150,7 +150,7 @@ class SlowNoise(Record):
 
 
 class RemainingResidual(Record):
-    """What is left; `mean_square` is the reduced chi-square."""
+    """The remaining residual; `mean_square` is the reduced chi-square."""
 
     unexplained: bool
     depends_on: tuple[str, ...] = ()
@@ -253,7 +253,7 @@ class Findings(Record):
 
     @property
     def warns(self) -> bool:
-        """Whether it says that something is there which it has no name for."""
+        """Whether it reports something for which it has no name."""
         return self.verdict in INCOMPLETE or self.remainder.unexplained
 
 

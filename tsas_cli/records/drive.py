@@ -19,7 +19,7 @@ class BodeCurve(Record):
 
 
 class MeasuredResponse(BodeCurve):
-    """The measured one, with its coherence and where the input tells it."""
+    """The measured transfer function, its coherence, and where the input excites it."""
 
     coherence: tuple[float, ...]
     excited: tuple[bool, ...]

@@ -1,4 +1,4 @@
-"""What a stage hands back: the content of its JSON file, and the tables and sentences of it."""
+"""What a stage returns: the content of its JSON file, and its tables and sentences."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence

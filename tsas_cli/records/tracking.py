@@ -118,14 +118,12 @@ class StatedSettings(Stated):
     controllers: Controllers
 
 
-class Reference(Record):
+class Reference(ModelFile):
     """The wanted force: a shape, or a file and its checksum."""
 
-    SPARSE = frozenset({"shape", "file", "folder", "sha256"})
+    SPARSE = ModelFile.SPARSE | {"shape", "file"}
     shape: str | None = None
     file: str = ""
-    folder: str | None = None
-    sha256: str | None = None
 
 
 class TrackingFile(StageFile):

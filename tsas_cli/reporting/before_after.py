@@ -46,14 +46,19 @@ class ShownFit:
     models: tuple[tuple[str, str, Floats], ...]
 
     @property
+    def residuals(self) -> list[Floats]:
+        """The residual of each model, shape (n,) each."""
+        return [self.measured - values for _, _, values in self.models]
+
+    @property
     def gain(self) -> float:
         """By how many noise levels the residual falls; with one model how many it has."""
-        sizes = [rms(self.measured - values) / self.noise for _, _, values in self.models]
+        sizes = [rms(residual) / self.noise for residual in self.residuals]
         return sizes[0] - (sizes[1] if len(sizes) > 1 else 0.0)
 
     def gains(self) -> Floats:
         """Return by how much the residual's size falls at each sample, smoothed, shape (n,)."""
-        sizes = [np.abs(self.measured - values) for _, _, values in self.models]
+        sizes = [np.abs(residual) for residual in self.residuals]
         fall = sizes[0] - (sizes[1] if len(sizes) > 1 else 0.0)
         width = max(fall.size // 200, 3)
         return np.convolve(fall, np.full(width, 1.0 / width), mode="same")
@@ -76,8 +81,8 @@ def pictures(inputs: Inputs) -> tuple[Picture, ...]:
         return ()
     first, second = found
     if second is not None:
-        residual = rms(second.measured - second.models[0][2])
-        if residual > _VISIBLE * float(np.ptp(second.measured)):  # seen in the whole loop
+        seen_in_loop = _VISIBLE * float(np.ptp(second.measured))
+        if rms(second.residuals[0]) > seen_in_loop:
             return _picture(first, first), _picture(second, second)
     window = near(first)
     return _picture(first, first, mark=window), _picture(first, second, window=window)
@@ -95,14 +100,14 @@ def _picture(
     fit = below or loop
     sizes = ", ".join(f"{label} {plain(rms(fit.measured - v), 3)}" for label, _, v in fit.models)
     noise = f"noise level {plain(fit.noise, 3)} {BY_NAME[fit.channel].unit}"
-    said = f"RMS: {sizes}, {noise} (dashed: twice that)."
+    errors = f"RMS: {sizes}, {noise} (dashed: twice that)."
     channels = dict.fromkeys(fit.channel for fit in (loop, below) if fit is not None)
     words = "; ".join(f"{quantity_of(name)} is the {in_words(name)}" for name in channels)
     return picture(
         partial(draw_before_after, loop=loop, below=below, mark=mark, window=window),
         key=f"first-{loop.channel}-{'near' if window else 'whole'}",
-        alt=f"{loops}, measured and simulated.{under} {said} Here {words}.",
-        caption=f"{loops}.{under} {said}",
+        alt=f"{loops}, measured and simulated.{under} {errors} Here {words}.",
+        caption=f"{loops}.{under} {errors}",
         height_in=4.4,
         every_point=True,
     )
@@ -148,9 +153,8 @@ def draw_loop(
 def draw_residuals(axes: Any, fit: ShownFit) -> None:
     """Draw the residual of each model over time, between bounds of twice the noise level."""
     kept = _kept(fit)
-    for _, role, values in fit.models:
-        residual = (fit.measured - values)[kept]
-        axes.plot(fit.time_s[kept], residual, color=STAND_IN[role], linewidth=0.9)
+    for (_, role, _), residual in zip(fit.models, fit.residuals, strict=True):
+        axes.plot(fit.time_s[kept], residual[kept], color=STAND_IN[role], linewidth=0.9)
     noise_bounds(axes, fit.noise)
     unit = BY_NAME[fit.channel].unit
     axes.set_xlabel("time [s]")
@@ -158,8 +162,7 @@ def draw_residuals(axes: Any, fit: ShownFit) -> None:
 
 
 def _kept(fit: ShownFit) -> Indices:
-    residuals = [fit.measured - values for _, _, values in fit.models]
-    return kept_samples(fit.x, fit.measured, *residuals, points=_POINTS)
+    return kept_samples(fit.x, fit.measured, *fit.residuals, points=_POINTS)
 
 
 def _inside(fit: ShownFit, window: Box) -> Indices:
@@ -207,17 +210,18 @@ def _fits(inputs: Inputs, recording: Recording) -> Iterator[ShownFit]:
         return
     for it in channels_of(inputs, recording, models):
         series = [it.time_s, x, driven, it.measured, *it.by_model.values()]
-        there = np.isfinite(np.sum(series, axis=0))
+        finite = np.isfinite(np.sum(series, axis=0))
         if it.noise is None or it.by_model.keys() < set(models):
             continue
-        if np.count_nonzero(there) > _FEWEST:
-            time_s, at, moved, felt, *values = (one[there] for one in series)
-            named = tuple((m.label, m.role, v) for m, v in zip(models, values, strict=True))
-            yield ShownFit(it.run, it.channel, it.noise, time_s, at, moved, felt, named)
+        if np.count_nonzero(finite) > _FEWEST:
+            time_s, x_in, x_driven, measured, *predicted = (one[finite] for one in series)
+            named = tuple((m.label, m.role, v) for m, v in zip(models, predicted, strict=True))
+            kept = time_s, x_in, x_driven, measured
+            yield ShownFit(it.run, it.channel, it.noise, *kept, named)
 
 
 def _cycles(fit: ShownFit) -> tuple[float, float]:
-    """Return from when to when the gain is largest [s]: a few cycles, all of them if few."""
+    """Return start and end of the cycles with the largest gain [s]; infinite takes all."""
     middle, reach = float(np.mean(fit.x)), 0.1 * float(np.ptp(fit.x))
     side = np.where(fit.x > middle + reach, 1, np.where(fit.x < middle - reach, -1, 0))
     known = np.flatnonzero(side)

@@ -141,10 +141,10 @@ def _picture(key: str, rows: list[Stiffness]) -> Picture:
 
 def _draw_marks(axes: Any, values: Sequence[float | None], **style: Any) -> None:
     """Draw one mark per run, none where there is no value."""
-    there = [(value, place) for place, value in enumerate(values) if value is not None]
+    marks = [(value, place) for place, value in enumerate(values) if value is not None]
     look = {"color": STAND_IN["ink"], "markerfacecolor": "none", "markeredgewidth": 1.5} | style
-    if there:
-        axes.plot(*zip(*there, strict=True), linestyle="none", **look)
+    if marks:
+        axes.plot(*zip(*marks, strict=True), linestyle="none", **look)
 
 
 def transfer_section(inputs: Inputs) -> Section:

@@ -91,14 +91,14 @@ def _gain(rows: dict[str, Row]) -> str:
     matters = "hardly matters" if middle > 1.0 / NEAR else "does harm"
     if middle > NEAR:
         matters = "matters"
-    said = f"the better model {matters}. RMSE data sheet / extended is {plain(middle, 2)}"
+    sentence = f"the better model {matters}. RMSE data sheet / extended is {plain(middle, 2)}"
     if len(rows) == 1:
-        return f"{said}."
+        return f"{sentence}."
     gains = {case: row.gain for case, row in rows.items()}
     low, high = plain(min(gains.values()), 2), plain(max(gains.values()), 2)
     worse = [f"{case} ({plain(gain, 2)})" for case, gain in gains.items() if gain < 1.0 / NEAR]
     but = f"; the data sheet's is better by more than {_PERCENT} in {listed(worse)}"
-    return f"{said} (median of {len(rows)} cases, {low} to {high}){but if worse else ''}."
+    return f"{sentence} (median of {len(rows)} cases, {low} to {high}){but if worse else ''}."
 
 
 def _limit(rows: dict[str, Row]) -> str:

@@ -71,8 +71,8 @@ def _sections(it: Comparison, record: ModelComparison) -> Iterator[Section]:
         yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
     if "effects" in printed:
         reasons = {"A": record.a.reason, "B": record.b.reason}
-        said = tuple(f"{name}: {reason}" for name, reason in reasons.items() if reason)
-        yield Section("effects", "Effects", said, tables=(printed["effects"],))
+        verdicts = tuple(f"{name}: {reason}" for name, reason in reasons.items() if reason)
+        yield Section("effects", "Effects", verdicts, tables=(printed["effects"],))
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
         held = "Each side is held to the recordings that it has read."
         if record.on is not None:
@@ -131,7 +131,7 @@ def _maps(it: Comparison) -> Section:
 
 
 def _residuals(it: Comparison) -> Section:
-    """Return the section of the residuals, one group per run that both answer to."""
+    """Return the section of the residuals, one group per run that both predict."""
     groups = tuple(
         Group(f"Run {shared_name(*both.ids)}", pictures)
         for number, both in enumerate(it.shared[:MOST_RUNS])
@@ -146,7 +146,7 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
     if both.a is None or both.b is None:
         return ()
     a, b = both.a, both.b
-    panels, said = [], []
+    panels, sizes = [], []
     for name in channels(both):
         errors = a.errors.get(name), b.errors.get(name)
         if any(error is None or not np.isfinite(error).any() for error in errors):
@@ -155,7 +155,7 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
         label = f"{quantity_of(name)} [{unit}]"
         time_s, noise = a.run.time_s, a.noise(name)
         panels.append(Residuals(label, time_s, a.errors[name], b.errors[name], noise))
-        said.append(f"{name} A {plain(a.rmse(name), 3)}, B {plain(b.rmse(name), 3)} {unit}")
+        sizes.append(f"{name} A {plain(a.rmse(name), 3)}, B {plain(b.rmse(name), 3)} {unit}")
     if not panels:
         return ()
     run = shared_name(*both.ids)
@@ -164,8 +164,8 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
             partial(draw_two_residuals, panels=panels),
             key=f"residuals-{number}",
             alt=f"Run {run}: measured minus simulated over time, of A and of B. "
-            f"Root mean square: {'; '.join(said)}.",
-            caption=f"RMSE: {'; '.join(said)}.",
+            f"Root mean square: {'; '.join(sizes)}.",
+            caption=f"RMSE: {'; '.join(sizes)}.",
             height_in=height_in(len(panels)),
         ),
     )
@@ -178,7 +178,7 @@ def _value_pictures(it: Comparison) -> Iterator[Picture]:
     strips = shown[:_MOST]
     if not strips:
         return
-    said = "; ".join(
+    values = "; ".join(
         f"{_label(pair)}: A {plain(pair.a.value)}, B {plain(pair.b.value)}"
         f"{', which differs' if differs(pair) == 'yes' else ''}"
         for pair in strips
@@ -188,7 +188,7 @@ def _value_pictures(it: Comparison) -> Iterator[Picture]:
     yield picture(
         partial(_draw_values, strips=strips),
         key="values",
-        alt=f"Values of A and B with 95 % intervals, each on its own axis. {said}.",
+        alt=f"Values of A and B with 95 % intervals, each on its own axis. {values}.",
         caption=f"Values of A and B with their 95 % intervals, each on its own axis.{star}",
         height_in=0.5 + 0.72 * len(strips),
     )
@@ -257,8 +257,8 @@ def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
         first, second = (side[WANTED] - side[TRUE] for side in (a, b))
         panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
         in_a, in_b = (with_spread(result.scores.rmse_N) for result in results)
-        of = f"{results[0].controller}, {results[0].condition}"
-        words = f"{of}: RMSE {in_a} N in A, {in_b} N in B."
+        which = f"{results[0].controller}, {results[0].condition}"
+        words = f"{which}: RMSE {in_a} N in A, {in_b} N in B."
         yield picture(
             partial(draw_two_residuals, panels=[panel]),
             key=f"tracked-{number}",

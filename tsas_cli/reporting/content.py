@@ -20,7 +20,7 @@ _NUMBER = re.compile(f"(?:[-{MINUS}]?\\d.{{0,22}}|{ABSENT}|none|)$")  # a cell a
 
 @dataclass(frozen=True)
 class Table:
-    """A table: its caption, header and rows of text; columns in `numeric` stand to the right.
+    """A table: its caption, header and rows of text; columns in `numeric` are aligned to the right.
 
     `notes`, where there are any, are sentences under each row, over the whole width.
     """
@@ -35,7 +35,7 @@ class Table:
 def table_of(
     caption: str, header: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
 ) -> Table:
-    """Return a table without the columns in which nothing stands; numbers stand to the right."""
+    """Return a table without its empty columns; numbers are aligned to the right."""
     cells = tuple(rows)
     kept = [k for k in range(len(header)) if any(row[k] not in {"", ABSENT} for row in cells)]
     shown = tuple(tuple(row[k] for k in kept) for row in cells)
@@ -49,7 +49,7 @@ def table_of(
 
 
 def table_by_column(caption: str, rows: Iterable[Mapping[str, str]]) -> Table:
-    """Return a table of rows whose cells stand by the names of their columns."""
+    """Return a table of rows that map the names of their columns to cells."""
     cells = list(rows)
     header = list(dict.fromkeys(name for row in cells for name in row))
     return table_of(caption, header, [[row.get(name, "") for name in header] for row in cells])
@@ -73,7 +73,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Fact:
-    """One number of the first screen: what it is, the number, and what to hold it against.
+    """One number of the first screen: what it is, the number, and what to compare it with.
 
     Where there was another number before, `before` holds it.
     """

@@ -97,7 +97,7 @@ def picture(
 
 
 def _scales(axes: Any) -> dict[str, str]:
-    """Return what the page's script needs to read values off a plot; nothing of one not linear."""
+    """Return what the page's script needs to read values off a plot with linear axes."""
     if axes.get_xscale() != "linear" or axes.get_yscale() != "linear" or not axes.axison:
         return {}
     ends = {"data-x": axes.get_xlim(), "data-y": axes.get_ylim()}
@@ -117,7 +117,7 @@ def shortened(text: str, most: int) -> str:
 
 
 def _shorten(figure: Any) -> None:
-    """Keep long names from files from leaving no room for the plot."""
+    """Shorten long names from files, which would leave no room for the plot."""
     from matplotlib.text import Text
 
     for text in figure.findobj(Text):
@@ -198,7 +198,7 @@ def noise_bounds(axes: Any, noise: float | None) -> None:
 
 
 def legend(figure: Any, axes: Any = None, *, ncols: int = 2, handlelength: float = 1.6) -> None:
-    """Name above the plot what is drawn; of `axes` alone where all panels show the same."""
+    """Draw a legend above the plot, of `axes` alone where all panels show the same."""
     named = () if axes is None else axes.get_legend_handles_labels()
     figure.legend(
         *named, loc="outside upper left", ncols=ncols, handlelength=handlelength, columnspacing=1.2
@@ -224,7 +224,7 @@ def height_in(panels: int) -> float:
 def draw_two_residuals(
     figure: Any, *, panels: Sequence[Residuals], names: tuple[str, str] = ("A", "B")
 ) -> None:
-    """Draw panel below panel; the larger residual lies below the smaller one."""
+    """Draw the panels below each other; the smaller residual is drawn over the larger one."""
     rows = stacked(figure, len(panels), sharex=True)
     for axes, panel in zip(rows, panels, strict=True):
         both = panel.first, panel.second

@@ -70,7 +70,7 @@ def _response(drive: DriveFile) -> tuple[Picture, ...]:
     measured, fitted = response.measured, response.fitted
 
     def draw_bode(figure: Any) -> None:
-        """Draw magnitude, phase and coherence; dots where the input tells."""
+        """Draw magnitude, phase and coherence; measured dots where the input excites the drive."""
         rows = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 1.5))
         at, excited = np.array(measured.frequency_Hz), np.array(measured.excited, dtype=bool)
         dots = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0, "markersize": 3.2}
@@ -106,14 +106,14 @@ def _response(drive: DriveFile) -> tuple[Picture, ...]:
         caption=f"From motor speed to x_in: measured where the coherence tells, and fitted.{shown}",
         height_in=5.0,
     )
-    said = "".join(
+    places = "".join(
         f"; {pole.kind} at {plain(pole.frequency_Hz, 3)} Hz"
         + ("" if pole.in_band else ", outside of what the input shows")
         for pole in drive.poles
     )
 
     def draw_poles(figure: Any) -> None:
-        """Draw the poles by their decay and their frequency; colours tell which are in band."""
+        """Draw the poles in the complex plane, coloured by whether they are in the input's band."""
         axes = figure.subplots()
         look = {"linestyle": "none", "markersize": 8, "markeredgewidth": 1.8}
         for pole in drive.poles:
@@ -133,7 +133,7 @@ def _response(drive: DriveFile) -> tuple[Picture, ...]:
     poles = picture(
         draw_poles,
         key="drive-poles",
-        alt=f"Poles of the fitted transfer function in the complex plane: one at 0{said}.",
+        alt=f"Poles of the fitted transfer function in the complex plane: one at 0{places}.",
         caption="Poles of G(s), the integrator's at 0; between the dashed lines the input shows "
         "them. A diamond is 1/delay.",
         height_in=4.0,
@@ -147,17 +147,19 @@ def _bode_in_words(response: FrequencyResponses) -> str:
     if not at.size:
         return ""
     chosen = sorted({0, at.size // 2, at.size - 1})
-    said = "; ".join(
+    points = "; ".join(
         f"{plain(at[k], 3)} Hz {plain(fitted.magnitude[k], 3)} mm/(rpm s) at "
         f"{plain(fitted.phase_deg[k], 3)}°"
         for k in chosen
     )
     excited = sum(response.measured.excited)
-    return f"Fitted magnitude and phase: {said}. Measured at {excited} frequencies with coherence."
+    return (
+        f"Fitted magnitude and phase: {points}. Measured at {excited} frequencies with coherence."
+    )
 
 
 def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
-    panels, said = [], []
+    panels, ranges = [], []
     for recording in inputs.recordings:
         run, x_in = drive.runs.get(recording.run.id), recording.get(X_IN)
         if run is None or x_in is None or run.noise is None:
@@ -168,7 +170,7 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
         )
         label = f"{recording.run.id} [mm]"
         panels.append(Residuals(label, recording.time_s, nominal, fitted, run.noise))
-        said.append(
+        ranges.append(
             f"run {recording.run.id}: nominal {spanned(nominal)}, identified {spanned(fitted)}, "
             f"noise {plain(run.noise, 3)}"
         )
@@ -177,7 +179,7 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
     shown = picture(
         partial(draw_two_residuals, panels=panels, names=("nominal", "identified")),
         key="drive-residuals",
-        alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(said)}.",
+        alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(ranges)}.",
         caption="Measured less simulated x_in; noise alone leaves 95 % between the dashed lines.",
         height_in=height_in(len(panels)),
     )

@@ -99,7 +99,7 @@ def _of_tracking(tracking: TrackingFile) -> Glance:
     by_controller: dict[str, list[TrackedResult]] = {}
     for result in tracking.results:
         by_controller.setdefault(result.controller, []).append(result)
-    means = {name: of[0].scores.rmse_N.mean for name, of in by_controller.items()}
+    means = {name: results[0].scores.rmse_N.mean for name, results in by_controller.items()}
     known = {name: mean for name, mean in means.items() if mean is not None}
     verdict = f"Followed by {listed(list(by_controller))}"
     if len(known) > 1:

@@ -23,6 +23,7 @@ from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
+from tsas_cli.reporting.names import quantity_of
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import in_subfolders, read_json
@@ -102,15 +103,15 @@ class Inputs:
                 if values is not None and level > 0.0:
                     squares.setdefault(name, []).append((level**2, values.size))
         return {
-            name: math.sqrt(sum(square * n for square, n in of) / sum(n for _, n in of))
-            for name, of in squares.items()
+            name: math.sqrt(sum(square * n for square, n in levels) / sum(n for _, n in levels))
+            for name, levels in squares.items()
         }
 
     def concerns(self, parameter: str) -> bool:
-        """Say whether a model's parameter is not of a channel that no run holds."""
+        """Return whether some run has the parameter's channel, or it belongs to none."""
         name = parameter.rpartition(".")[2]
-        of = [c for c in CHANNELS if name.startswith(c.rsplit("_", 1)[0] + "_")]
-        return not of or of[0] in self._columns
+        channel = next((c for c in CHANNELS if name.startswith(f"{quantity_of(c)}_")), None)
+        return channel is None or channel in self._columns
 
     @cached_property
     def _columns(self) -> frozenset[str]:
@@ -118,7 +119,7 @@ class Inputs:
 
 
 def series_of(folder: Path, run: str, rows: int, column: str) -> Floats:
-    """Return a column of a run of so many samples from a stage's folder, NaN for gaps.
+    """Return a column of a run with `rows` samples from a stage's folder, NaN for gaps.
 
     InputError: the file cannot be read, or does not belong to this recording.
     """
@@ -229,7 +230,7 @@ def _by_file(folders: Sequence[Location], *, several: bool) -> dict[str, list[Lo
 
 
 def _conditions(given: Sequence[tuple[StageFile, Path]]) -> dict[str, float]:
-    """Return what the stages say of the runs in place of the manifest; they have to agree."""
+    """Return the conditions that replace the manifest's; the stages have to agree."""
     stated = [(s.conditions, path / s.FILE) for s, path in given if isinstance(s, OfDataset)]
     for conditions, path in stated:
         if conditions != stated[0][0]:

@@ -40,7 +40,7 @@ def within(title: str) -> str:
 
 
 def heading_of(cause: NamedCause) -> str:
-    """Return a cause's title, with its rival where there is one, or how many there are."""
+    """Return a cause's title, with its rival or the number of its rivals."""
     title = cause.title or title_of(cause.effect)
     if not cause.rivals:
         return title

@@ -1,4 +1,4 @@
-"""How numbers are printed: as many digits as the interval bears."""
+"""How numbers are printed: with the digits that their interval justifies."""
 
 import math
 
@@ -37,13 +37,13 @@ def over(value: float | None, noise: float | None) -> str:
 
 
 def over_seeds(first: int, last: int) -> str:
-    """Return what a table's title says of its spreads; nothing of a single seed."""
+    """Return the end of a table's title that explains the spreads; empty for a single seed."""
     many = last - first + 1
     return f", mean ± standard deviation over {many} seeds of noise" if many > 1 else ""
 
 
 def as_printed(value: float | None) -> str:
-    """Return a number with the digits it has, five at most; an en dash where there is none.
+    """Return a number without trailing zeros, to five digits; an en dash where there is none.
 
     >>> as_printed(101.96), as_printed(25.0), as_printed(-8644.38)
     ('101.96', '25', '−8644.4')
@@ -55,9 +55,10 @@ def as_printed(value: float | None) -> str:
 
 
 def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
-    """Return a value and its interval, both cut at the second digit of the interval's half width.
+    """Return a value and its interval, rounded to the second digit of the interval's half width.
 
-    Where that is more than the value, and zero is no part of it, each has digits of its own.
+    Where the half width exceeds the value and the interval excludes zero, each number is rounded to
+    its own digits.
 
     >>> with_interval(2.33812, 2.3262, 2.3501), with_interval(14242.0, 10.0, 1e8)
     (('2.338', '2.326 to 2.350'), ('14200', '10 to 100000000'))
@@ -102,10 +103,10 @@ def spanned(values: Floats) -> str:
     >>> spanned(np.array([2.0, np.nan, -0.5]))
     '−0.500 to 2.00'
     """
-    there = values[np.isfinite(values)]
-    if not there.size:
+    finite = values[np.isfinite(values)]
+    if not finite.size:
         return ABSENT
-    return f"{plain(float(there.min()), 3)} to {plain(float(there.max()), 3)}"
+    return f"{plain(float(finite.min()), 3)} to {plain(float(finite.max()), 3)}"
 
 
 def fixed(value: float | None, decimals: int) -> str:

@@ -72,7 +72,7 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
 
 
 def _sentences(inputs: Inputs) -> Iterator[str]:
-    """Yield the sentences of the first paragraph; without a dataset, of what was changed alone."""
+    """Yield the sentences of the first paragraph; without a dataset, only what was changed."""
     yield from change_notes(folder for _, folder in inputs.given)
     if inputs.dataset is None:
         return
@@ -81,8 +81,8 @@ def _sentences(inputs: Inputs) -> Iterator[str]:
     yield f"{manifest.name} holds {many}, {manifest.kind}."
     severities = [finding.severity for finding in inputs.check.findings]
     counts = {name: severities.count(name) for name in ("error", "warning", "note")}
-    said = ", ".join(count_of(n, name) for name, n in counts.items() if n)
-    yield f"The checks report {said}." if said else "The checks found nothing."
+    counted = ", ".join(count_of(n, name) for name, n in counts.items() if n)
+    yield f"The checks report {counted}." if counted else "The checks found nothing."
     of_data = [stage for stage, _ in inputs.given if isinstance(stage, OfDataset)]
     yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)

@@ -63,9 +63,9 @@ def print_page(html: str, pdf: Path) -> None:
         call = [program, *_OPTIONS, f"--user-data-dir={folder / 'profile'}"]
         if os.geteuid() == 0:
             call.append("--no-sandbox")  # as root Chromium starts in no other way
-        said = _run([*call, f"--print-to-pdf={made}", page.as_uri()])
+        output = _run([*call, f"--print-to-pdf={made}", page.as_uri()])
         if not made.is_file() or not made.read_bytes().startswith(b"%PDF"):
-            last = said.strip().splitlines()[-1:] or ["it said nothing"]
+            last = output.strip().splitlines()[-1:] or ["it said nothing"]
             raise InputError(
                 f"made no PDF ({last[0]})",
                 where=program,

@@ -1,4 +1,4 @@
-"""What models predict of runs that no fit has seen: the errors, and the loops over the measured."""
+"""What models predict of held-out runs: the errors, and the loops beside the measured ones."""
 
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import replace
@@ -53,7 +53,7 @@ def section(inputs: Inputs) -> Section | None:
 
 
 def _order(prediction: PredictionFile, known: Container[str]) -> list[str]:
-    """Return the known runs: first the one, new to every model, whose predictions differ most."""
+    """Return the known runs: first the held-out one whose predictions differ most."""
     runs = [run for run in dict.fromkeys(row.run for row in prediction.channels) if run in known]
     seen = {row.run for row in prediction.channels if row.seen}
     ratios = {
@@ -68,19 +68,19 @@ def _order(prediction: PredictionFile, known: Container[str]) -> list[str]:
 def _pictures(
     inputs: Inputs, recording: Recording, models: Sequence[Simulated], number: int, points: int
 ) -> Iterator[Picture]:
-    """Yield the loop of each tension over x_in, and under it what each model leaves."""
+    """Yield the loop of each tension over x_in, and below it the residual of each model."""
     x = models[0].driven(recording) if models else None
     for it in channels_of(inputs, recording, models):
         if it.channel not in TENSIONS or x is None or not np.isfinite(x + it.measured).any():
             continue
         names = {model: model.label.removeprefix("model ") for model in it.by_model}
-        said = ", ".join(f"{n} {plain(it.rmse(m), 3)} {it.unit}" for m, n in names.items())
+        errors = ", ".join(f"{n} {plain(it.rmse(m), 3)} {it.unit}" for m, n in names.items())
         over = f"{in_words(it.channel)} over {in_words(X_IN)}"
         yield picture(
             partial(draw_comparison, it=replace(it, x=x), points=points),
             key=f"prediction-{number}-{it.channel}",
             alt=f"Run {it.run}: {over}, measured and predicted, and below measured minus "
-            f"predicted. RMSE: {said}.",
-            caption=f"{over.capitalize()}. RMSE: {said}.",
+            f"predicted. RMSE: {errors}.",
+            caption=f"{over.capitalize()}. RMSE: {errors}.",
             height_in=4.6,
         )

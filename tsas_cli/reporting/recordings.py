@@ -54,8 +54,8 @@ def section(inputs: Inputs) -> Section | None:
     kind = {"measured": "measured on a rig", "simulated": "simulated, not measured"}[manifest.kind]
     intro = [f"The dataset {manifest.name} holds {len(manifest.run)} recordings, {kind}."]
     credit = [("Source", manifest.source), ("License", manifest.license)]
-    said = " ".join(f"{name}: {text.rstrip('.')}." for name, text in credit if text)
-    intro += [text for text in (manifest.description, said) if text]
+    origin = " ".join(f"{name}: {text.rstrip('.')}." for name, text in credit if text)
+    intro += [text for text in (manifest.description, origin) if text]
     tables = [table_by_column("The recordings", map(_run, inputs.dataset))]
     if inputs.check.findings:
         tables.append(_findings(inputs.check))
@@ -170,12 +170,12 @@ def _number(axes: Any, x: Floats, y: Floats, inside: Mask, number: str, colour: 
     """Put the phase's number on its longest stretch, apart from that of the opposite phase."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
     first, after = max(edges.reshape(-1, 2), key=lambda stretch: stretch[1] - stretch[0])
-    there = y[first:after]
-    if not number or not np.isfinite(there).any():
+    values = y[first:after]
+    if not number or not np.isfinite(values).any():
         return
     height = 0.6 if number in "12" else 0.4
-    level = height * np.nanmax(there) + (1 - height) * np.nanmin(there)
-    at = first + int(np.nanargmin(np.abs(there - level)))
+    level = height * np.nanmax(values) + (1 - height) * np.nanmin(values)
+    at = first + int(np.nanargmin(np.abs(values - level)))
     axes.text(
         x[at],
         y[at],

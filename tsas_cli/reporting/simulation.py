@@ -1,4 +1,4 @@
-"""Each model's simulation over the measurement, channel by channel, the residuals under it.
+"""Each model's simulation and the measurement by channel, and the residuals below.
 
 The models are those of a diagnosis, and each simulation by its name.
 """
@@ -46,7 +46,7 @@ _POINTS = 50_000  # of all curves
 class Simulated:
     """One model's predictions: its name on the page, its colour's role, and where they are.
 
-    `named` says what a channel is called there.
+    `named` gives the name of a channel's column in the files there.
     """
 
     label: str
@@ -55,11 +55,11 @@ class Simulated:
     named: Callable[[str], str] = str
 
     def driven(self, recording: Recording) -> Floats | None:
-        """Return x_in of a run as it drives the model [mm], shape (n,), None where it is not."""
+        """Return x_in of a run as it drives the model [mm], shape (n,); None if not written."""
         return self._written(recording, X_IN)
 
     def predicted(self, recording: Recording, column: str) -> Floats | None:
-        """Return a channel of a run as predicted, shape (n,), None where it is not.
+        """Return a channel of a run as predicted, shape (n,); None if not written.
 
         InputError: the file cannot be read, or does not belong to this recording.
         """
@@ -67,8 +67,9 @@ class Simulated:
 
     def _written(self, recording: Recording, name: str) -> Floats | None:
         run = recording.run.id
-        there = name in written_in(self.folder, run)
-        return series_of(self.folder, run, recording.time_s.size, name) if there else None
+        if name not in written_in(self.folder, run):
+            return None
+        return series_of(self.folder, run, recording.time_s.size, name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,14 +142,15 @@ def channels_of(
         if measured is None:
             continue
         predicted = {model: model.predicted(recording, channel) for model in models}
-        there = {
+        by_model = {
             model: values
             for model, values in predicted.items()
             if values is not None and np.isfinite(measured - values).any()
         }
-        if there:
+        if by_model:
             noise = inputs.noise.get(channel)
-            yield ShownChannel(recording.run.id, channel, noise, recording.time_s, measured, there)
+            run, time_s = recording.run.id, recording.time_s
+            yield ShownChannel(run, channel, noise, time_s, measured, by_model)
 
 
 def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Table:
@@ -166,7 +168,7 @@ def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Tab
 
 
 def _inputs(inputs: Inputs) -> Iterator[Table]:
-    """Yield how each run's inputs were cleaned, where it starts and what solved it."""
+    """Yield for each run how its inputs were cleaned, its initial state and its solver."""
     rows = [
         {
             "simulation": name,
@@ -193,7 +195,7 @@ def _inputs(inputs: Inputs) -> Iterator[Table]:
 def _picture(it: ShownChannel, number: int, points: int) -> Picture:
     what, unit = in_words(it.channel), it.unit
     sizes = ", ".join(f"{model.label} {plain(it.rmse(model), 3)}" for model in it.by_model)
-    said = f"RMS of the residual: {sizes}, noise level {plain(it.noise, 3)} {unit}."
+    errors = f"RMS of the residual: {sizes}, noise level {plain(it.noise, 3)} {unit}."
     spans = "; ".join(
         f"{model.label} {spanned(values)}, residual {spanned(it.measured - values)}"
         for model, values in it.by_model.items()
@@ -203,8 +205,8 @@ def _picture(it: ShownChannel, number: int, points: int) -> Picture:
         partial(draw_comparison, it=it, points=points),
         key=f"simulation-{number}-{it.channel}",
         alt=f"Run {it.run}, {what} over {lasts} s: measured {spanned(it.measured)} {unit}; "
-        f"{spans} {unit}. {said}",
-        caption=f"{what.capitalize()}. {said}",
+        f"{spans} {unit}. {errors}",
+        caption=f"{what.capitalize()}. {errors}",
         height_in=4.0,
     )
 
@@ -259,5 +261,5 @@ def simulated_models(inputs: Inputs) -> tuple[Simulated, ...]:
 
 def rms(residual: Floats) -> float:
     """Return the root mean square of a residual without its gaps, NaN where there is no sample."""
-    there = residual[np.isfinite(residual)]
-    return float(np.sqrt(np.mean(there**2))) if there.size else float("nan")
+    finite = residual[np.isfinite(residual)]
+    return float(np.sqrt(np.mean(finite**2))) if finite.size else float("nan")

@@ -25,12 +25,12 @@ NOTHING = 0.01  # of the larger curve of a law: a smaller one is not drawn
 WIDEST_BAND = 1.5  # spans of a curve to either side, that are drawn of its band
 
 
-def parts(causes: Iterable[NamedCause], inputs: Inputs, said: str = "") -> Iterator[Section]:
-    """Yield one part for each named cause or stand-in, without failures that are `said` above."""
+def parts(causes: Iterable[NamedCause], inputs: Inputs, reason: str = "") -> Iterator[Section]:
+    """Yield one part for each named cause or stand-in, without failures that `reason` says."""
     for cause in causes:
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
         equation = cause.equation or law
-        failed = [f"It {failure}." for failure in cause.failed if failure not in said]
+        failed = [f"It {failure}." for failure in cause.failed if failure not in reason]
         differs = f"Its law differs from this {cause.law_differs}." if cause.law_differs else ""
         rivals = (
             "In these recordings it is indistinguishable from "
@@ -42,20 +42,20 @@ def parts(causes: Iterable[NamedCause], inputs: Inputs, said: str = "") -> Itera
             f"Not proven: {within(heading_of(cause))}" if cause.failed else heading_of(cause),
             tuple(filter(None, (sentence_of(cause.effect), *failed, differs))),
             equations=tuple(equation.split(",  ")) if equation else (),
-            points=tuple(parameters_of(cause.parameters, inputs)),
+            points=tuple(_parameter_points(cause.parameters, inputs)),
             closing=(*rivals, *_gain(cause)),
             folded=bool(cause.failed),
         )
 
 
-def parameters_of(parameters: Mapping[str, Value], inputs: Inputs) -> Iterator[str]:
+def _parameter_points(parameters: Mapping[str, Value], inputs: Inputs) -> Iterator[str]:
     """Yield each parameter with its interval, unit and whether it is at its bound."""
     for name, p in parameters.items():
         if inputs.concerns(name):
             value, interval = value_and_interval(p)
-            said = f"`{name}` {value} {p.unit or ''}".removesuffix(" 1").rstrip()
-            said += "" if interval == ABSENT else f", 95 % interval {interval}"
-            yield f"{said}, at its bound" if p.at_bound else said
+            text = f"`{name}` {value} {p.unit or ''}".removesuffix(" 1").rstrip()
+            text += "" if interval == ABSENT else f", 95 % interval {interval}"
+            yield f"{text}, at its bound" if p.at_bound else text
 
 
 def _gain(cause: NamedCause) -> Iterator[str]:
@@ -98,7 +98,7 @@ def law_parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
         yield Section(
             anchor("parameters", law.law),
             f"Parameters: {within(law.title)}",
-            points=tuple(parameters_of(law.parameters, inputs)),
+            points=tuple(_parameter_points(law.parameters, inputs)),
             folded=True,
         )
 

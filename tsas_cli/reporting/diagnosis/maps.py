@@ -91,7 +91,7 @@ def _size(bins: tuple[Bin, ...]) -> float:
 def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, str]) -> Picture:
     seen = [panel for panel in panels if _strength(panel) > _SEEN]
     words = in_words(signal)
-    said = "; ".join(
+    ranges = "; ".join(
         f"{panel.channel}: {names[0]} {_range(panel.before)}, {names[1]} {_range(panel.after)}"
         if panel.after
         else f"{panel.channel}: {_range(panel.before)}"
@@ -100,7 +100,7 @@ def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, s
     return picture(
         partial(draw_residual_map, panels=seen, label=at_axis(signal), names=names),
         key=f"{key}-{signal}",
-        alt=f"Mean residual over the {words}, in units of noise. {said}.",
+        alt=f"Mean residual over the {words}, in units of noise. {ranges}.",
         caption=f"{listed([p.channel for p in seen])} over the {words}.",
         height_in=0.9 + 1.25 * len(seen),
     )

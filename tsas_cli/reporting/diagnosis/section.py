@@ -38,9 +38,9 @@ def section(inputs: Inputs) -> Section:
     diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
-    said = re.split(r"(?<=\.) (?=[A-Z])", diagnosis.reason)
-    above = _LEAD if len(said) > _LEAD + 1 else len(said)
-    lead = " ".join(said[:above])
+    sentences = re.split(r"(?<=\.) (?=[A-Z])", diagnosis.reason)
+    above = _LEAD if len(sentences) > _LEAD + 1 else len(sentences)
+    lead = " ".join(sentences[:above])
     evidence = (
         gains_part(diagnosis, inputs.held_out),
         maps.part(diagnosis),
@@ -51,11 +51,11 @@ def section(inputs: Inputs) -> Section:
         "diagnosis",
         _TITLE,
         (f"Undecided: {lead}" if diagnosis.verdict == "undecided" else lead,),
-        points=tuple(said[above:]),
+        points=tuple(sentences[above:]),
         parts=(
             *causes.parts(diagnosis.named, inputs),
             *causes.law_parts(diagnosis, inputs),
-            *causes.parts(diagnosis.stand_ins, inputs, said=diagnosis.reason),
+            *causes.parts(diagnosis.stand_ins, inputs, reason=diagnosis.reason),
             *closing(diagnosis),
             *(replace(part, folded=True) for part in evidence if part is not None),
         ),
@@ -97,7 +97,9 @@ def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
         return Section("diagnosis-candidates", _TRIED, (_NOTHING_TRIED,))
     standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
     shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
-    of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
+    caption = "Hypotheses"
+    if len(shown) < len(tried):
+        caption += f", {len(shown)} of {len(tried)}, best first"
     header = ("effects", "reduction [%]", "test statistic", "convincing", "remark")
     rows = [
         (
@@ -111,7 +113,7 @@ def candidates_part(diagnosis: DiagnosisFile) -> Section | None:
         )
         for c in shown
     ]
-    table = table_of(f"Hypotheses{of}", header, rows)
+    table = table_of(caption, header, rows)
     return Section("diagnosis-candidates", _TRIED, (_HYPOTHESES,), tables=(table,))
 
 

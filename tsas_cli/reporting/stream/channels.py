@@ -1,4 +1,4 @@
-"""What a run holds over time: channels, what models answer, what is left, phases, faults.
+"""A run over time: channels, predictions, residuals, phases, faults.
 
 A column of a file is read once, recorded, and forgotten. A loop is thinned to what a screen shows,
 the series are not. In the viewer's plane scales are equal and y points downwards: the ranges are
@@ -89,10 +89,10 @@ class LoopPlane:
         cls, recorder: Recorder, run: SeenRun, channel: Channel, measured: Floats
     ) -> Self | None:
         """Record axes and measured loop, shape (n,); None where there is no point of it."""
-        x, there = run.x_in_mm, np.isfinite(run.x_in_mm + measured)
-        if not there.any():
+        x, finite = run.x_in_mm, np.isfinite(run.x_in_mm + measured)
+        if not finite.any():
             return None
-        axes = axis_of(x[there], WIDTH), axis_of(measured[there], -HEIGHT)
+        axes = axis_of(x[finite], WIDTH), axis_of(measured[finite], -HEIGHT)
         points = (kept_samples(x, measured, points=most) for most in (POINTS, MOMENTS))
         loop = cls(recorder, run, run.entity(channel.column, "loop"), *axes, *points)
         loop._record_axes(at_axis(X_IN), at_axis(channel.column))
@@ -120,9 +120,9 @@ class LoopPlane:
         )
         self.recorder.static(now, style)
         places = self._places(self.moments, y)
-        there = np.flatnonzero(np.isfinite(places).all(axis=1))
-        times = self.run.times.at(self.moments[there])
-        self.recorder.columns(now, times, rr.Points2D.columns(positions=places[there]))
+        finite = np.flatnonzero(np.isfinite(places).all(axis=1))
+        times = self.run.times.at(self.moments[finite])
+        self.recorder.columns(now, times, rr.Points2D.columns(positions=places[finite]))
 
     def _places(self, at: Indices, y: Floats) -> Floats:
         return np.column_stack((self.x.place(self.run.x_in_mm[at]), self.y.place(y[at])))
@@ -214,13 +214,13 @@ def record_faults(recorder: Recorder, run: SeenRun) -> None:
     if faults := faults_of(run):
         start_s = float(run.time_s[0])
         at_s = [start_s if f.first_s is None else f.first_s for f in faults]
-        said = rr.TextLog.columns(
+        log = rr.TextLog.columns(
             text=[
                 f"{at:.3f} s: {f.code}: {f.sentence}" for at, f in zip(at_s, faults, strict=True)
             ],
             level=[_LEVELS.get(fault.severity, "INFO") for fault in faults],
         )
-        recorder.columns(run.entity("faults"), run.at(np.array(at_s)), said)
+        recorder.columns(run.entity("faults"), run.at(np.array(at_s)), log)
 
 
 def record_phases(recorder: Recorder, run: SeenRun) -> None:
@@ -264,9 +264,9 @@ def view_of(run: SeenRun, channel: Channel, titled: str = "") -> rrb.View:
 
 def _strips(places: Floats, labels: npt.NDArray[np.object_]) -> Iterator[tuple[str, Floats]]:
     """Yield each stretch of one label, up to the next one's first point, but over no gap."""
-    there = np.atleast_1d(np.isfinite(places).all(axis=1))
-    labels = np.where(there, labels, "")
+    finite = np.atleast_1d(np.isfinite(places).all(axis=1))
+    labels = np.where(finite, labels, "")
     edges = [0, *(np.flatnonzero(labels[1:] != labels[:-1]) + 1), len(labels)]
     for first, end in pairwise(edges):
         if labels[first]:
-            yield labels[first], places[first : end + int(end < len(labels) and there[end])]
+            yield labels[first], places[first : end + int(end < len(labels) and finite[end])]

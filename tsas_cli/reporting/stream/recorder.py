@@ -121,10 +121,10 @@ class Recorder:
         self.static(entity, look)
         for first in range(0, values.size, ROWS):
             at = slice(first, first + ROWS)
-            there = ~np.isnan(values[at])
-            columns = rr.Scalars.columns(scalars=values[at][there])
-            if not there.all():
-                columns = columns.partition(there.astype(np.int64))
+            known = ~np.isnan(values[at])
+            columns = rr.Scalars.columns(scalars=values[at][known])
+            if not known.all():
+                columns = columns.partition(known.astype(np.int64))
             self.columns(entity, times.at(at), columns)
 
 
@@ -235,8 +235,8 @@ def _opened(name: str, layout: Blueprint | None) -> rr.RecordingStream:
     """
     plain = re.sub(r"[^A-Za-z0-9]+", "-", f"tsas {name}").strip("-")
     shown = outline(layout and layout.root_container)
-    own = sha256(repr(shown).encode()).hexdigest()[:8]
-    stream = rr.RecordingStream(f"{plain}-{own}")
+    digest = sha256(repr(shown).encode()).hexdigest()[:8]
+    stream = rr.RecordingStream(f"{plain}-{digest}")
     if not rr.is_enabled(stream):
         raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")
     stream.send_recording_name(name)

@@ -1,4 +1,4 @@
-"""What there is to see of each run, from its files' headers, before any sample is read."""
+"""The channels of each run, from its files' headers, before any sample is read."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from tsas_cli.support.arrays import Floats
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
 _TENDON = frozenset({*TENSIONS, "x_out_mm"})
 _BROKEN = {"unreadable", "time-order"}
-_WISHES = {"f_out_ref_N": "f_out_N"}  # shown with what they are wishes of
+_REFERENCES = {"f_out_ref_N": "f_out_N"}  # a reference is shown with its channel
 
 
 @dataclass(frozen=True)
@@ -64,17 +64,17 @@ class Channel:
     @property
     def quantity(self) -> str:
         """The column that it is shown with."""
-        return _WISHES.get(self.column, self.column)
+        return _REFERENCES.get(self.column, self.column)
 
     @property
     def key(self) -> str:
         """Whether it is measured or wanted."""
-        return WANTED if self.column in _WISHES else MEASURED
+        return WANTED if self.column in _REFERENCES else MEASURED
 
 
 @dataclass(frozen=True)
 class SeenRun:
-    """One run: its columns, what models answer, its phases, and what controller made it.
+    """One run: its columns, the predictions, its phases, and the controller that made it.
 
     Time and x_in are kept once they are read; other columns are not.
     """
@@ -93,8 +93,9 @@ class SeenRun:
     @property
     def loops(self) -> tuple[Channel, ...]:
         """The tensions that can be shown over the displacement of the drive."""
-        there = X_IN in self.file.names
-        return tuple(c for c in self.channels if there and c.column in TENSIONS)
+        if X_IN not in self.file.names:
+            return ()
+        return tuple(channel for channel in self.channels if channel.column in TENSIONS)
 
     @cached_property
     def time_s(self) -> Floats:

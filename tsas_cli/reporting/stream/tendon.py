@@ -83,8 +83,8 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
         return
     dataset, entry = cast("Dataset", run.inputs.dataset), run.file.run
     drive = prepare(read_recording(dataset.folder, entry)).drive
-    there = written_in(run.inputs.folders[given.stage], run.id)
-    at = moments(run.time_s, [run.written(n, given.stage) for n in TENSIONS if n in there])
+    written = written_in(run.inputs.folders[given.stage], run.id)
+    at = moments(run.time_s, [run.written(n, given.stage) for n in TENSIONS if n in written])
     followed: dict[Source, tuple[Rig, Frames]] = {}
     for source, model in given.models.items():
         rig, start = model.rig(entry), model.session_start(dataset.manifest)
@@ -102,8 +102,8 @@ def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
     """
     steps = PER_SECOND * np.diff(time_s)
     for tension in tensions:
-        there = tension[np.isfinite(tension)]
-        span = float(np.ptp(there)) if there.size else 0.0
+        finite = tension[np.isfinite(tension)]
+        span = float(np.ptp(finite)) if finite.size else 0.0
         if span > 0.0:
             steps = np.fmax(steps, PER_SPAN / span * np.abs(np.diff(tension)))
     passed = np.concatenate(([0.0], np.cumsum(steps)))
@@ -124,17 +124,17 @@ def record_tendons(
     low, high = float(np.nanmin(every)), float(np.nanmax(every))
     size = _size([rig for rig, _ in tendons.values()])
     for number, (source, (rig, frames)) in enumerate(tendons.items()):
-        mine, colour = f"{entity}/{source.key}", dark(source.role)
+        path, colour = f"{entity}/{source.key}", dark(source.role)
         line = sheath_of(rig.sheath_length_mm, rig.total_bend_rad, frames.slip.shape[1])
         line[:, 1] += APART * size * number
         tension = np.nan_to_num(frames.tension_N)
         raised = np.broadcast_to(line, (*tension.shape, 3)).astype(np.float32)
         raised[..., 2] += TALL * size / high * tension
-        recorder.static(f"{mine}/tension", rr.LineStrips3D.from_fields(colors=colour, radii=-1.5))
-        recorder.columns(f"{mine}/tension", times, rr.LineStrips3D.columns(strips=raised))
+        recorder.static(f"{path}/tension", rr.LineStrips3D.from_fields(colors=colour, radii=-1.5))
+        recorder.columns(f"{path}/tension", times, rr.LineStrips3D.columns(strips=raised))
         text = f"{source.label}, {low:.3g} to {high:.3g} N"
         name = rr.Points3D([line[0]], labels=[text], colors=colour, radii=0.0, show_labels=True)
-        recorder.static(f"{mine}/name", name)
+        recorder.static(f"{path}/name", name)
         # A map that is even to the eye and never lost on black; colours as 0xRRGGBBAA.
         middles = 0.5 * (tension[:, 1:] + tension[:, :-1])
         share = 0.18 + 0.79 * (middles - low) / ((high - low) or 1.0)
@@ -142,11 +142,11 @@ def record_tendons(
         shades = packed[..., 0].astype(np.uint32)
         # The tendon in pieces, thick where they slip.
         pieces = np.stack((line[:-1], line[1:]), axis=1).astype(np.float32)
-        recorder.static(f"{mine}/tendon", rr.LineStrips3D(pieces))
+        recorder.static(f"{path}/tendon", rr.LineStrips3D(pieces))
         radii = size * np.where(np.isin(frames.slip, (1, -1)), THICK, THIN)
         columns = rr.LineStrips3D.columns(colors=shades.ravel(), radii=radii.ravel())
         counts = np.full(len(radii), len(pieces))
-        recorder.columns(f"{mine}/tendon", times, columns.partition(counts))
+        recorder.columns(f"{path}/tendon", times, columns.partition(counts))
         # The front where it runs, as a point on the tension.
         runs = (frames.front > 0.0) & (frames.front < 1.0)
         places = [
@@ -154,9 +154,9 @@ def record_tendons(
             for front, now in zip(frames.front[runs], raised[runs], strict=True)
         ]
         look = rr.Points3D.from_fields(colors=dark("ink"), radii=-6.0)
-        recorder.static(f"{mine}/front", look)
+        recorder.static(f"{path}/front", look)
         points = rr.Points3D.columns(positions=np.array(places).reshape(-1, 3))
-        recorder.columns(f"{mine}/front", times, points.partition(runs.astype(np.int64)))
+        recorder.columns(f"{path}/front", times, points.partition(runs.astype(np.int64)))
 
 
 def view_of_tendon(run: SeenRun) -> rrb.View | None:

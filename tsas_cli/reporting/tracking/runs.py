@@ -37,7 +37,7 @@ _COLUMNS = ("time_s", WANTED, TRUE, ASKED, X_IN, X_INV)
 
 @dataclass(frozen=True)
 class TimeCurve:
-    """What it is called, the controller that it is of, and its values, shape (n,)."""
+    """A curve over time: its label, its controller and its values, shape (n,)."""
 
     label: str
     controller: str
@@ -69,7 +69,7 @@ class TrackedRun:
 
 @dataclass(frozen=True)
 class RunsUnderCondition:
-    """What is done to the plant, and the runs under it, at least one."""
+    """A condition of the plant, and the runs under it, at least one."""
 
     name: str
     number: int
@@ -182,12 +182,12 @@ def _picture(
     height_in: float,
 ) -> Picture:
     """Return a condition's curves; `what` is shown, and in which unit."""
-    said = "; ".join(f"{curve.label}, {spanned(curve.values)}" for curve in curves)
+    ranges = "; ".join(f"{curve.label}, {spanned(curve.values)}" for curve in curves)
     time_s, change_s = condition.runs[0].time_s, condition.change_s
     return picture(
         partial(draw, time_s=time_s, curves=curves, change_s=change_s),
         key=f"{key}-{condition.number}",
-        alt=f"{what[0]} over time, {condition.name}, in {what[1]}: {said}.",
+        alt=f"{what[0]} over time, {condition.name}, in {what[1]}: {ranges}.",
         caption=f"{condition.name.capitalize()}: {caption}.",
         height_in=height_in,
     )

@@ -138,7 +138,7 @@ def _scores(tracking: TrackingFile) -> Table:
 
 def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:
     orbits = [(run.name, *_error_and_rate(run, settings)) for run in condition.runs]
-    said = "; ".join(
+    extremes = "; ".join(
         f"{name} error up to {plain(_most(x), 3)} mm, rate up to {plain(_most(y), 3)} mm/s"
         for name, x, y in orbits
     )
@@ -165,7 +165,7 @@ def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture
     return picture(
         draw,
         key=f"tracking-phase-{condition.number}",
-        alt=f"Phase portraits of the drive's error, {condition.name}: {said}.",
+        alt=f"Phase portraits of the drive's error, {condition.name}: {extremes}.",
         caption=f"{condition.name.capitalize()}: rate of the drive's error over the error.",
         height_in=0.5 + 2.0 * down if len(orbits) > 1 else 3.5,
     )
@@ -223,7 +223,7 @@ def _estimates(run: TrackedRun, law: Adaptive) -> Iterator[AdaptiveEstimate]:
 
 def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adaptive) -> Picture:
     estimates = tuple(_estimates(run, law))
-    said = "; ".join(
+    ranges = "; ".join(
         f"{it.symbol} from {' to '.join(it.ends)} {it.unit}, "
         f"bounds {it.lowest:g} and {it.highest:g}"
         for it in estimates
@@ -247,7 +247,7 @@ def _estimates_picture(condition: RunsUnderCondition, run: TrackedRun, law: Adap
     return picture(
         draw,
         key=f"tracking-adaptation-{condition.number}",
-        alt=f"Adapted parameters over time, {condition.name}: {said}.",
+        alt=f"Adapted parameters over time, {condition.name}: {ranges}.",
         caption=f"{condition.name.capitalize()}: estimates over time, bounds dashed.",
         height_in=4.2,
     )

@@ -64,9 +64,9 @@ class Child:
             return
         self.log.seek(0)
         lines = self.log.read().decode(errors="replace").split("\n")
-        said = next((line.strip() for line in reversed(lines) if line.strip()), f"exit code {code}")
+        last = next((line.strip() for line in reversed(lines) if line.strip()), f"exit code {code}")
         raise InputError(
-            f"the viewer has failed ({said})",
+            f"the viewer has failed ({last})",
             remedy="try `tsas view --web`; `tsas doctor` says what the viewer can do here",
         )
 
@@ -171,11 +171,11 @@ def drawn_with() -> str:
         (port,) = free_ports(1)
         call = [str(program()), "--bind", LOOPBACK, "--port", str(port), "--headless"]
         call += ["--window-size", SIZE, "--hide-welcome-screen", "--screenshot-to", str(picture)]
-        own = {"RUST_LOG": "info", "NO_COLOR": "1", "CI": "true"}  # CI: no usage statistics
+        settings = {"RUST_LOG": "info", "NO_COLOR": "1", "CI": "true"}  # CI: no usage statistics
         try:
             ended = subprocess.run(  # noqa: S603 # the program of a package of ours
                 call,
-                env=os.environ | own,
+                env=os.environ | settings,
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
                 timeout=LONGEST_S,

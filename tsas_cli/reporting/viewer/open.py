@@ -81,33 +81,33 @@ def note_once() -> str:
 
 @contextmanager
 def _window(file: Path | None, port: int | None) -> Iterator[Viewer]:
-    (own,) = free_ports(1, port)
+    (taken,) = free_ports(1, port)
     shown = ALL_OF_IT if file is None else (str(file.absolute()),)
-    call = [*BIND, *NO_WELCOME, "--port", str(own), *shown]
-    with viewer_child(call, port=own) as child:
+    call = [*BIND, *NO_WELCOME, "--port", str(taken), *shown]
+    with viewer_child(call, port=taken) as child:
         child.wait(OPENS_S, DRAWS)
-        yield Viewer(child, proxy=_proxy(own))
+        yield Viewer(child, proxy=_proxy(taken))
 
 
 @contextmanager
 def _page(file: Path | None, port: int | None) -> Iterator[Viewer]:
-    own, *data = free_ports(2 if file is None else 1, port)
+    taken, *data = free_ports(2 if file is None else 1, port)
     (inside,) = free_ports(1)
     call = [*BIND, "--serve-web", "--web-viewer-port", str(inside)]
     if file is None:
         shown = _proxy(data[0])
         call += [*ALL_OF_IT, "--port", str(data[0])]
     else:
-        shown = f"http://{LOOPBACK}:{own}{PAGE_STREAM}"
+        shown = f"http://{LOOPBACK}:{taken}{PAGE_STREAM}"
         call.append(shown)
     with (
         viewer_child(call, port=inside) as child,
-        served_page(own, inside=inside, file=file, data=data),
+        served_page(taken, inside=inside, file=file, data=data),
     ):
         # WebGL is what every browser draws; dark is what a window is by itself, and what the
         # colours are chosen for.
         query = {"url": shown, "renderer": "webgl", "theme": "dark", "hide_welcome_screen": "true"}
-        address = f"http://{LOOPBACK}:{own}/?{urlencode(query)}"
+        address = f"http://{LOOPBACK}:{taken}/?{urlencode(query)}"
         yield Viewer(child, page=address, proxy=shown)
 
 
@@ -127,13 +127,14 @@ def served_page(
 
     Of other addresses the page may only reach the ports `data`, which send what is live.
     """
-    own = [f"{host}:{port}" for host in HOSTS]
+    allowed = [f"{host}:{port}" for host in HOSTS]
     reached = " ".join(f"http://{host}:{one}" for one in (port, *data) for host in HOSTS)
     policy = f"{POLICY}; connect-src 'self' {reached} data: blob:"
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            if self.headers["Host"] not in own:  # a page elsewhere that calls this machine its own
+            # A page elsewhere may call this machine by its own name.
+            if self.headers["Host"] not in allowed:
                 self.send_error(HTTPStatus.FORBIDDEN)
                 return
             with suppress(ConnectionError):  # the browser has seen enough
