@@ -37,7 +37,6 @@ _WHY = (
     "The same line fitted to the calibrated model stands beside it: in a dead band the tension is "
     "curved, so that a linear fit misses the theory of a lumped tendon without any sensor's fault."
 )
-_EXPECTED = ("expected_N_per_mm", "theory_N_per_mm")
 _NAME_LENGTH = 14
 
 
@@ -116,7 +115,8 @@ def _picture(key: str, rows: list[Stiffness]) -> Picture:
             if one.interval_low is not None and one.interval_high is not None:
                 ends = [one.interval_low, one.interval_high]
                 axes.plot(ends, [place, place], marker="|", markersize=7, color=colour)
-        model, theory = ([getattr(row, name) for row in rows] for name in _EXPECTED)
+        model = [row.expected_N_per_mm for row in rows]
+        theory = [row.theory_N_per_mm for row in rows]
         _draw_marks(axes, model, marker="D", markersize=6, label="calibrated model")
         _draw_marks(axes, theory, marker="|", markersize=11, label="theory")
         axes.set_yticks(range(len(rows)), [shortened(row.run, _NAME_LENGTH) for row in rows])

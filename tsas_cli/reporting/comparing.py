@@ -18,24 +18,9 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.writing import columns_of, result_file
 from tsas_cli.records.comparison import ComparisonFile, ModelComparison, ParameterPair, shared_name
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import (
-    MOST_RUNS,
-    Group,
-    Picture,
-    Section,
-    rendered,
-    runs_drawn,
-    table_of,
-)
+from tsas_cli.reporting.content import Picture, Section, pictures_by_run, rendered, table_of
 from tsas_cli.reporting.diagnosis.maps import Panel, pictures
-from tsas_cli.reporting.drawing import (
-    Residuals,
-    draw_two_residuals,
-    height_in,
-    legend,
-    picture,
-    stacked,
-)
+from tsas_cli.reporting.drawing import Residuals, legend, picture, stacked, two_residuals
 from tsas_cli.reporting.names import quantity_of
 from tsas_cli.reporting.numbers import plain, with_spread
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
@@ -132,14 +117,12 @@ def _maps(it: Comparison) -> Section:
 
 def _residuals(it: Comparison) -> Section:
     """Return the section of the residuals, one group per run that both predict."""
-    groups = tuple(
-        Group(f"Run {shared_name(*both.ids)}", pictures)
-        for number, both in enumerate(it.shared[:MOST_RUNS])
-        if (pictures := _pictures(both, number))
+    groups, left = pictures_by_run(
+        len(it.shared),
+        ((shared_name(*both.ids), _pictures(both, n)) for n, both in enumerate(it.shared)),
     )
     what = "Measured minus simulated. Noise alone leaves 95 % between the dashed lines."
-    intro = (what, *runs_drawn(len(it.shared)))
-    return Section("residuals", "Residuals over time", intro, groups=groups)
+    return Section("residuals", "Residuals over time", (what, *left), groups=groups)
 
 
 def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
@@ -160,13 +143,12 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
         return ()
     run = shared_name(*both.ids)
     return (
-        picture(
-            partial(draw_two_residuals, panels=panels),
+        two_residuals(
+            panels,
             key=f"residuals-{number}",
             alt=f"Run {run}: measured minus simulated over time, of A and of B. "
             f"Root mean square: {'; '.join(sizes)}.",
             caption=f"RMSE: {'; '.join(sizes)}.",
-            height_in=height_in(len(panels)),
         ),
     )
 
@@ -259,10 +241,9 @@ def _error_pictures(it: tracked.Tracks) -> Iterator[Picture]:
         in_a, in_b = (with_spread(result.scores.rmse_N) for result in results)
         which = f"{results[0].controller}, {results[0].condition}"
         words = f"{which}: RMSE {in_a} N in A, {in_b} N in B."
-        yield picture(
-            partial(draw_two_residuals, panels=[panel]),
+        yield two_residuals(
+            [panel],
             key=f"tracked-{number}",
             alt=f"Wanted less true force at the load over time, of A and of B. {words}",
             caption=words,
-            height_in=height_in(1) + 0.6,
         )

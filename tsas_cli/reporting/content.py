@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
+from itertools import islice
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
@@ -130,13 +131,16 @@ def anchor(*words: str) -> str:
     return "-".join(re.sub(r"[^\w-]", lambda letter: f".{ord(letter[0]):x}", w) for w in words)
 
 
-def runs_drawn(count: int) -> tuple[str, ...]:
-    """Return the sentence on how many of the runs have pictures, where not all have.
+def pictures_by_run(
+    count: int, runs: Iterable[tuple[str, Iterable[Picture]]]
+) -> tuple[tuple[Group, ...], tuple[str, ...]]:
+    """Return the pictures of the first runs, each by its name; where runs are left, a sentence.
 
-    >>> runs_drawn(12), runs_drawn(10)
-    (('10 of 12 runs are drawn.',), ())
+    `count` is the number of all runs.
     """
-    return (f"{MOST_RUNS} of {count} runs are drawn.",) if count > MOST_RUNS else ()
+    first = ((run, tuple(pictures)) for run, pictures in islice(runs, MOST_RUNS))
+    groups = tuple(Group(f"Run {run}", pictures) for run, pictures in first if pictures)
+    return groups, (f"{MOST_RUNS} of {count} runs are drawn.",) if count > MOST_RUNS else ()
 
 
 def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:

@@ -9,6 +9,7 @@ import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -216,15 +217,24 @@ class Residuals:
     noise: float | None
 
 
-def height_in(panels: int) -> float:
-    """Return the height in inches that so many panels need."""
-    return 0.8 + 1.3 * panels
+def two_residuals(
+    panels: Sequence[Residuals],
+    *,
+    names: tuple[str, str] = ("A", "B"),
+    key: str,
+    alt: str,
+    caption: str,
+) -> Picture:
+    """Return the picture of panels below each other; the arguments are those of `picture`."""
+    height_in = max(0.8 + 1.3 * len(panels), 2.7)
+    draw = partial(_draw_two_residuals, panels=panels, names=names)
+    return picture(draw, key=key, alt=alt, caption=caption, height_in=height_in)
 
 
-def draw_two_residuals(
-    figure: Any, *, panels: Sequence[Residuals], names: tuple[str, str] = ("A", "B")
+def _draw_two_residuals(
+    figure: Any, *, panels: Sequence[Residuals], names: tuple[str, str]
 ) -> None:
-    """Draw the panels below each other; the smaller residual is drawn over the larger one."""
+    """Draw the panels; the smaller residual is drawn over the larger one."""
     rows = stacked(figure, len(panels), sharex=True)
     for axes, panel in zip(rows, panels, strict=True):
         both = panel.first, panel.second

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,14 +11,7 @@ from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.records.drive import DriveFile, FrequencyResponses
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, table_of
-from tsas_cli.reporting.drawing import (
-    Residuals,
-    bound,
-    draw_two_residuals,
-    height_in,
-    legend,
-    picture,
-)
+from tsas_cli.reporting.drawing import Residuals, bound, legend, picture, two_residuals
 from tsas_cli.reporting.inputs import Inputs, series_of
 from tsas_cli.reporting.names import X_IN
 from tsas_cli.reporting.numbers import RAISED, plain, spanned
@@ -176,12 +168,12 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
         )
     if not panels:
         return ()
-    shown = picture(
-        partial(draw_two_residuals, panels=panels, names=("nominal", "identified")),
+    shown = two_residuals(
+        panels,
+        names=("nominal", "identified"),
         key="drive-residuals",
         alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(ranges)}.",
         caption="Measured less simulated x_in; noise alone leaves 95 % between the dashed lines.",
-        height_in=height_in(len(panels)),
     )
     return (shown,)
 

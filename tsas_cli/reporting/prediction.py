@@ -12,7 +12,7 @@ from tsas_cli.recordings.columns import name_by
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.reporting.colours import MODELS
-from tsas_cli.reporting.content import MOST_RUNS, Group, Picture, Section, runs_drawn, table_of
+from tsas_cli.reporting.content import MOST_RUNS, Picture, Section, pictures_by_run, table_of
 from tsas_cli.reporting.drawing import picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import TENSIONS, X_IN, in_words
@@ -36,10 +36,12 @@ def section(inputs: Inputs) -> Section | None:
     ]
     curves = len(TENSIONS) * min(len(shown), MOST_RUNS) * (1 + 2 * len(models))
     points = shared_points(curves, _POINTS)
-    groups = tuple(
-        Group(f"Run {run}", pictures)
-        for number, run in enumerate(shown[:MOST_RUNS])
-        if (pictures := tuple(_pictures(inputs, recordings[run], models, number, points)))
+    groups, left = pictures_by_run(
+        len(shown),
+        (
+            (run, _pictures(inputs, recordings[run], models, number, points))
+            for number, run in enumerate(shown)
+        ),
     )
     return Section(
         "prediction",
@@ -48,7 +50,7 @@ def section(inputs: Inputs) -> Section | None:
         points=(*prediction.findings, *prediction.notes[1:]),
         tables=tuple(table_of(*table) for table in tables(prediction)),
         groups=groups,
-        closing=runs_drawn(len(shown)),
+        closing=left,
     )
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -17,11 +16,10 @@ from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import (
     MOST_RUNS,
-    Group,
     Picture,
     Section,
     Table,
-    runs_drawn,
+    pictures_by_run,
     table_by_column,
     table_of,
 )
@@ -117,15 +115,16 @@ def loops_section(inputs: Inputs) -> Section | None:
     segments = calibration.segments if calibration else {}
     runs = len(inputs.dataset.runs)
     points = shared_points(len(TENSIONS) * min(runs, MOST_RUNS), _POINTS)
-    groups = tuple(
-        Group(f"Run {one.run.id}", pictures)
-        for number, one in enumerate(islice(inputs.recordings, MOST_RUNS))
-        if (pictures := tuple(_pictures(one, segments.get(one.run.id, ()), number, points)))
+    groups, left = pictures_by_run(
+        runs,
+        (
+            (one.run.id, _pictures(one, segments.get(one.run.id, ()), number, points))
+            for number, one in enumerate(inputs.recordings)
+        ),
     )
     if not groups:
         intro = "No run holds x_in_mm and a tension: there is no loop to show."
-    sentences = (intro, *runs_drawn(runs))
-    return Section("loops", "Loops and phases", sentences, groups=groups, given=bool(groups))
+    return Section("loops", "Loops and phases", (intro, *left), groups=groups, given=bool(groups))
 
 
 def _pictures(

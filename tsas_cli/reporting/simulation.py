@@ -19,12 +19,11 @@ from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import (
     MOST_RUNS,
-    Group,
     Picture,
     Section,
     Table,
     missing,
-    runs_drawn,
+    pictures_by_run,
     table_by_column,
     table_of,
 )
@@ -106,15 +105,18 @@ def section(inputs: Inputs) -> Section:
     runs = list(dict.fromkeys(one.run for one in compared))
     shown = [one for one in compared if one.run in runs[:MOST_RUNS]]
     points = shared_points(sum(1 + 2 * len(one.by_model) for one in shown), _POINTS)
-    groups = tuple(
-        Group(f"Run {run}", tuple(_picture(one, number, points) for one in shown if one.run == run))
-        for number, run in enumerate(runs[:MOST_RUNS])
+    groups, left = pictures_by_run(
+        len(runs),
+        (
+            (run, [_picture(one, number, points) for one in shown if one.run == run])
+            for number, run in enumerate(runs)
+        ),
     )
     given = [record for record, _ in inputs.simulations.values()]
     return Section(
         "simulation",
         _TITLE,
-        (*_intro(inputs), *runs_drawn(len(runs))),
+        (*_intro(inputs), *left),
         tables=(_table(compared, models), *_inputs(inputs)),
         groups=groups,
         points=tuple(dict.fromkeys(note for record in given for note in record.notes)),
