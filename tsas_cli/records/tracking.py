@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 from tsas_cli.records.base import ModelFile, Number, Record, StageFile, number_text
 
 ADAPTIVE = "adaptive-sliding-mode"
-SCORES = {
+SCORE_TITLES = {
     "rmse_N": "RMSE [N]",
     "lowest_error_N": "lowest [N]",
     "highest_error_N": "highest [N]",
@@ -148,9 +148,9 @@ class TrackingFile(StageFile):
 
         `shown` makes the text of a score.
         """
-        header = ["controller", "condition", *SCORES.values()]
+        header = ["controller", "condition", *SCORE_TITLES.values()]
         rows = [
-            [row.controller, row.condition, *(shown(row.scores[score]) for score in SCORES)]
+            [row.controller, row.condition, *(shown(row.scores[score]) for score in SCORE_TITLES)]
             for row in self.results
         ]
         if any(row.printed_rmse_N is not None for row in self.results):

@@ -125,10 +125,11 @@ def _residuals(it: Comparison) -> Section:
     return Section("residuals", "Residuals over time", (what, *left), groups=groups)
 
 
-def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
-    if both.a is None or both.b is None:
-        return ()
+def _pictures(both: Both, number: int) -> Iterator[Picture]:
+    """Yield the picture of a run's residuals, a panel for each channel that both predict."""
     a, b = both.a, both.b
+    if a is None or b is None:
+        return
     panels, sizes = [], []
     for name in channels(both):
         errors = a.errors.get(name), b.errors.get(name)
@@ -139,18 +140,15 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
         time_s, noise = a.run.time_s, a.noise(name)
         panels.append(Residuals(label, time_s, a.errors[name], b.errors[name], noise))
         sizes.append(f"{name} A {plain(a.rmse(name), 3)}, B {plain(b.rmse(name), 3)} {unit}")
-    if not panels:
-        return ()
-    run = shared_name(*both.ids)
-    return (
-        two_residuals(
+    if panels:
+        rmse = "; ".join(sizes)
+        yield two_residuals(
             panels,
             key=f"residuals-{number}",
-            alt=f"Run {run}: measured minus simulated over time, of A and of B. "
-            f"Root mean square: {'; '.join(sizes)}.",
-            caption=f"RMSE: {'; '.join(sizes)}.",
-        ),
-    )
+            alt=f"Run {shared_name(*both.ids)}: measured minus simulated over time, of A and of B. "
+            f"Root mean square: {rmse}.",
+            caption=f"RMSE: {rmse}.",
+        )
 
 
 def _value_pictures(it: Comparison) -> Iterator[Picture]:

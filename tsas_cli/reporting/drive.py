@@ -27,7 +27,7 @@ def section(inputs: Inputs) -> Section | None:
     parts = (
         Section("drive-numbers", "What was found, in numbers", tables=printed),
         Section("drive-response", "Frequency response and poles", pictures=_response(drive)),
-        Section("drive-left", "What is left", pictures=_residuals(inputs, drive)),
+        Section("drive-left", "What is left", pictures=tuple(_residuals(inputs, drive))),
         Section("drive-next", "Evidence and next experiment", evidence),
     )
     return Section(
@@ -150,7 +150,8 @@ def _bode_in_words(response: FrequencyResponses) -> str:
     )
 
 
-def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
+def _residuals(inputs: Inputs, drive: DriveFile) -> Iterator[Picture]:
+    """Yield the picture of the residuals of x_in, a panel for each run."""
     panels, ranges = [], []
     for recording in inputs.recordings:
         run, x_in = drive.runs.get(recording.run.id), recording.get(X_IN)
@@ -166,16 +167,15 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
             f"run {recording.run.id}: nominal {spanned(nominal)}, identified {spanned(fitted)}, "
             f"noise {plain(run.noise, 3)}"
         )
-    if not panels:
-        return ()
-    shown = two_residuals(
-        panels,
-        names=("nominal", "identified"),
-        key="drive-residuals",
-        alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(ranges)}.",
-        caption="Measured less simulated x_in; noise alone leaves 95 % between the dashed lines.",
-    )
-    return (shown,)
+    if panels:
+        yield two_residuals(
+            panels,
+            names=("nominal", "identified"),
+            key="drive-residuals",
+            alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(ranges)}.",
+            caption="Measured less simulated x_in; noise alone leaves 95 % between the dashed "
+            "lines.",
+        )
 
 
 def _power(value: float, _: object) -> str:

@@ -119,6 +119,8 @@ def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -
         "Errors are wanted less true force at the load; outside 2 % is the time in which they are "
         "beyond 2 % of the wanted force's range. Plots show the runs with the first seed."
     )
+    if any(result.printed_rmse_N is not None for result in tracking.results):
+        yield "Table 5 is that of Yang 2025, with the RMSE on the paper's rig."
     if tracking.notes:
         yield "Keep in mind:"
 
