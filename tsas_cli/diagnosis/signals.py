@@ -12,13 +12,14 @@ from tsas_cli.identification.run_simulation import mean_edges
 from tsas_cli.support.arrays import Floats
 
 DIRECTION, RUN = "direction", "run"
-SIGNALS = {  # that are no columns of a recording: in words, and the unit
+SIGNALS = {  # in words, and the unit
+    "f_in_N": ("tension at the drive", "N"),
     "time_s": ("time in the run", "s"),
+    "x_in_mm": ("displacement of the drive", "mm"),
     "speed_mm_per_s": ("speed", "mm/s"),
     "travel_since_reversal_mm": ("travel since the last reversal", "mm"),
     DIRECTION: ("direction", ""),
 }
-_COLUMNS = {"f_in_N": "tension at the drive", "x_in_mm": "displacement of the drive"}
 
 
 @dataclass(frozen=True)
@@ -63,9 +64,9 @@ def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
 
 def signal_in_words(signal: str) -> str:
     """Return a signal's name in words, for a sentence."""
-    words = _COLUMNS | {name: words for name, (words, _) in SIGNALS.items()}
     name, _, rest = signal.partition(" ")
-    return f"{f'the {words[name]}' if name in words else name} {rest}".rstrip()
+    words = f"the {SIGNALS[name][0]}" if name in SIGNALS else name
+    return f"{words} {rest}".rstrip()
 
 
 def _since_reversal(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:

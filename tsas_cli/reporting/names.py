@@ -14,7 +14,7 @@ from tsas_cli.support.arrays import Floats
 
 X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")
 EFFECT = {effect.name: effect for effect in EFFECTS}
-_SIGNALS = SIGNALS | {"phase": ("phase of the cycle", "")}
+_SIGNALS = SIGNALS | {"phase": ("phase of the cycle", "")}  # what a residual is shown over
 PHASES = {  # by their keys in the files, the numbers beside the curve
     "contraction": "1",
     "dead_band_down": "2",
@@ -83,9 +83,9 @@ def quantity_of(column: str) -> str:
 
 
 def _meaning(name: str) -> tuple[str, str]:
-    column = BY_NAME.get(name)
-    known = (name, "") if column is None else (column.meaning.split(",")[0], column.unit)
-    return _SIGNALS.get(name, known)
+    if column := BY_NAME.get(name):
+        return column.meaning.split(",")[0], column.unit
+    return _SIGNALS.get(name, (name, ""))
 
 
 def label_of(key: str) -> str:
