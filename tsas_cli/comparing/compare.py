@@ -51,7 +51,7 @@ class Comparison:
 
     @property
     def shared(self) -> list[Both]:
-        """The recordings that both sides answer to."""
+        """The recordings that both sides predict."""
         return [both for both in self.recordings if both.a and both.b]
 
 
@@ -114,7 +114,7 @@ def residual_maps(recordings: list[Both]) -> dict[str, Maps]:
     """Return under `a` and `b`, per channel and signal, bins with mean and scatter of the error.
 
     The error is measured less simulated, in units of the channel's noise; the bins hold about as
-    many samples of both sides together. Taken are the recordings that both sides answer to; where
+    many samples of both sides together. Taken are the recordings that both sides predict; where
     there is none, each side's own. A channel or signal that one side lacks is left out.
     """
     shared = [both for both in recordings if both.a and both.b] or recordings

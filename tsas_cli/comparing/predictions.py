@@ -1,4 +1,4 @@
-"""What each side answers to recordings, and how far that is from what was measured."""
+"""What each side predicts of recordings, and its errors against what was measured."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -69,7 +69,7 @@ class Both:
 
 
 class Predictions:
-    """Answers to recordings, each of which is read and made ready once."""
+    """Predictions of recordings, each of which is read and prepared once."""
 
     def __init__(self, step: Steps = NO_PROGRESS) -> None:
         """Take what is called after each run."""
@@ -79,7 +79,7 @@ class Predictions:
     def of(
         self, side: Side, dataset: Dataset | None, *, fit_own: bool = False
     ) -> list[ComparedRun]:
-        """Return what a side answers to the runs of a dataset, none where it is not there."""
+        """Return what a side predicts of the runs of a dataset, none where it is not there."""
         if dataset is None:
             return []
         start = None if side.model is None else side.model.session_start(dataset.manifest)
@@ -148,7 +148,7 @@ def ratio_of(value: float | None, over: float | None) -> float | None:
 
 
 def channels(both: Both) -> list[str]:
-    """Return the channels of a recording that a side answers, in their usual order."""
+    """Return the channels of a recording that a side predicts, in their usual order."""
     there = {
         name for compared in (both.a, both.b) if compared is not None for name in compared.errors
     }

@@ -39,7 +39,7 @@ class CalibrationResult(Result):
     """A calibrated model, and what was found on the way."""
 
     record: records.CalibrationFile  # what `calibration.json` holds
-    calibration: Calibration  # and, run by run, phases, slopes and answers
+    calibration: Calibration  # and, run by run, phases, slopes and predictions
 
     @property
     def model(self) -> Model:
@@ -138,7 +138,7 @@ def calibrate(
     -------
     CalibrationResult
         `.model` holds every parameter with unit and 95 % interval; `.calibration` what was found
-        on the way, run by run: `segments` (phases), `slopes` (km [N/mm]), `answers` (simulated
+        on the way, run by run: `segments` (phases), `slopes` (km [N/mm]), `predictions` (simulated
         channels, shape (n,)); `.summary` is what `calibration.json` holds.
 
     Raises

@@ -1,4 +1,4 @@
-"""The diagnose stage: `diagnosis.json`, both models, and what each answers to the runs."""
+"""The diagnose stage: `diagnosis.json`, both models, and what each predicts of the runs."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -254,7 +254,7 @@ def _write(
 
 
 def _predictions(run: Prepared, extended: Model, nominal: Model) -> Recording:
-    """Return time, the conditioned or simulated x_in, and what each model answers to it."""
+    """Return time, the conditioned or simulated x_in, and what each model predicts."""
     after, before = compare(run, extended), compare(run, nominal)
     columns = {"time_s": run.time_s, "x_in_mm": after.response.x_in_mm, **after.channels}
     columns |= {nominal_name(name): values for name, values in before.channels.items()}

@@ -30,7 +30,7 @@ DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "l
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SimulationResult(Result):
-    """Every run as a model answers it; `result["a"]` is run a.
+    """What a model predicts of every run; `result["a"]` is run a.
 
     `runs` holds them by id: columns of shape (n,) as in the recording, `x_in_mm` as conditioned
     [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive. Those that were

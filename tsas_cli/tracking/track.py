@@ -1,4 +1,4 @@
-"""One run of the closed loop: the controller's model makes the path, the plant answers."""
+"""One run of the closed loop: the model of the controller makes the path, the plant follows it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
