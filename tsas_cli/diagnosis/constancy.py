@@ -20,6 +20,7 @@ from tsas_cli.diagnosis.held_out import (
     gauss_newton_step,
     held_out_squares,
     in_stretches,
+    normal_equations,
 )
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
 from tsas_cli.diagnosis.tolerances import GROWTH, without_tolerances
@@ -180,7 +181,7 @@ def _values(
 ) -> tuple[str, list[float]]:
     """Return the parameter that differs most between the parts, and its value in each."""
     solution = split.solution
-    step = gauss_newton_step(split, np.ones(solution.residual.size, bool))
+    step = gauss_newton_step(split, normal_equations(split))
     further = step[-shape[0] * shape[1] :].reshape(shape)
     sizes = [split.unknowns[len(trial.unknowns) + k * shape[1]].scale for k in range(shape[0])]
     k = int(np.argmax(np.abs(further).max(axis=1) / sizes))

@@ -9,8 +9,10 @@ what is reported. Parameters of a single run (its preload, its zeros) are fitted
 every hypothesis. With fewer than three runs, stretches of the runs are held out.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
+from operator import add
 from typing import Protocol
 
 import numpy as np
@@ -90,15 +92,40 @@ def own_of_fold(trial: Hypothesis, folds: Folds, fold: int) -> Mask:
     return np.array([u.run is not None and u.run in runs for u in trial.unknowns])
 
 
+@dataclass(frozen=True)
+class NormalEquations:
+    """The sums of some residuals r and their slopes J that least squares take.
+
+    `gram` is JᵀJ, shape (p, p), `gradient` Jᵀr, shape (p,).
+    """
+
+    gram: Floats
+    gradient: Floats
+
+    def __add__(self, other: "NormalEquations") -> "NormalEquations":
+        """Return the sums of the residuals of both."""
+        return NormalEquations(self.gram + other.gram, self.gradient + other.gradient)
+
+    def squares(self, step: Floats) -> float:
+        """Return what a step adds to the sum of squares."""
+        return float(step @ self.gram @ step + 2.0 * self.gradient @ step)
+
+
+def normal_equations(trial: Hypothesis, kept: Mask | slice = slice(None)) -> NormalEquations:
+    """Return the normal equations of some residuals, of all by default."""
+    J, r = trial.solution.jacobian[kept], trial.solution.residual[kept]
+    return NormalEquations(J.T @ J, J.T @ r)
+
+
 def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
     """Return the scaled values of a trial without one fold, its run's own ones fitted to it."""
     held_out = folds.fold == fold
-    J, r = trial.solution.jacobian, trial.solution.residual
+    J, r = trial.solution.jacobian[held_out], trial.solution.residual[held_out]
     own = own_of_fold(trial, folds, fold)
-    step = gauss_newton_step(trial, ~held_out)
+    step = gauss_newton_step(trial, normal_equations(trial, ~held_out))
     if own.any():
-        after = r[held_out] + J[held_out][:, ~own] @ step[~own]
-        step[own] = -np.linalg.lstsq(J[held_out][:, own], after, rcond=None)[0]
+        after = r + J[:, ~own] @ step[~own]
+        step[own] = -np.linalg.lstsq(J[:, own], after, rcond=None)[0]
     return _within(trial, step)
 
 
@@ -109,31 +136,30 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     by themselves. That rise, and the determinant of the prediction's covariance, count as squares
     of the held-out run's residuals, of each by the variance of its prediction.
     """
-    everything = np.ones(folds.fold.size, bool)
-    whole = gauss_newton_step(trial, everything)
-    out = _moved(trial, everything, whole) ** 2
-    for fold in np.unique(folds.fold):
-        held_out = folds.fold == fold
-        rest = gauss_newton_step(trial, ~held_out)
-        rise = _squares(trial, ~held_out, whole) - _squares(trial, ~held_out, rest)
-        variance, determinant = _prediction_variance(trial, folds, fold)
+    of_folds = _by_fold(trial, folds)
+    step = gauss_newton_step(trial, normal_equations(trial))
+    out = (trial.solution.residual + trial.solution.jacobian @ step) ** 2
+    for fold, others in _others(trial, of_folds):
+        alone = gauss_newton_step(trial, others)
+        weak = float(_weak(trial) @ (step**2 - alone**2))
+        rise = others.squares(step) - others.squares(alone) + weak
+        variance, determinant = _prediction_variance(trial, folds, fold, others, of_folds[fold])
         share = variance / max(float(variance.sum()), TINY)
-        out[held_out] += (max(rise, 0.0) + determinant) * share
+        out[folds.fold == fold] += (max(rise, 0.0) + determinant) * share
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
 
 
-def gauss_newton_step(trial: Hypothesis, kept: Mask) -> Floats:
+def gauss_newton_step(trial: Hypothesis, kept: NormalEquations) -> Floats:
     """Return the Gauss-Newton step to the least squares of some residuals, shape (p,), scaled.
 
     What is at a bound stays there, and what reaches one stops there: the others step as if it were
     fixed, since an unknown that is cut alone would leave a valley that it shares with them.
     """
-    J, r = trial.solution.jacobian[kept], trial.solution.residual[kept]
     free = ~trial.solution.at_bound
-    gram, gradient = J.T @ J + np.diag(_weak(trial)), J.T @ r
+    gram = kept.gram + np.diag(_weak(trial))
     step = np.zeros(free.size)
     while free.any():
-        toward = -(gradient + gram @ np.where(free, 0.0, step))
+        toward = -(kept.gradient + gram @ np.where(free, 0.0, step))
         step[free] = np.linalg.solve(gram[np.ix_(free, free)], toward[free])
         inside = _within(trial, step) - trial.solution.values
         beyond = free & ~np.isclose(step, inside, rtol=1e-9, atol=1e-12)
@@ -143,6 +169,20 @@ def gauss_newton_step(trial: Hypothesis, kept: Mask) -> Floats:
         first = int(np.argmin(way))
         step[first], free[first] = inside[first], False
     return step
+
+
+def _by_fold(trial: Hypothesis, folds: Folds) -> dict[int, NormalEquations]:
+    """Return the normal equations of each fold's residuals."""
+    return {int(k): normal_equations(trial, folds.fold == k) for k in np.unique(folds.fold)}
+
+
+def _others(
+    trial: Hypothesis, of_folds: dict[int, NormalEquations]
+) -> Iterator[tuple[int, NormalEquations]]:
+    """Yield each fold and the normal equations of all others."""
+    of_none = normal_equations(trial, slice(0))
+    for fold in of_folds:
+        yield fold, reduce(add, (one for k, one in of_folds.items() if k != fold), of_none)
 
 
 def _weak(trial: Hypothesis) -> Floats:
@@ -157,33 +197,27 @@ def _within(trial: Hypothesis, step: Floats) -> Floats:
     return np.clip(trial.solution.values + step, lower, upper)
 
 
-def _moved(trial: Hypothesis, kept: Mask, step: Floats) -> Floats:
-    """Return some residuals after a step."""
-    return np.asarray(trial.solution.residual[kept] + trial.solution.jacobian[kept] @ step)
-
-
-def _squares(trial: Hypothesis, kept: Mask, step: Floats) -> float:
-    """Return the sum of squares that `gauss_newton_step` minimises."""
-    moved = _moved(trial, kept, step)
-    return float(moved @ moved) + float(_weak(trial) @ step**2)
-
-
-def _prediction_variance(trial: Hypothesis, folds: Folds, fold: int) -> tuple[Floats, float]:
+def _prediction_variance(
+    trial: Hypothesis, folds: Folds, fold: int, others: NormalEquations, own: NormalEquations
+) -> tuple[Floats, float]:
     """Return the variance of a fold's prediction by the others, over that of the noise.
 
     Of each residual, shape (k,), and the logarithm of the determinant of the whole covariance,
-    noise included.
+    noise included: that of the unknowns' precision with the fold, over that without it.
     """
-    from scipy.linalg import solve_triangular
-
     free = ~(own_of_fold(trial, folds, fold) | trial.solution.at_bound)
-    J, held_out = trial.solution.jacobian[:, free], folds.fold == fold
-    known = np.vstack((J[~held_out], np.diag(np.sqrt(_weak(trial)[free]))))
-    root = np.linalg.qr(known, mode="r")
-    spread = solve_triangular(root, J[held_out].T, trans="T", check_finite=False)
-    whole = np.eye(len(spread)) + spread @ spread.T  # of the same determinant
+    weak = np.diag(_weak(trial))
+    without, together = (
+        equations.gram[np.ix_(free, free)] + weak[np.ix_(free, free)]
+        for equations in (others, others + own)
+    )
+    unit = 1.0 / np.sqrt(np.diagonal(without))  # units of the unknowns in which the matrix is even
+    J = trial.solution.jacobian[folds.fold == fold][:, free] * unit
+    even = without * np.outer(unit, unit)
     with np.errstate(invalid="ignore"):  # NaN, which convinces nobody, without finite slopes
-        return np.sum(spread**2, axis=0), float(np.linalg.slogdet(whole)[1])
+        variance = np.sum((J @ np.linalg.inv(even)) * J, axis=1)
+        logarithms = [float(np.linalg.slogdet(matrix)[1]) for matrix in (together, without)]
+    return variance, logarithms[0] - logarithms[1]
 
 
 def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
@@ -191,7 +225,9 @@ def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
 
     A run is, where its prediction by the others is more uncertain than its noise.
     """
-    for fold in np.unique(folds.fold):
-        if float(np.mean(_prediction_variance(trial, folds, fold)[0])) > 1.0:
+    of_folds = _by_fold(trial, folds)
+    for fold, others in _others(trial, of_folds):
+        variance, _ = _prediction_variance(trial, folds, fold, others, of_folds[fold])
+        if float(np.mean(variance)) > 1.0:
             return in_stretches(folds)
     return folds

@@ -10,6 +10,7 @@ from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.run_simulation import Predictions, predict_driven
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.sensors import low_pass, new_memory
 from tsas_cli.support.arrays import Floats, Indices
 
 WINDOWS = 24  # parts of a run whose zero or gain may differ
@@ -136,11 +137,12 @@ def shapes_of(read: ReadRun) -> RunShapes:
 
 
 def passed(time_s: Floats, values: Floats, constant_s: float) -> Floats:
-    """Return what an amplifier passes that is coupled to AC with a time constant."""
-    from scipy.signal import lfilter
+    """Return what an amplifier passes that is coupled to AC with a time constant.
 
-    decay = np.exp(-np.diff(time_s).mean() / constant_s)
-    return np.asarray(lfilter([1.0, -1.0], [1.0, -decay], values))
+    It is connected at the first sample, which it passes whole.
+    """
+    settled = low_pass(values, time_s, constant_s, new_memory()[0])
+    return np.asarray(values - settled + values[0] * np.exp((time_s[0] - time_s) / constant_s))
 
 
 def _parts(since: Floats) -> Floats:
