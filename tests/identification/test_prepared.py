@@ -39,16 +39,6 @@ def test_where_a_column_is_known_there_is_no_gap(known, gap):
     assert np.flatnonzero(p._in_gap(np.arange(12.0), values)).tolist() == gap
 
 
-def test_noise_is_at_least_that_of_quantisation():
-    """A step of 0.5 has a standard deviation of 0.5/√12."""
-    steps = 0.5 * np.repeat(np.arange(10.0), 20)
-    assert p.noise_of(steps) == pytest.approx(0.5 / math.sqrt(12.0))
-    assert math.isnan(p.noise_of(np.arange(5.0)))
-    assert p.noise_of(np.full(100, 3.0)) == 0.0
-    white = np.random.default_rng(1).standard_normal(10_000)
-    assert p.noise_of(white) == pytest.approx(1.0, rel=0.05)
-
-
 def test_a_run_begins_at_the_line_through_its_first_twenty_samples():
     """3 + 2 t from t = 5 s on: what comes later, and what is missing, does not count."""
     time_s = 5.0 + 0.1 * np.arange(40)

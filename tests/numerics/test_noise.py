@@ -1,7 +1,10 @@
+import math
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.noise import Noise, noise_of, noise_sd, quantisation_step, with_memory
 
 TIME_S = np.arange(20_000) / 1000
 SINE = 10 * np.sin(2 * np.pi * 0.5 * TIME_S)
@@ -38,6 +41,64 @@ def test_too_few_samples_give_no_answer():
     assert np.isnan(noise_sd(np.full(1000, np.nan)))
     assert np.isnan(noise_sd(SINE[:15]))
     assert np.isfinite(noise_sd(SINE[:16]))
+
+
+def filtered(sd, correlation, seed=0, size=SINE.size):
+    """Return noise behind a digital low pass, of a standard deviation, after it has settled."""
+    kick = np.sqrt(1.0 - correlation**2) * np.random.default_rng(seed).standard_normal(size + 200)
+    return sd * lfilter([1.0], [1.0, -correlation], kick)[200:]
+
+
+@pytest.mark.parametrize("motion", [0.0 * SINE, SINE, JUMPS], ids=["none", "sine", "jumps"])
+@pytest.mark.parametrize(("correlation", "error"), [(0.3, 0.05), (0.55, 0.08), (0.8, 0.2)])
+def test_noise_behind_a_low_pass_is_recovered_with_its_memory(motion, correlation, error):
+    """From sample to sample it changes by far less than it is, the longer its memory the less."""
+    values = motion + filtered(0.2, correlation)
+    found = noise_of(values)
+    assert found.sd == pytest.approx(0.2, rel=error)
+    assert found.correlation == pytest.approx(correlation, abs=0.08)
+    if correlation > 0.5:
+        assert noise_sd(values) < 0.65 * found.sd
+
+
+@pytest.mark.parametrize("motion", [SINE, JUMPS, 0.01 * SINE**2], ids=["sine", "jumps", "small"])
+@pytest.mark.parametrize("coarse", [1, 5, 10, 20, 40])
+@pytest.mark.parametrize("sd", [0.005, 0.05])
+def test_a_motion_at_any_rate_is_no_memory(motion, coarse, sd):
+    """Sampled coarsely, third differences of a motion rise above white noise, ever faster."""
+    for seed in range(5):
+        values = noisy(sd, seed, motion)[::coarse]
+        assert noise_of(values) == Noise(noise_sd(values), 0.0)
+
+
+def test_a_mean_of_noise_with_a_memory_is_as_uncertain_as_it_says():
+    """The variance of means of c samples, over that of one sample divided by c."""
+    for correlation in (0.0, 0.5, 0.9):
+        noise = filtered(1.0, correlation, size=2_000_000)
+        for count in (1, 2, 10, 100):
+            means = noise.reshape(-1, count).mean(axis=1)
+            expected = count * np.var(means)
+            assert Noise(1.0, correlation).growth(np.array(count)) == pytest.approx(
+                expected, rel=0.05
+            )
+
+
+def test_white_noise_gets_a_memory():
+    white = np.random.default_rng(2).standard_normal(200_000)
+    made = with_memory(white, 0.6)
+    assert np.std(made) == pytest.approx(1.0, rel=0.02)
+    assert np.corrcoef(made[1:], made[:-1])[0, 1] == pytest.approx(0.6, abs=0.01)
+    np.testing.assert_array_equal(with_memory(white, 0.0), white)
+
+
+def test_noise_is_at_least_that_of_quantisation():
+    """A step of 0.5 has a standard deviation of 0.5/√12."""
+    steps = 0.5 * np.repeat(np.arange(10.0), 20)
+    assert noise_of(steps).sd == pytest.approx(0.5 / math.sqrt(12.0))
+    assert math.isnan(noise_of(np.arange(5.0)).sd)
+    assert noise_of(np.full(100, 3.0)).sd == 0.0
+    white = np.random.default_rng(1).standard_normal(10_000)
+    assert noise_of(white).sd == pytest.approx(1.0, rel=0.05)
 
 
 @pytest.mark.parametrize("step", [0.002, 0.1, 20 / 4096])

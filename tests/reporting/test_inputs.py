@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.reporting.made_folders import NOISE, make_simulation
-from tsas_cli.identification.prepared import noise_of
+from tsas_cli.numerics.noise import noise_of
 from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.inputs import read_inputs, read_stage
 from tsas_cli.support.errors import InputError
@@ -28,7 +28,7 @@ def test_simulations_are_named_by_their_folders_by_their_paths_where_two_share_o
 
 def test_a_channel_has_one_noise_level_over_all_runs(dataset):
     inputs = read_inputs([dataset])
-    levels = [noise_of(recording.get("f_in_N")) for recording in inputs.recordings]
+    levels = [noise_of(recording.get("f_in_N")).sd for recording in inputs.recordings]
     assert inputs.noise["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(levels))))
     assert inputs.noise["f_in_N"] == pytest.approx(NOISE, rel=0.05)
     assert "x_out_mm" not in inputs.noise

@@ -25,7 +25,6 @@ from tsas_cli.identification.prepared import (
     drive_of,
     driving_columns,
     is_empty,
-    noise_of,
     nothing_to_compare,
 )
 from tsas_cli.numerics.conditioning_pieces import (
@@ -37,6 +36,7 @@ from tsas_cli.numerics.conditioning_pieces import (
     joined,
     plan,
 )
+from tsas_cli.numerics.noise import Noise, noise_of
 from tsas_cli.physics.by_pieces import simulate_pieces
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import Dynamics
@@ -75,7 +75,7 @@ class LongRun:
     columns: RunColumns
     drive_column: str
     plans: Mapping[str, CleaningPlan]
-    noise: Mapping[str, float]
+    noise: Mapping[str, Noise]
     session_s: float
     copied: CopiedRows = NONE_COPIED  # from another run
 
@@ -187,15 +187,18 @@ def thinned_notes(runs: Sequence[Prepared]) -> list[str]:
     return out
 
 
-def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, float]:
+def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, Noise]:
     """Return the noise of each channel with any finite value: the median over the pieces."""
-    found: dict[str, list[float]] = {name: [] for name in names}
+    found: dict[str, list[Noise]] = {name: [] for name in names}
     for piece in pieces(run, names) if names else ():
         for name in names:
             if np.isfinite(piece.columns[name]).any():
                 found[name].append(noise_of(piece.columns[name]))
-    known = {n: [level for level in found[n] if not math.isnan(level)] for n in names if found[n]}
-    return {n: float(np.median(levels)) if levels else math.nan for n, levels in known.items()}
+    known = {n: [one for one in found[n] if not math.isnan(one.sd)] for n in names if found[n]}
+    return {
+        n: Noise(*map(float, np.median(levels, axis=0))) if levels else Noise(math.nan)
+        for n, levels in known.items()
+    }
 
 
 def _samples(run: RunColumns, name: str, overlap: int) -> Iterator[Samples]:

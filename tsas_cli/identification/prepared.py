@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
-from tsas_cli.numerics.noise import interpolated, noise_sd, quantisation_step
+from tsas_cli.numerics.noise import Noise, interpolated, noise_of
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
@@ -34,7 +34,7 @@ class Prepared:
     """One run: conditioned inputs of a model, and measured channels to compare.
 
     Of a run that is too long for memory it has one in `every` of `all_rows` samples, those at
-    reversals of the drive, and `all_noise`, the noise level of all samples. `temperature_C` is from
+    reversals of the drive, and `all_noise`, the noise of all samples. `temperature_C` is from
     the lowest to the highest, `motor_mm` the motor's angle in displacement of the drive, shape
     (n,), where they were recorded.
     """
@@ -48,7 +48,7 @@ class Prepared:
     session_s: float = 0.0  # start of the run since the dataset's first
     every: int = 1
     all_rows: int = 0
-    all_noise: Mapping[str, float] | None = None
+    all_noise: Mapping[str, Noise] | None = None
     temperature_C: tuple[float, float] | None = None
     motor_mm: Floats | None = None
 
@@ -71,9 +71,15 @@ class Prepared:
 
         Zero where a channel never changes, NaN where there are too few samples.
         """
-        if self.all_noise is not None:
-            return {name: self.all_noise[name] for name in self.measured}
-        return {name: noise_of(values) for name, values in self.measured.items()}
+        return {name: noise.sd for name, noise in self.noises.items()}
+
+    @cached_property
+    def noises(self) -> dict[str, Noise]:
+        """Noise of each measured channel with its memory, from sample to sample of these."""
+        if self.all_noise is None:
+            return {name: noise_of(values) for name, values in self.measured.items()}
+        of_all = {name: self.all_noise[name] for name in self.measured}
+        return {n: Noise(one.sd, one.correlation**self.every) for n, one in of_all.items()}
 
     @cached_property
     def step_tolerance(self) -> float:
@@ -266,12 +272,6 @@ def _in_gap(time_s: Floats, values: Floats) -> Mask:
         time_s[finite[np.minimum(after, finite.size - 1)]] - time_s[finite[np.maximum(before, 0)]]
     )
     return ~inside | (gap_s > GAP * np.median(np.diff(time_s[finite])))
-
-
-def noise_of(values: Floats) -> float:
-    """Return the noise level of a channel, with quantisation; NaN for too few samples."""
-    noise = noise_sd(values)
-    return noise if math.isnan(noise) else max(noise, quantisation_step(values) / math.sqrt(12.0))
 
 
 def _start_value(time_s: Floats, values: Floats) -> float | None:

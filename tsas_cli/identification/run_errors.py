@@ -25,6 +25,7 @@ from tsas_cli.identification.run_simulation import (
     with_steps_at,
 )
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
+from tsas_cli.numerics.noise import Noise
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -123,7 +124,7 @@ class RunErrors:
 
     def residuals(self, rig: Rig) -> Floats:
         """Return means of neighbouring residuals, scaled to unit variance, channel by channel."""
-        return _means(self.errors(rig))
+        return self._means(self.errors(rig))
 
     def changed(self, changes: Mapping[str, Floats]) -> Floats:
         """Return the change of the residuals where predicted minus measured changes by so much.
@@ -131,7 +132,14 @@ class RunErrors:
         The changes are those of some channels at all samples, shape (n,) each.
         """
         none = np.zeros(self.run.time_s.size)
-        return _means({n: self._weighted(n, changes.get(n, none)) for n in self.samples})
+        return self._means({n: self._weighted(n, changes.get(n, none)) for n in self.samples})
+
+    def _means(self, errors: Mapping[str, Floats]) -> Floats:
+        parts = []
+        for name, each in errors.items():
+            edges, roots = _edges_and_roots(each.size, self.run.noises[name].correlation)
+            parts.append(np.add.reduceat(each, edges) / roots)
+        return np.concatenate(parts)
 
     def over_noise(self, name: str, errors: Floats, chosen: Mask) -> Floats:
         """Return the chosen of a channel's errors over its noise, where that rules.
@@ -167,19 +175,15 @@ class RunErrors:
         return np.unique(np.concatenate(first) // length, return_inverse=True)[1]
 
 
-def _means(errors: Mapping[str, Floats]) -> Floats:
-    parts = []
-    for each in errors.values():
-        edges, roots = _edges_and_roots(each.size)
-        parts.append(np.add.reduceat(each, edges) / roots)
-    return np.concatenate(parts)
-
-
 @lru_cache
-def _edges_and_roots(size: int) -> tuple[Indices, Floats]:
-    """Return the first sample of each mean and the root of how many it is of."""
+def _edges_and_roots(size: int, correlation: float) -> tuple[Indices, Floats]:
+    """Return the first sample of each mean, and the root of the variance of its sum.
+
+    Of samples of unit variance with that correlation of neighbours.
+    """
     edges = mean_edges(size)
-    return edges, np.sqrt(np.diff(edges, append=size))
+    counts = np.diff(edges, append=size)
+    return edges, np.sqrt(counts * Noise(1.0, correlation).growth(counts))
 
 
 def run_errors(

@@ -25,7 +25,7 @@ from tsas_cli.numerics.local_polynomial import (
     corners,
     smoothed,
 )
-from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.noise import Noise, noise_of, quantisation_step, with_memory
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -51,8 +51,8 @@ class Conditioned:
     `sd` is the standard deviation of its error per sample, `unseen` the correction that makes it
     monotone between reversals, `window_s` the median window, `noise` the raw noise, `reversals`
     the indices of the extrema, with both ends, `smallest_reversal` the amplitude below which a
-    reversal counts as noise, `step` the quantisation step; `recorded` are the samples that are no
-    gap, all without it.
+    reversal counts as noise, `step` the quantisation step, `correlation` that of the noise of
+    neighbouring samples; `recorded` are the samples that are no gap, all without it.
     """
 
     values: Floats
@@ -63,6 +63,7 @@ class Conditioned:
     reversals: Indices
     smallest_reversal: float = 0.0
     step: float = 0.0
+    correlation: float = 0.0
     recorded: Indices | None = None
 
     def again(self, time_s: Floats, every: int = 1) -> list[Floats]:
@@ -76,7 +77,8 @@ class Conditioned:
         random, out = np.random.default_rng(0), []
         for _ in range(DRAWS):
             noisy = np.full(self.values.size, math.nan)
-            noisy[at] = self.values[at] + white * random.standard_normal(self.values[at].size)
+            drawn = random.standard_normal(self.values[at].size)
+            noisy[at] = self.values[at] + white * with_memory(drawn, self.correlation)
             if self.step > 0.0 and every == 1:
                 noisy = self.step * np.round(noisy / self.step)
             out.append(condition(time_s, noisy).values)
@@ -98,24 +100,32 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
         return replace(
             cleaned, values=clean, sd=sd, unseen=unseen, reversals=reversals, recorded=finite
         )
-    noise, memory = noise_and_memory(values)
-    if not noise > 0.0:  # noise-free, or too short for an estimate
+    noise = noise_of(values)
+    if not noise.sd > 0.0:  # noise-free, or too short for an estimate
         nothing = np.zeros(values.size)
         return Conditioned(values, nothing, nothing, 0.0, 0.0, turning_points(values, 0.0))
-    smooth, sd, window_s = smooth_out(time_s, values, noise, memory)
-    threshold = smallest_reversal(sd, noise)
+    smooth, sd, window_s = smooth_out(time_s, values, noise.sd, memory_of(values, noise))
+    threshold = smallest_reversal(sd, noise.sd)
     reversals = turning_points(smooth, threshold)
     clean = with_turning_points(monotone_between(smooth, reversals), reversals)
-    step = quantisation_step(values)
-    return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold, step)
+    return Conditioned(
+        clean,
+        sd,
+        smooth - clean,
+        window_s,
+        noise.sd,
+        reversals,
+        threshold,
+        quantisation_step(values),
+        noise.correlation,
+    )
 
 
-def noise_and_memory(values: Floats) -> tuple[float, float]:
-    """Return the noise level with quantisation, and for how many samples its error persists."""
-    step = quantisation_step(values)
-    noise = max(noise_sd(values), step / math.sqrt(12.0))
+def memory_of(values: Floats, noise: Noise) -> float:
+    """Return for how many samples the error of a signal persists."""
     plateau = values.size / (1.0 + np.count_nonzero(np.diff(values)))  # mean samples at one level
-    return noise, plateau if step > 0.0 else 1.0
+    quantised = quantisation_step(values) > 0.0
+    return max(plateau if quantised else 1.0, float(noise.growth(np.array(float(values.size)))))
 
 
 def smooth_out(

@@ -14,10 +14,11 @@ import numpy as np
 
 from tsas_cli.numerics.conditioning import (
     Conditioned,
-    noise_and_memory,
+    memory_of,
     smallest_reversal,
     smooth_out,
 )
+from tsas_cli.numerics.noise import noise_of
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -86,7 +87,8 @@ def plan(pieces: Iterable[Samples], count: int) -> CleaningPlan:
         if finite.sum() < FEWEST:
             continue
         time_s, values = time_s[finite], values[finite]
-        here, lasts = noise_and_memory(values)
+        found = noise_of(values)
+        here, lasts = found.sd, memory_of(values, found)
         noise.append(here)
         memory.append(lasts)
         interval.append(float(np.median(np.diff(time_s))))

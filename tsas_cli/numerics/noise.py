@@ -1,14 +1,65 @@
 """Noise, quantisation and interpolation of a channel, estimated from its samples alone."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.support.arrays import Floats, Mask
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEWEST_SAMPLES = 16  # for an estimate
-_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])  # zero for a parabola
-_GAIN = math.sqrt(float(np.sum(_DIFFERENCE**2)))
+STRIDES = (1, 2, 4)  # samples, by which third differences show whether noise has a memory
+CERTAIN = 4.0  # standard deviations by which they have to differ
+SCATTER = 2.8  # standard deviation of the logarithm of a ratio of two mean squares, times √n
+MOST_GROWN = 2.1  # of one ratio: a random walk has 2, a vibration and motion have more
+FASTER = 1.2  # growth of the second ratio over that of the first, in logarithms; a motion has 1.6
+CORRELATIONS = np.linspace(0.0, 0.9, 901)  # of neighbouring samples
+
+
+class Noise(NamedTuple):
+    """Noise of a channel: its standard deviation, and the correlation of neighbouring samples.
+
+    That of samples k apart is its k-th power, as behind a first-order low pass.
+    """
+
+    sd: float
+    correlation: float = 0.0
+
+    def growth(self, count: Floats | Indices) -> Floats:
+        """Return the variance of a mean of so many samples, over that of white noise."""
+        c = self.correlation
+        return np.asarray(
+            (1.0 + c) / (1.0 - c) - 2.0 * c * (1.0 - c**count) / (1.0 - c) ** 2 / count
+        )
+
+
+def noise_of(values: Floats) -> Noise:
+    """Return the noise of a channel, with quantisation; NaN for too few samples.
+
+    Third differences of every second and fourth sample have the mean square of those of all where
+    the noise is white, and a larger one where it has a memory; motion adds to them too, by four
+    times as much or more at each step. So noise has a memory where they grow less from step to
+    step, within chance; how long follows from the first one (or from both where it is less), by an
+    autoregressive process of first order. A vibration over a few samples counts as such noise.
+    """
+    rounding = quantisation_step(values) / math.sqrt(12.0)
+    white = noise_sd(values)
+    if not white > rounding:
+        return Noise(rounding if white <= rounding else math.nan)
+    clean = values[np.isfinite(values)]
+    squares = np.array([_third_square(clean, stride) for stride in STRIDES])
+    grown = squares[1:] / squares[:-1]
+    certain = math.exp(CERTAIN * SCATTER / math.sqrt(clean.size))
+    faster = math.log(grown[1]) > FASTER * math.log(max(grown[0], certain))
+    if faster or not certain < grown[0] < MOST_GROWN:
+        return Noise(white)
+    correlation = min(
+        float(np.interp(squares[k] / squares[0], _SHARES[k] / _SHARES[0], CORRELATIONS))
+        for k in (1, 2)
+    )
+    share = float(np.interp(correlation, CORRELATIONS, _SHARES[0]))
+    return Noise(white / math.sqrt(share), correlation)
 
 
 def noise_sd(values: Floats) -> float:
@@ -19,11 +70,34 @@ def noise_sd(values: Floats) -> float:
     NaN for fewer than 16 samples.
     """
     clean = values[np.isfinite(values)]
-    if clean.size < FEWEST_SAMPLES:
-        return math.nan
-    third = np.abs(np.convolve(clean, _DIFFERENCE, mode="valid"))
-    trimmed = np.sort(third)[: int(0.95 * third.size)]
-    return float(np.sqrt(np.mean(trimmed**2) / _TRIMMED) / _GAIN)
+    return math.nan if clean.size < FEWEST_SAMPLES else math.sqrt(_third_square(clean, 1))
+
+
+def _third_square(values: Floats, stride: int) -> float:
+    """Return the mean square of third differences, zero for a parabola, of one in `stride` samples.
+
+    Trimmed and corrected, and over that of white noise of variance one; infinite for too few.
+    """
+    a, b, c, d = (values[k * stride : values.size - (3 - k) * stride] for k in range(4))
+    third = np.sort(np.abs(a - 3.0 * b + 3.0 * c - d))[: int(0.95 * a.size)]
+    return float(np.mean(third**2)) / _TRIMMED / 20.0 if third.size else math.inf
+
+
+def _share(correlation: Floats) -> Floats:
+    """Return the mean square of third differences of noise of that correlation, over its own."""
+    return 1.0 - 1.5 * correlation + 0.6 * correlation**2 - 0.1 * correlation**3
+
+
+_SHARES = np.array([_share(CORRELATIONS**stride) for stride in STRIDES])
+
+
+@kernel
+def with_memory(white: Floats, correlation: float) -> Floats:
+    """Return noise of a correlation of neighbouring samples, made of white noise as large."""
+    out, fresh = white.copy(), math.sqrt(1.0 - correlation**2)
+    for i in range(1, white.size):
+        out[i] = correlation * out[i - 1] + fresh * white[i]
+    return out
 
 
 # Mean square of a standard normal variable whose largest 5 % in magnitude are cut off:

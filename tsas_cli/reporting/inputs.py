@@ -7,7 +7,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from tsas_cli.identification.prepared import CHANNELS, noise_of
+from tsas_cli.identification.prepared import CHANNELS
+from tsas_cli.numerics.noise import noise_of
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
@@ -99,7 +100,7 @@ class Inputs:
         for recording in self.recordings:
             for name in CHANNELS:
                 values = recording.get(name)
-                level = math.nan if values is None else noise_of(values)
+                level = math.nan if values is None else noise_of(values).sd
                 if values is not None and level > 0.0:
                     squares.setdefault(name, []).append((level**2, values.size))
         return {

@@ -158,6 +158,16 @@ def test_an_interference_that_follows_the_motor(column, size, severity):
     assert ("mass of the load" in remark.sentence) == (column == "f_out_N" and size < 0.0)
 
 
+def test_a_damped_load_jumps_by_half_of_what_an_interference_does():
+    """It stops with the drive, and its force jumps again where it moves on."""
+    clean = columns(Bench(noise_mm=0.0, noise_N=0.0))
+    speed = np.gradient(clean["x_out_mm"], TIME)
+    damped = GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)
+    remark = told(GOOD | {"f_out_N": damped}, "interference")
+    assert remark.severity == "warning"
+    assert "damping of the load, or interference" in remark.sentence
+
+
 @pytest.mark.parametrize(("turns", "said"), [(5, True), (3, False)])
 def test_three_jumps_that_are_alike_are_an_interference(turns, said):
     """The drive turns so often, and the load rests at three or less of these times."""

@@ -130,6 +130,8 @@ _FEWEST_ROWS, _FEWEST_REVERSALS, _FEWEST_JUMPS = 6, 4, 3
 _SHOWING = 0.5  # share of the reversals that have to show it: short strokes look like a jump too
 _RESTS = 1.5  # noise levels of a change while the load rests
 _PART = 0.2  # of a jump, that it may change by then
+_MOVED = 0.25  # share of a stroke of the load, after which it moves
+_WHOLE = 0.75  # of what separates the branches: a jump that is no damper's
 _VISIBLE, _CRITICAL = 4.0, 6.0  # noise levels, and standard errors of the mean,
 _CHANCE = 0.005  # or as many as few jumps by chance have with this probability, on either side
 
@@ -141,7 +143,8 @@ def interference(trial: RunSignals) -> Findings:
     it. What does is an interference that follows the direction of the motor: its current in the
     cable of a sensor, or a correction by the sign of the speed. Beside it f_in may jump too; that
     looks like friction of the drive. What is late jumps too, against the direction, and so does the
-    force of a load with a mass, where it stops braking.
+    force of a load with a mass, where it stops braking. A damped load stops as well: its force
+    jumps by half of what separates it between pulling and loosening, an interference by all of it.
     """
     from scipy.special import stdtrit
 
@@ -155,17 +158,40 @@ def interference(trial: RunSignals) -> Findings:
         critical = max(_CRITICAL, float(stdtrit(jumps.size - 1, 1.0 - _CHANCE)))
         mean, error = float(jumps.mean()), float(jumps.std(ddof=1)) / math.sqrt(jumps.size)
         if abs(mean) > max(_VISIBLE * trial.sizes[name].noise, critical * error):
-            unit = name.rsplit("_", 1)[1]
-            lags = "a delay, " if name == "x_out_mm" else "mass of the load, a delay, "
+            unit, causes = name.rsplit("_", 1)[1], []
+            if name == "f_out_N" and (mean < 0.0 or not mean > _WHOLE * _between_branches(trial)):
+                causes = ["mass of the load" if mean < 0.0 else "damping of the load"]
+            causes += ["a delay"] if mean < 0.0 else []
+            others = "".join(f"{cause}, " for cause in causes) + ("or " if causes else "")
             yield Finding(
-                "warning" if mean < 0.0 else "error",
+                "warning" if causes else "error",
                 name,
-                f"{name} jumps by {abs(mean):.2g} {unit} when the drive reverses, "
-                f"where the load still rests: {lags + 'or ' if mean < 0.0 else ''}"
-                "interference that follows the motor's direction",
+                f"{name} jumps by {abs(mean):.2g} {unit} when the drive reverses, where the load "
+                f"still rests: {others}interference that follows the motor's direction",
                 "shield the sensor's cable from the motor's, and look for corrections by the sign "
                 "of the speed",
             )
+
+
+def _between_branches(trial: RunSignals) -> float:
+    """Return by how much f_out is higher in contraction than in loosening at the same x_out [N].
+
+    While the load moves; infinite where x_out was not recorded, or moves too little.
+    """
+    x_out, f_out = trial.channels.get("x_out_mm"), trial.channels["f_out_N"]
+    if x_out is None:
+        return math.inf
+    parts = []
+    for stroke in trial.strokes:
+        x, f = x_out[stroke.rows], f_out[stroke.rows]
+        moves = np.abs(x - x[0]) > max(_MOVED * float(np.ptp(x)), trial.visible("x_out_mm"))
+        rows = moves & np.isfinite(f)
+        parts.append(np.column_stack([x[rows], f[rows], np.full(rows.sum(), stroke.direction)]))
+    x, f, way = np.concatenate(parts).T
+    if np.ptp(way) == 0.0:
+        return math.inf
+    columns = np.column_stack([0.5 * way, np.vander(x - x.mean(), 4)])
+    return float(np.linalg.lstsq(columns, f, rcond=None)[0][0])
 
 
 def _jumps(trial: RunSignals, values: Floats, noise: float) -> Floats:
