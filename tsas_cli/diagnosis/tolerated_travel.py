@@ -48,8 +48,9 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     freed = replace(bench, free=free, never_closed=True)
     trial = freed.fit(effects, near=search.nearest(search.named))
     counted = search.folds.blocks_of_runs(len(bench.rigs))
-    found = with_errors(trial.unknowns, trial.solution, counted, by_run=True)
-    at = [u.name for u in trial.unknowns].index(TRAVEL)
+    held = trial.holding([GROWTH])  # without a travel its growth has no meaning (Davies 1977)
+    found = with_errors(held.unknowns, held.solution, counted, by_run=True)
+    at = [u.name for u in held.unknowns].index(TRAVEL)
     significant = found.values[at] > SIGNIFICANT * found.stderr[at]
     if found.at_bound[at] or not significant or not is_tolerated(bench, trial):
         return search
