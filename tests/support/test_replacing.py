@@ -11,6 +11,7 @@ from tests.outputs import file_of, fill, folder_of, make_output, refused
 from tsas_cli.support import temporaries
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_folder, stage_folder, write_sums
+from tsas_cli.support.replacing import sealed
 
 
 def files(folder: Path) -> list[str]:
@@ -120,6 +121,33 @@ def test_a_dataset_that_was_ingested_is_replaced_by_ingest(tmp_path):
     with ingest_into(tmp_path / "dataset") as folder:
         (folder / "dataset.toml").write_text("new")
     assert files(tmp_path) == ["dataset/dataset.toml"]
+
+
+def test_what_was_edited_in_an_output_since_it_was_written_stays(tmp_path):
+    out = tmp_path / "out"
+    make_output(out, result="old")
+    (out / "result").write_text("mine")
+    refused(folder_of(out, force=True), "result: has changed since it was written")
+    assert (out / "result").read_text() == "mine"
+
+
+@pytest.mark.parametrize("edit", [("?", "2"), ("b = 1\n", "")])
+def test_a_file_or_a_manifest_that_was_edited_stays(tmp_path, edit):
+    head = MANIFEST.format(more="") + "# mine\na = '?'\nb = 1\n"
+    for text in (sealed(head).replace(*edit), sealed(head) + "# more\n"):
+        (tmp_path / "map.toml").write_text(text)
+        (tmp_path / "dataset.toml").write_text(text)
+        refused(file_of(tmp_path / "map.toml", force=True), "has changed since it was written")
+        (tmp_path / "map.toml").unlink()
+        refused(ingest_into(tmp_path), "dataset.toml: has changed since it was written")
+    (tmp_path / "map.toml").write_text(sealed(head))
+    with file_of(tmp_path / "map.toml", force=True) as page:
+        page.write_text("new")
+
+
+def test_a_recording_of_a_dataset_that_was_edited_stays(tmp_path):
+    make_dataset(tmp_path / "dataset", f'sha256 = "{"0" * 64}"')
+    refused(ingest_into(tmp_path / "dataset"), r"a\.parquet: has changed since it was written")
 
 
 def test_a_run_that_somebody_has_added_to_a_dataset_stays(tmp_path):

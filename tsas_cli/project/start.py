@@ -13,6 +13,7 @@ from tsas_cli.recordings.ingest import find_files
 from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import new_file, new_folder
+from tsas_cli.support.replacing import sealed
 from tsas_cli.support.temporaries import sweep
 
 HERE = Path(__file__).parent
@@ -49,7 +50,7 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], MapProposal
         f"{RAW}/README.md": _file("raw.md", name),
     }
     proposal = propose(find_files(sources, "*")) if sources else None
-    files[MAP] = map_text(proposal) if proposal else _file("bench.toml", quoted)
+    files[MAP] = sealed(map_text(proposal)) if proposal else _file("bench.toml", quoted)
     files |= _copies(sources, folder)
     present = _present(folder, files)
     if folder.exists():

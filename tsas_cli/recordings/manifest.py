@@ -27,6 +27,7 @@ from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, in_subfolders, parsed
+from tsas_cli.support.replacing import sealed
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -291,4 +292,4 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write `dataset.toml` without the keys that are not set."""
     content = manifest.model_dump(mode="python", exclude_none=True)
     content["run"] = list(content["run"])
-    (folder / MANIFEST_FILE).write_text(tomlkit.dumps(content), encoding="utf-8")
+    (folder / MANIFEST_FILE).write_text(sealed(tomlkit.dumps(content)), encoding="utf-8")

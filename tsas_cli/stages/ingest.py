@@ -11,6 +11,7 @@ from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.records.result import Result, Table, heading
 from tsas_cli.stages.given import Named, file_of, path_of, paths_of
 from tsas_cli.support.files import new_file, new_folder
+from tsas_cli.support.replacing import sealed
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
@@ -131,5 +132,5 @@ def guess(
     summary = heading("guess") | content(proposal)
     if path is not None:
         with new_file(path, mark=MAP_MARK, inputs=files, force=force) as written:
-            written.write_text(map_text(proposal), encoding="utf-8")
+            written.write_text(sealed(map_text(proposal)), encoding="utf-8")
     return GuessResult(summary, path, proposal)

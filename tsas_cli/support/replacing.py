@@ -1,12 +1,15 @@
 """Rules for replacing: with `--force`, an output replaces an earlier one of the same stage only.
 
-It never replaces an input of the call, or a path that contains or lies inside one.
+It never replaces what was edited since, an input of the call, or a path that contains or lies
+inside one.
 """
 
+import hashlib
 import json
 import os
+import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from tsas_cli.support.errors import InputError
@@ -17,6 +20,12 @@ _DATASET = "dataset.toml"
 LEFT_BY_DESKTOPS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 _SWEEP = "sweep"
 _HEAD_BYTES = 4096  # of a file, which contain its mark
+_SEAL = re.compile(rb"^(?:# |<!-- )sha256 of all above: ([0-9a-f]{64})(?: -->)?\n", re.MULTILINE)
+
+
+def sealed(text: str) -> str:
+    """Return the text of a TOML file with a last line that tells whether it was edited since."""
+    return f"{text}# sha256 of all above: {hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
 def refuse_address(path: Path) -> None:
@@ -73,7 +82,8 @@ def refuse_folder(path: Path, *, stage: str, inputs: Iterable[object], force: bo
 def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: bool) -> None:
     """Refuse an existing path, unless it is an earlier output of the same stage and `force` is set.
 
-    An earlier output has `mark` in its first 4 KiB; only inputs that are local paths count.
+    An earlier output has `mark` in its first 4 KiB, and its seal fits, if it has one; only inputs
+    that are local paths count.
     """
     refuse_inputs(path, inputs)
     if not os.path.lexists(path):
@@ -83,7 +93,9 @@ def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: boo
     if not path.exists():
         return
     with path.open("rb") as stream:
-        written = mark in stream.read(_HEAD_BYTES)
+        content = stream.read(_HEAD_BYTES)
+        written = mark in content
+        content += stream.read() if mark and written else b""
     if not written:
         raise InputError(
             "is not an earlier output of this command",
@@ -91,6 +103,8 @@ def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: boo
             expected="a new name, or a file that it has written",
             remedy="choose another --out",
         )
+    if _is_edited(content):
+        raise _edited(path)
 
 
 def refuse_inputs(path: Path, inputs: Iterable[object]) -> None:
@@ -155,7 +169,7 @@ def _refuse_foreign(path: Path, stage: str) -> None:
     # A link to a folder is a file.
     files = (p for p in path.rglob("*") if p.is_symlink() or not p.is_dir())
     names = (p.relative_to(path).as_posix() for p in files if p.name not in LEFT_BY_DESKTOPS)
-    foreign = sorted(set(names) - ours)
+    foreign = sorted(set(names) - ours.keys())
     if foreign:
         raise InputError(
             f"holds files that `tsas {stage}` has not written ({', '.join(foreign[:5])})",
@@ -163,20 +177,47 @@ def _refuse_foreign(path: Path, stage: str) -> None:
             expected="an earlier output only",
             remedy="move them elsewhere, or choose another --out",
         )
+    for name in sorted(ours):
+        file, digest = path / name, ours[name]
+        if digest and file.is_file() and not _fits(file, digest):
+            raise _edited(file)
 
 
-def _of_stage(folder: Path, stage: str) -> set[str] | None:
-    """Return the files of an earlier output of a stage; None if the folder is none."""
+def _edited(path: Path) -> InputError:
+    return InputError(
+        "has changed since it was written",
+        where=path,
+        expected="an earlier output as it was written",
+        remedy="move it elsewhere, or choose another --out",
+    )
+
+
+def _fits(path: Path, digest: str) -> bool:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest() == digest.lower()
+
+
+def _is_edited(content: bytes) -> bool:
+    """Return whether the seal of a file does not fit what is above, or is not its last line."""
+    *_, seal = (None, *_SEAL.finditer(content))
+    if seal is None:
+        return False
+    fits = hashlib.sha256(content[: seal.start()]).hexdigest() == seal[1].decode()
+    return not fits or seal.end() != len(content)
+
+
+def _of_stage(folder: Path, stage: str) -> Mapping[str, str] | None:
+    """Return the checksums of an earlier output of a stage; None if the folder is none."""
     try:
         lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError):
         return None
-    listed = {line.partition("  ")[2] for line in lines}
+    listed = {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
     summaries = (folder / name for name in listed if "/" not in name and name.endswith(".json"))
     stages = {_stage_in(summary) for summary in summaries} - {None}
     # A task's folder also holds the JSON of its stage.
     owner = {_SWEEP} if _SWEEP in stages else stages
-    return listed | {SUMS} if owner == {stage} else None
+    return listed | {SUMS: ""} if owner == {stage} else None
 
 
 def _stage_in(summary: Path) -> object:
@@ -187,11 +228,15 @@ def _stage_in(summary: Path) -> object:
     return content.get("stage") if isinstance(content, dict) else None
 
 
-def _of_ingest(folder: Path) -> set[str] | None:
-    """Return the files of an ingested dataset; None if the folder is none."""
+def _of_ingest(folder: Path) -> Mapping[str, str] | None:
+    """Return the checksums of an ingested dataset, "" where unknown; None if the folder is none."""
     try:
-        content = tomllib.loads((folder / _DATASET).read_text(encoding="utf-8"))
+        text = (folder / _DATASET).read_bytes()
+        content = tomllib.loads(text.decode("utf-8"))
         ingested = set(content["ingest"]["sources"])
-        return {_DATASET} | {run["file"] for run in content["run"] if run["id"] in ingested}
+        runs = {r["file"]: r.get("sha256", "") for r in content["run"] if r["id"] in ingested}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
+    if _is_edited(text):
+        raise _edited(folder / _DATASET)
+    return runs | {_DATASET: ""}
