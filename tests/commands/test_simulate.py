@@ -9,6 +9,7 @@ import pytest
 import tsas_cli as tsas
 from tests.commands.documented import documented
 from tests.rigs import dataset_of, recorded
+from tsas_cli.identification.model_file import stated_model
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.16, cells=60)
@@ -52,6 +53,24 @@ def test_the_true_model_is_at_the_noise_and_the_data_sheet_is_not(folder, model,
     assert rmse["true"]["f_out_N"]["rmse"] < 1.1 * rmse["true"]["f_out_N"]["noise"]
     assert rmse["true"]["f_in_N"]["rmse"] < 3.0 * rmse["true"]["f_in_N"]["noise"]
     assert rmse["sheet"]["f_in_N"]["rmse"] > 10.0 * rmse["true"]["f_in_N"]["rmse"]
+
+
+def test_the_preload_of_a_run_goes_with_its_recording_not_with_its_name(folder, model, tmp_path):
+    source = tsas.read(folder)
+    given = model(
+        '[runs.a]\npreload_N = { value = 24.0, unit = "N" }\n'
+        f'[dataset]\nname = "d"\n[dataset.hashes]\n"runs/a.parquet" = "{source.runs[0].sha256}"\n'
+    )
+    first, another = recorded(TRUE, 200.0), recorded(TRUE, 200.0, seed=3)
+    other = tsas.read(dataset_of(TRUE, tmp_path / "other", a=another, q=first))
+    tsas.simulate(other, model=given, out=tmp_path / "out")
+    used = tsas.read_model(tmp_path / "out" / "model.toml")
+    assert used.value("preload_N", "q") == 24.0
+    assert used.value("preload_N", "a") is None
+    assert used.rig(other.runs[0]).preload_N == other.runs[0].preload_N
+    stated = stated_model(other.manifest, given)
+    assert stated.value("preload_N", "q") == 24.0
+    assert stated.value("preload_N", "a") == other.runs[0].preload_N != 24.0
 
 
 def test_it_writes_what_is_documented_and_agrees_with_the_fit(done, folder, tmp_path):

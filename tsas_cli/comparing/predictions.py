@@ -7,12 +7,10 @@ import numpy as np
 
 from tsas_cli.comparing.sides import Side, same_runs
 from tsas_cli.identification.comparison import compare as simulated
-from tsas_cli.identification.model import Model
 from tsas_cli.identification.own_values import with_own_values
 from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.session import seconds_into
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
@@ -98,7 +96,9 @@ class Predictions:
                 unknown = np.full(ready.time_s.size, np.nan)
                 out.append(ComparedRun(ready, unknown if f_in is None else f_in, columns))
             else:
-                model = _for_run(side.model, side.recordings, run)
+                model = side.model
+                if side.recordings is not None:
+                    model = model.for_runs(side.recordings, [run])
                 ready = replace(ready, session_s=seconds_into(start, run.started))
                 model = with_own_values(model, ready) if fit_own else model
                 found = simulated(ready, model, side.dynamics)
@@ -153,24 +153,3 @@ def channels(both: Both) -> list[str]:
         name for compared in (both.a, both.b) if compared is not None for name in compared.errors
     }
     return [name for name in CHANNELS if name in there]
-
-
-def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model:
-    """Return a model with those values of a single run that belong to this recording, or to others.
-
-    Another recording of the same name has a preload and zeros of its own. A model that does not
-    say what it was fitted to is taken by its names.
-    """
-    if recordings is None:
-        return model
-    digest = run.sha256.lower()
-    same = {known for known, there in recordings.items() if there == digest}
-    owner = run.id if run.id in same else min(same, default="")
-    return Model(
-        tuple(
-            replace(e, run=run.id) if e.run == owner else e
-            for e in model.estimates
-            if e.run in (None, owner) or e.run != run.id
-        ),
-        model.session,
-    )

@@ -9,10 +9,16 @@ from typing import Literal
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.model_file import IN_MEMORY, model_of, read_model
+from tsas_cli.identification.model_file import (
+    IN_MEMORY,
+    model_of,
+    read_model,
+    read_source,
+    recordings_of,
+)
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.manifest import MANIFEST_FILE, parse, read_toml
+from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.base import DatasetSource, OfDataset, ParameterValue, parameters_of
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
 from tsas_cli.records.comparison import ParameterPair, ValueDifference
@@ -52,12 +58,17 @@ class Side:
         folder = self.path.parent if self.kind == "model" else self.path
         return next((folder / file for file in self.files if file.endswith(".toml")), None)
 
+    @property
+    def _where(self) -> Path:
+        """The file that says what was read."""
+        return self.path if self.kind == "model" else self.path / next(iter(self.files))
+
     @cached_property
     def _read(self) -> tuple[Dataset | None, str]:
         """The dataset as it was read, with the runs that were; or None, and why."""
         if self.source is None:
             return None, ""
-        where = self.path if self.kind == "model" else self.path / next(iter(self.files))
+        where = self._where
         try:
             dataset = read_dataset(self.source.found(where))
             self.source.check(dataset, where)
@@ -78,17 +89,8 @@ class Side:
 
     @cached_property
     def recordings(self) -> dict[str, str] | None:
-        """The checksum of each recording that was read, by run id; None where it is not said.
-
-        Without the dataset the ids are those that the files are named after.
-        """
-        if self.dataset is not None:
-            return {run.id: run.sha256.lower() for run in self.dataset.runs}
-        if self.source is None:
-            return None
-        hashes, chosen = self.source.hashes.items(), self.source.chosen
-        named = {Path(file).stem: d.lower() for file, d in hashes if file != MANIFEST_FILE}
-        return {run: digest for run, digest in named.items() if chosen is None or run in chosen}
+        """The checksum of each recording that was read, by run id; None where it is not said."""
+        return None if self.source is None else recordings_of(self.source, self._where)
 
     @property
     def named(self) -> tuple[NamedCause, ...]:
@@ -143,10 +145,8 @@ def _dynamics_of(model: Model) -> Dynamics:
 
 
 def _of_model(path: Path) -> Side:
-    model = read_model(path)
-    said = read_toml(path).get("dataset", {})
-    source = parse(DatasetSource, said, path) if "hashes" in said else None
-    return Side(path, "model", {path.name: sha256_of(path)}, model, _dynamics_of(model), source)
+    model, files = read_model(path), {path.name: sha256_of(path)}
+    return Side(path, "model", files, model, _dynamics_of(model), read_source(path))
 
 
 def _of_stage(path: Path, kind: type[OfDataset]) -> Side:

@@ -1,7 +1,8 @@
 """The model: estimates of the nominal rig's parameters and of the effects' parameters."""
 
 import math
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING
 
@@ -64,6 +65,25 @@ class Model:
         known = {(e.name, e.run) for e in self.estimates}
         others = (e for e in other.estimates if (e.name, e.run) not in known)
         return Model((*self.estimates, *others), self.session or other.session)
+
+    def for_runs(self, recordings: Mapping[str, str], runs: Sequence[Run]) -> "Model":
+        """Return the model with those values of a single run that belong to these recordings.
+
+        `recordings` are those that it was fitted to, as checksums by run id. Another recording of
+        the same name has a preload and zeros of its own; of other runs the values stay.
+        """
+        heirs: dict[str, list[str]] = {run.id: [] for run in runs}
+        for run in runs:
+            same = {id_ for id_, digest in recordings.items() if digest == run.sha256.lower()}
+            owner = run.id if run.id in same else min(same, default=None)
+            if owner is not None:
+                heirs.setdefault(owner, []).append(run.id)
+        own = (
+            replace(e, run=run)
+            for e in self.estimates
+            for run in ([None] if e.run is None else heirs.get(e.run, [e.run]))
+        )
+        return Model(tuple(own), self.session)
 
     def session_start(self, manifest: Manifest) -> datetime | None:
         """Return when the session began that a dataset's runs belong to, None where it is unknown.

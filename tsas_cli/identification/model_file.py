@@ -1,6 +1,7 @@
 """`model.toml`: a model written, read and checked, and the record of the model that was given."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal, Self
@@ -12,9 +13,10 @@ from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.recordings.dataset import read_from
-from tsas_cli.recordings.manifest import Manifest, parse, read_toml
+from tsas_cli.recordings.dataset import read_dataset, read_from
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, parse, read_toml
 from tsas_cli.recordings.session import Session
+from tsas_cli.records.base import DatasetSource
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range
@@ -42,6 +44,48 @@ def model_of(given: Model | Path) -> Model:
     return _checked(values, "the model in memory", given.session)
 
 
+def model_for(given: Model | Path, runs: Sequence[Run]) -> Model:
+    """Return a model, or that of a file, with those values of single runs that belong to these.
+
+    A model that does not say what it was fitted to is taken by the runs' names.
+
+    InputError: as from `read_model`.
+    """
+    model = model_of(given)
+    source = None if isinstance(given, Model) else read_source(given)
+    if source is None or isinstance(given, Model):
+        return model
+    where = given / MODEL_FILE if given.is_dir() else given
+    return model.for_runs(recordings_of(source, where), runs)
+
+
+def read_source(path: Path) -> DatasetSource | None:
+    """Return which recordings a model was fitted to, None where its file does not say it.
+
+    InputError: as from `read_model`, but for the values.
+    """
+    said = _read(path).dataset
+    return parse(DatasetSource, said, path) if "hashes" in said else None
+
+
+def recordings_of(source: DatasetSource, where: Path) -> dict[str, str]:
+    """Return the checksum of each recording, by run id, that the file `where` says was read.
+
+    Without the dataset the ids are those that the files are named after.
+    """
+    ids: dict[str, str] = {}
+    with suppress(InputError):
+        dataset = read_dataset(source.found(where))
+        source.check(dataset, where)
+        ids = {run.file: run.id for run in dataset.manifest.run}
+    named = {
+        ids.get(file, Path(file).stem): digest.lower()
+        for file, digest in source.hashes.items()
+        if file != MANIFEST_FILE
+    }
+    return {run: d for run, d in named.items() if source.chosen is None or run in source.chosen}
+
+
 def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
     """Return a model, or that of a file, completed by the manifest's data sheet.
 
@@ -50,7 +94,7 @@ def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
     stated = data_sheet(manifest)
     if given is None:
         return stated
-    return replace(model_of(given).over(stated), session=stated.session)
+    return replace(model_for(given, manifest.run).over(stated), session=stated.session)
 
 
 def source_of(

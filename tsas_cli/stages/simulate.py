@@ -7,7 +7,7 @@ from typing import Literal
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.long_runs import open_long, simulate_long
 from tsas_cli.identification.model import Model, data_sheet
-from tsas_cli.identification.model_file import model_of, source_of, write_model
+from tsas_cli.identification.model_file import model_for, source_of, write_model
 from tsas_cli.identification.own_values import with_own_values
 from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import prepare
@@ -121,7 +121,7 @@ def simulate(
     """
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
-    taken = data_sheet(data.manifest) if known is None else model_of(known)
+    taken = data_sheet(data.manifest) if known is None else model_for(known, data.manifest.run)
     session_start = taken.session_start(data.manifest)
     record = records.SimulationFile(
         **data.header(path),

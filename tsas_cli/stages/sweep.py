@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 import tsas_cli as tsas
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
-from tsas_cli.identification.model_file import model_of
+from tsas_cli.identification.model_file import model_for, model_of
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.stages.given import Named, at_least, file_of
@@ -169,13 +169,14 @@ def _arguments(inputs: Raw, places: Raw) -> Raw:
         _refuse_changed(folder / MANIFEST_FILE, inputs["dataset"]["sha256"])
         given["dataset"] = dataset = read(folder).under(**inputs["conditions"])
         if inputs["model"]:
-            base = data_sheet(dataset.manifest) if "model" not in given else given["model"]
+            base = data_sheet(dataset.manifest)
+            if "model" in given:
+                base = model_for(given["model"], dataset.manifest.run)
             runs = [run.id for run in dataset.runs]
             given["model"] = _with_values(inputs["model"], runs, base)
         return given
-    base = given.get("model")
     if inputs["model"]:
-        given["model"] = _with_values(inputs["model"], [TRACKED], base)
+        given["model"] = _with_values(inputs["model"], [TRACKED], given.get("model"))
     if inputs["plant"]:
         given["plant"] = _with_values(
             inputs["plant"], [TRACKED], given.get("plant", given.get("model"))
