@@ -50,14 +50,14 @@ def test_only_named_sensors_record(tmp_path):
     ("old", "new", "said"),
     [
         ("frequency_Hz = 0.25", "", "one of speed_mm_per_s and frequency_Hz"),
-        ("0.25", "0.25\nspeed_mm_per_s = 3.0", "one of speed_mm_per_s and frequency_Hz"),
+        ("0.25", "0.25\nspeed_mm_per_s = 3.0", "only one of speed_mm_per_s and frequency_Hz may"),
         ('"sine"', '"nested"', "nested needs speed_mm_per_s"),
         ('"sine"', '"chirp"\ndwell_s = 1.0', "chirp has no dwell_s"),
-        ('"sine"', '"sinus"', "run.0.motion"),
+        ('"sine"', '"sinus"', "run.a.motion"),
         ("f_in_N = 0.1", "", "one of f_in_N, f_out_N, x_out_mm is needed"),
         ("friction_coefficient", "friction_coeficient", "did you mean friction_coefficient?"),
         ("rate_Hz", "rate_hz", "did you mean rate_Hz?"),
-        ("preload_N = 25.0", "preload_N = -1.0", "run.0.preload_N"),
+        ("preload_N = 25.0", "preload_N = -1.0", "run.a.preload_N"),
     ],
 )
 def test_what_is_wrong_is_said(tmp_path, old, new, said):

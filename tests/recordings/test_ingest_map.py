@@ -55,7 +55,12 @@ def test_the_smallest_map_and_the_columns_it_takes(ask):
         (WHOLE + "[run.from_header]\npattern = '('\n", "run.from_header.pattern"),
         (WHOLE + "sign = 2\n", "columns.f_in_N.sign"),
         (WHOLE + "factor = 2\n", "factor and factor_unit belong together"),
-        (WHOLE + "rate_Hz = 2\n", "columns.f_in_N: needs a source"),
+        (WHOLE + "rate_Hz = 2\n", "columns.f_in_N: has a source and rate_Hz: only one of them"),
+        (WHOLE.replace('source = "f"', ""), "columns.f_in_N: needs a source"),
+        (
+            WHOLE + '[run.conditions.total_bend_rad]\ngroup = "bend"\nunit = "deg"\n',
+            "unknown key run.conditions.total_bend_rad.group (known are from, unit)",
+        ),
         (WHOLE.replace('source = "f"', "rate_Hz = 2"), "f_in_N cannot have rate_Hz"),
         (WHOLE.replace("[columns.time_s]", "[columns.x_out_mm]"), "time_s is missing"),
         (WHOLE.replace("x_in_mm", "temperature_C"), "an input and an output column"),

@@ -7,10 +7,10 @@ from tsas_cli.recordings.manifest import (
     Manifest,
     check_run_name,
     colliding_names,
-    parse,
     read_manifest,
     write_manifest,
 )
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.errors import InputError
 
 SHA = "0123456789abcdef" * 4
@@ -105,7 +105,13 @@ def test_all_errors_come_at_once_with_their_places(tmp_path):
     line = refusal(tmp_path, text)
     for part in ("kind: ", "'guessed'", "rig.tendon_diameter_mm: ", "-1.2", "run.1.id is missing"):
         assert part in line
-    assert "run.0.preload_N: " in line
+    assert "run.a.preload_N: " in line
+
+
+def test_an_error_of_many_runs_is_said_once(tmp_path):
+    line = refusal(tmp_path, TEXT.replace(SHA, "abc"))
+    assert line.startswith("run.a.sha256: ")
+    assert line.endswith("got 'abc' (and 1 more alike)")
 
 
 @pytest.mark.parametrize(
@@ -115,7 +121,7 @@ def test_all_errors_come_at_once_with_their_places(tmp_path):
 )  # fmt: skip
 def test_a_file_outside_the_folder_is_refused(tmp_path, file):
     line = refusal(tmp_path, TEXT.replace("runs/a.parquet", file))
-    assert line.startswith("run.0.file: must stay inside the dataset's folder")
+    assert line.startswith("run.a.file: must stay inside the dataset's folder")
 
 
 def test_a_path_written_on_windows_works(tmp_path):
@@ -129,22 +135,30 @@ def test_a_path_written_on_windows_works(tmp_path):
         ("format = 1", "format = 2", "format: .*1.*got 2"),
         ("format = 1\n", "", "format is missing"),
         ('id = "b"', 'id = "a"', "duplicate run id 'a'"),
-        (SHA, "abc", "run.0.sha256: "),
-        (SHA, "g" * 64, "run.0.sha256: "),
-        ('load = "force"', 'load = "weight"', "run.1.load: .*'spring', 'force' or 'displacement'"),
-        ("preload_N = 25.0", "preload_N = nan", "run.0.preload_N: .*finite"),
-        ("preload_N = 25.0", "preload_N = inf", "run.0.preload_N: .*finite"),
+        (SHA, "abc", "run.a.sha256: "),
+        (SHA, "g" * 64, "run.a.sha256: "),
+        ('load = "force"', 'load = "weight"', "run.b.load: .*'spring', 'force' or 'displacement'"),
+        ("preload_N = 25.0", "preload_N = nan", "run.a.preload_N: .*finite"),
+        ("preload_N = 25.0", "preload_N = inf", "run.a.preload_N: .*finite"),
         ("1.579", "0", "rig.load_stiffness_N_per_mm: .*expected 1e-09 to 1e\\+09 N/mm, got 0"),
         ("[[run]]", "[[runs]]", "run is missing"),
+        ("preload_N = 25.0", 'preload_N = "25"', "run.a.preload_N: text is no number, got '25'"),
+        ("= 1.2\n", '= "1.2"\n', "rig.tendon_diameter_mm: text is no number, .* without quotes"),
+        ('name = "bench-42"', 'name = ""', "name: .*at least 1 character"),
+        (
+            "[rig]\n",
+            "[rig]\nantagonist_f_in_share = 7\n",
+            "f_in_share: expected -0.5 to 1.5",
+        ),
         ("format = 1", "format = true", "format: true and false are no numbers"),
-        ("preload_N = 25.0", "total_bend_rad = true", "run.0.total_bend_rad: true and false are"),
+        ("preload_N = 25.0", "total_bend_rad = true", "run.a.total_bend_rad: true and false are"),
         ("1.579", "true", "rig.load_stiffness_N_per_mm: true and false are no numbers"),
-        (STARTED, "started = 20240101", "run.0.started: is no date such as .* got 20240101"),
+        (STARTED, "started = 20240101", "run.a.started: is no date such as .* got 20240101"),
         *(
-            (STARTED, f"started = {day}", "run.0.started: is no date")
+            (STARTED, f"started = {day}", "run.a.started: is no date")
             for day in ('"1704067200"', "1.5", "true", '"01.02.2024"')
         ),
-        (STARTED, 'started = "20240230"', "run.0.started: .* day value"),
+        (STARTED, 'started = "20240230"', "run.a.started: .* day value"),
     ],
 )
 def test_what_format_1_does_not_allow_is_refused(tmp_path, old, new, message):

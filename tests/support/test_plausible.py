@@ -7,10 +7,11 @@ from pydantic import AfterValidator, BaseModel
 
 import tsas_cli as tsas
 from tsas_cli.diagnosis.rig_file import RigFile
+from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import StoredValue
 from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.recordings.ingest_map import IngestMap
-from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.manifest import Manifest, RigSheet
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.plausible import Range
 from tsas_cli.sweeping.plan import SweepPlan
@@ -40,6 +41,18 @@ def test_every_number_of_every_file_has_a_range():
     found = dict(one for file in FILES for one in numbers(file, ""))
     assert len(found) > 60
     assert [place for place, allowed in found.items() if allowed is None] == [BY_NAME]
+
+
+def test_a_data_sheet_may_state_of_an_effect_what_a_model_may_hold():
+    sheet = {place.rpartition(".")[2]: allowed for place, allowed in numbers(RigSheet, "")}
+    stated = {
+        name: (p.lower, p.upper)
+        for effect in EFFECTS
+        for p in effect.parameters
+        for name in {p.name, f"{effect.name}_{p.name}"} & sheet.keys()
+    }
+    assert len(stated) == 5
+    assert {name: (sheet[name].low, sheet[name].high) for name in stated} == stated
 
 
 def test_a_range_holds_its_ends_and_says_its_unit_and_what_was_expected():

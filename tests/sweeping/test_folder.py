@@ -51,10 +51,12 @@ def test_a_sweep_is_not_written_around_what_it_reads(tmp_path, place):
     ],
 )
 def test_a_folder_of_something_else_stays_as_it_is(tmp_path, others):
+    sweep = "journal.jsonl" in others
+    why = r"has not written \(parameters.csv\)" if sweep else "is no folder of an earlier sweep"
     for other in others:
         (tmp_path / other).parent.mkdir(exist_ok=True)
         (tmp_path / other).write_text("{}")
-    refused(sweep_folder(tmp_path, []), "is no folder of an earlier sweep")
+    refused(sweep_folder(tmp_path, []), why)
     there = [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*") if p.is_file()]
     assert sorted(there) == others
 

@@ -7,8 +7,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from tsas_cli.stages.sweep import options_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.plan import points_of, read_plan
+from tsas_cli.sweeping.values import sorted_values
 
 SIMULATE = {"stage": "simulate", "datasets": "rigs/*"}
 
@@ -53,6 +55,14 @@ def test_a_table_of_sets_is_taken_row_by_row(tmp_path, suffix):
     assert len(found) == 6
     assert found[0] == {"preload_N": 20, "nodes": 10, "fit_own": True}
     assert found[3] == {"preload_N": 25, "fit_own": False}
+
+
+def test_a_set_that_says_nan_is_no_set_without_the_value(tmp_path):
+    (tmp_path / "sets.csv").write_text("preload_N,model\n20,\nnan,m.toml\n")
+    first, second = points(tmp_path, sets="sets.csv")
+    assert first == {"preload_N": 20.0}
+    with pytest.raises(InputError, match="preload_N is nan; expected a finite number"):
+        sorted_values({"preload_N": second["preload_N"]}, options_of("simulate"), tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -101,6 +101,7 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
     ("more", "message"),
     [
         ({"options": {"node": 30}}, "unknown name node; did you mean nodes?"),
+        ({"options": {"frictoin": 0.1}}, "frictoin; did you mean friction_coefficient?"),
         ({"options": {"out": "x"}}, "unknown name out"),
         ({"options": {"nodes": 2.5}}, "nodes is 2.5; expected .* valid integer"),
         ({"options": {"dynamics": "fast"}}, "dynamics is 'fast'; expected .* 'static'"),

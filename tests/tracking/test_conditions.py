@@ -67,5 +67,11 @@ def test_all_later_changes_begin_at_one_time():
         disturbed(["friction_coefficient=0.16@1", "total_bend_rad=2.0@2"])
 
 
+def test_two_values_of_one_quantity_at_one_time_are_refused():
+    with pytest.raises(InputError, match="friction_coefficient is given twice at 1 s"):
+        disturbed(["friction_coefficient=0.16@1", "friction_coefficient=0.2@1"])
+    assert len(disturbed(["friction_coefficient=0.16", "friction_coefficient=0.2@1"]).changes) == 2
+
+
 def test_the_disturbance_of_the_paper_is_a_spring_of_its_stiffness():
     assert proximal_spring() == disturbed([PROXIMAL_SPRING])

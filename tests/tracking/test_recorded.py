@@ -6,6 +6,8 @@ import pytest
 from tests.tracking.runs import loop_of, run, settings_of
 from tsas_cli.controllers.closed_loop import F_IN, F_OUT, X_IN, X_OUT
 from tsas_cli.physics.rig import with_values
+from tsas_cli.stages.track import track
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.recorded import table_of
 
 TABLES = {"sensor": {"rate_Hz": 500.0, "noise_mm": 0.02, "step_mm": 0.0, "force_noise_N": 0.3}}
@@ -35,6 +37,12 @@ def test_every_channel_has_its_noise_and_no_two_the_same():
     assert sd == pytest.approx(expected, rel=0.1)
     alike = np.corrcoef(list(found.values())) - np.eye(4)
     assert np.abs(alike).max() < 0.15
+
+
+def test_what_no_dataset_may_hold_is_refused():
+    """A mean of 100 MN winds up kilometres, which no other stage reads."""
+    with pytest.raises(InputError, match=r"x_in_mm reaches 6.* at most 1e\+06, as in every rec"):
+        track(settings={"reference": {"mean_N": 1e8, "duration_s": 1.0}})
 
 
 def test_sensors_with_errors_show_them():

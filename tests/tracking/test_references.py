@@ -101,6 +101,17 @@ def test_a_tendon_cannot_push(tmp_path):
         reference(name, FORM, 0.25)
 
 
+def test_a_period_of_few_samples_is_refused():
+    """Else the samples are those of a slower wave."""
+    most = 2.0 * math.pi / (10.0 * H)
+    for name, share in (("sine", 1.0), ("two-frequency", 0.5)):
+        form = FORM.model_copy(update={"angular_frequency_rad_per_s": 0.99 * share * most})
+        reference(name, form, H)
+        form = FORM.model_copy(update={"angular_frequency_rad_per_s": 1.02 * share * most})
+        with pytest.raises(InputError, match=r"have 9\.8 samples a period; expected at least 10"):
+            reference(name, form, H)
+
+
 def test_a_loop_of_more_samples_than_anyone_waits_for_is_refused(tmp_path):
     """An hour at 20 kHz: minutes of silence, and 6 GB."""
     form = ReferenceSettings(duration_s=3600.0)

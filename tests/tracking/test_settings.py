@@ -64,6 +64,10 @@ def test_a_file_replaces_what_it_names(tmp_path):
     ("text", "told"),
     [
         ("[loop]\nfilter_hz = 10\n", "unknown key loop.filter_hz (did you mean filter_Hz?)"),
+        (
+            "[controllers.sliding_mode]\nks = 1\n",
+            "unknown key controllers.sliding_mode (did you mean sliding-mode?)",
+        ),
         ("[looop]\nnodes = 5\n", "unknown key looop (did you mean loop?)"),
         ("[loop]\nnodes = 1\n", "loop.nodes"),
         ("[sensor]\nrate_Hz = 10\n", "sensor.rate_Hz"),

@@ -168,6 +168,10 @@ def test_a_loop_that_runs_away_is_refused_with_time_and_state():
     assert "the loop is unstable: x_in is " in str(refused.value)
     assert "mm is wanted" in str(refused.value)
     assert refused.value.where == "controller pid"
+    usual = "in the settings, then lower its gains or the filter's cutoff"
+    assert refused.value.remedy == f"check sensor {usual}"
+    with pytest.raises(InputError, match=f"check drive and sensor {usual}"):
+        run("pid", controllers=gains, reference={"duration_s": 60.0}, drive={"gear_ratio": 110.0})
 
 
 @pytest.mark.parametrize("duration_s", [0.3, 2.0])

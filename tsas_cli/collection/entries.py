@@ -15,8 +15,9 @@ from duckdb import DuckDBPyConnection
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import CONDITIONS
-from tsas_cli.recordings.manifest import RigSheet, Run, parse, read_manifest
+from tsas_cli.recordings.manifest import RigSheet, Run, read_manifest
 from tsas_cli.recordings.storage import is_inside
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError

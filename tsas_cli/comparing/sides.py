@@ -18,7 +18,7 @@ from tsas_cli.identification.model_file import (
 )
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.manifest import parse
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import DatasetSource, OfDataset, ParameterValue, parameters_of
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
 from tsas_cli.records.comparison import ParameterPair, ValueDifference

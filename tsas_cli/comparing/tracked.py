@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.comparing.predictions import ratio_of
-from tsas_cli.recordings.manifest import parse
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import ComparedSide, ScorePair, Setting, TrackedComparison
 from tsas_cli.records.result import Table

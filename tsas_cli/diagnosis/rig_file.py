@@ -8,7 +8,8 @@ from pydantic import Field, field_validator, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
 from tsas_cli.identification.prepared import CHANNELS
-from tsas_cli.recordings.manifest import RigSheet, RunId, parse, read_toml
+from tsas_cli.recordings.manifest import RigSheet, RunId, read_toml
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.plausible import (
     Bend,
@@ -66,8 +67,10 @@ class PlannedRun(StrictTable):
 
     @model_validator(mode="after")
     def _one_speed(self) -> "PlannedRun":
-        if (self.speed_mm_per_s is None) == (self.frequency_Hz is None):
+        if self.speed_mm_per_s is None and self.frequency_Hz is None:
             raise ValueError("one of speed_mm_per_s and frequency_Hz is needed")
+        if self.speed_mm_per_s is not None and self.frequency_Hz is not None:
+            raise ValueError("only one of speed_mm_per_s and frequency_Hz may be given")
         if self.frequency_Hz is not None and self.motion not in PEAK:
             raise ValueError(f"{self.motion} needs speed_mm_per_s, not frequency_Hz")
         if self.dwell_s > 0.0 and self.motion == "chirp":
@@ -104,7 +107,7 @@ class RigFile(StrictTable):
 
     format: Literal[1]
     kind: Literal["plan"]
-    name: str
+    name: str = Field(min_length=1)
     rig: RigSheet = RigSheet()
     sensors: Sensors
     limits: Limits = Limits()

@@ -10,7 +10,8 @@ import tomlkit
 from pydantic import Field
 
 from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
-from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range

@@ -14,8 +14,9 @@ from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import read_dataset, read_from
-from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, parse, read_toml
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, read_toml
 from tsas_cli.recordings.session import Session
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import DatasetSource
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest

@@ -6,10 +6,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, parse, read_manifest
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.recordings.storage import Location, location_text
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import sha256_of
 

@@ -15,10 +15,11 @@ from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap, run_conditions
-from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
+from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
 from tsas_cli.recordings.readers import READABLE, batches, is_known
 from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
+from tsas_cli.recordings.validation import parse
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
 from tsas_cli.support.errors import InputError

@@ -13,11 +13,12 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
-from tsas_cli.recordings.manifest import Load, RigSheet, parse, read_toml
+from tsas_cli.recordings.manifest import Load, RigSheet, read_toml
 from tsas_cli.recordings.readers import stem
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.recordings.units import conversion
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.plausible import AnyNumber, Bend, Length, Preload, Radius, SampleRate
@@ -33,7 +34,7 @@ _Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
 class DatasetEntry(StrictTable):
     """`[dataset]`: keys that are copied into the manifest."""
 
-    name: str
+    name: str = Field(min_length=1)
     kind: Literal["measured", "simulated"] = "measured"
     description: str = ""
     license: str | None = None
@@ -60,8 +61,10 @@ class ColumnMap(StrictTable):
 
     @model_validator(mode="after")
     def _is_whole(self) -> "ColumnMap":
-        if (self.source == "") == (self.rate_Hz is None):
+        if self.source == "" and self.rate_Hz is None:
             raise ValueError("needs a source (time_s may have rate_Hz instead)")
+        if self.source != "" and self.rate_Hz is not None:
+            raise ValueError("has a source and rate_Hz: only one of them may be given")
         if (self.factor is None) != (self.factor_unit is None):
             raise ValueError("factor and factor_unit belong together")
         return self

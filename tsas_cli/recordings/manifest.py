@@ -4,11 +4,10 @@ import re
 import tomllib
 import unicodedata
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from datetime import date, datetime
-from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal, Self, TypeVar
+from typing import Annotated, Literal, Self
 
 import tomlkit
 from pydantic import (
@@ -17,13 +16,13 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    ValidationError,
     field_validator,
     model_validator,
 )
 
 from tsas_cli.recordings.session import Session
 from tsas_cli.recordings.storage import Address, Location, check_inside
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support import limits, plausible
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, in_subfolders, parsed
@@ -31,9 +30,6 @@ from tsas_cli.support.replacing import sealed
 
 MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
-T = TypeVar("T", bound=BaseModel)
-_MOST_ERRORS = 5  # listed of one file; further ones are counted
-_VALUE_LENGTH = 80  # characters of an invalid value in a message
 _PATH_LENGTH = 1000  # characters of a path in the dataset
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
@@ -109,7 +105,7 @@ class RigSheet(_ManifestTable):
     inertia_N_mm_s2: plausible.Inertia | None = None
     proximal_length_mm: plausible.FreeLength | None = None
     distal_length_mm: plausible.FreeLength | None = None
-    antagonist_preload_N: plausible.Preload | None = None
+    antagonist_preload_N: plausible.SecondPreload | None = None
     antagonist_friction_ratio: plausible.FrictionRatio | None = None
     antagonist_f_in_share: plausible.Share | None = None
 
@@ -142,7 +138,7 @@ class Manifest(_ManifestTable):
     """The whole manifest."""
 
     format: Literal[1]
-    name: str
+    name: str = Field(min_length=1)
     kind: Literal["measured", "simulated"]
     description: str = ""
     license: str | None = None
@@ -218,74 +214,6 @@ def read_toml(path: Location) -> Raw:
 
     content: Raw = parsed(load, "TOML", path)
     return content
-
-
-def parse(model: type[T], content: Raw, path: object) -> T:
-    """Return the validated content of a file; all its errors become one line.
-
-    InputError: a key is missing, unknown or invalid.
-    """
-    try:
-        read = model.model_validate(content, context={"file": path})
-    except ValidationError as error:
-        # A list is also reported as too short only because its items are invalid.
-        found = [
-            e
-            for e in error.errors(include_url=False)
-            if not (e["type"] == "too_short" and any(e["input"]))
-        ]
-        listed = [_sentence(e, model) for e in found[:_MOST_ERRORS]]
-        more = [f"and {len(found) - _MOST_ERRORS} more"] if len(found) > _MOST_ERRORS else []
-        raise InputError("; ".join(listed + more), where=path) from error
-    for place in _booleans_as_numbers(content, read):
-        raise InputError(f"{place}: true and false are no numbers", where=path)
-    return read
-
-
-def _booleans_as_numbers(written: Any, read: Any, place: str = "") -> Iterator[str]:
-    """Yield the places where true or false was read as 1 or 0.
-
-    Pydantic's strict mode would also refuse 1 for 1.0, and lists for tuples.
-    """
-    inside: Iterable[tuple[Any, Any, Any]] = ()
-    if isinstance(written, dict):
-        get = read.get if isinstance(read, dict) else partial(getattr, read)
-        inside = ((key, value, get(key, None)) for key, value in written.items())
-    elif isinstance(written, list) and isinstance(read, list | tuple):
-        inside = ((k, *both) for k, both in enumerate(zip(written, read, strict=False)))
-    elif isinstance(written, bool) and isinstance(read, int | float) and not isinstance(read, bool):
-        yield place
-    for key, value, inner in inside:
-        if inner is not None and inner is not value:
-            at = f"{place}.{key}" if place else str(key)
-            yield from _booleans_as_numbers(value, inner, at)
-
-
-def _sentence(error: Any, model: type[BaseModel]) -> str:
-    place = ".".join(str(part) for part in error["loc"])
-    if error["type"] == "extra_forbidden":
-        return (
-            f"unknown key {place} ({nearest(str(error['loc'][-1]), _known(model, error['loc']))})"
-        )
-    if error["type"] == "missing":
-        return f"{place} is missing"
-    message = error["msg"].removeprefix("Value error, ")
-    message = message[0].lower() + message[1:]
-    shown = repr(error["input"])
-    shown = shown if len(shown) <= _VALUE_LENGTH else f"{shown[:_VALUE_LENGTH]}…"
-    got = "" if isinstance(error["input"], dict | list) else f", got {shown}"
-    return f"{place}: {message}{got}" if place else message
-
-
-def _known(model: Any, location: tuple[Any, ...]) -> list[str]:
-    """Return the keys that the model defines at the place of an error, as far as it is known."""
-    for part in location[:-1]:
-        field = getattr(model, "model_fields", {}).get(part)
-        if field is None:
-            continue
-        inner = [a for a in getattr(field.annotation, "__args__", ()) if hasattr(a, "model_fields")]
-        model = inner[0] if inner else field.annotation
-    return list(getattr(model, "model_fields", {}))
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:

@@ -10,10 +10,11 @@ from typing import Any, TypeVar, cast
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.numerics.noise import noise_of
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location
+from tsas_cli.recordings.validation import parse
 from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile

@@ -61,9 +61,13 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
     >>> nearest("preload_n", ["preload_N", "load"])
     'did you mean preload_N?'
+    >>> nearest("frictoin", ["fit_own", "friction_coefficient"])
+    'did you mean friction_coefficient?'
     """
-    known = list(known)
-    close = get_close_matches(str(name), known, n=1, cutoff=0.6)
-    if close:
-        return f"did you mean {close[0]}?"
+    known, name = list(known), str(name)
+    begins = {other[: len(name)]: other for other in reversed(known)}  # of a name that is cut short
+    close = get_close_matches(name, begins, n=1, cutoff=0.8) if len(name) > 3 else []
+    found = get_close_matches(name, [*known, *close], n=1, cutoff=0.6)
+    if found:
+        return f"did you mean {begins.get(found[0], found[0])}?"
     return f"known are {', '.join(known)}" if known else "none are known here"

@@ -49,12 +49,15 @@ def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
 def _locked_journal(out: Path) -> TextIO:
     """Return the journal of a sweep's folder, open, and locked until it is closed."""
     with _writing(out):
-        if out.is_dir() and not _is_of_a_sweep(out):
+        foreign = _foreign(out) if out.is_dir() else []
+        if foreign is None or foreign:
             raise InputError(
-                "is no folder of an earlier sweep",
+                "is no folder of an earlier sweep"
+                if foreign is None
+                else f"holds files that `tsas sweep` has not written ({', '.join(foreign[:5])})",
                 where=out,
                 expected="a new name, or a sweep to resume",
-                remedy="choose another --out",
+                remedy=f"{'move them elsewhere, or ' if foreign else ''}choose another --out",
             )
         out.mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
@@ -62,12 +65,16 @@ def _locked_journal(out: Path) -> TextIO:
     return journal
 
 
-def _is_of_a_sweep(out: Path) -> bool:
-    """Return whether a folder belongs to an earlier sweep, or holds nothing yet."""
+def _foreign(out: Path) -> list[str] | None:
+    """Return what a sweep's folder holds of other origin; None where it is no sweep's.
+
+    One that holds nothing yet may become a sweep's.
+    """
     present = {path.name for path in out.iterdir() if not TEMPORARY.search(path.name)}
     if JOURNAL not in present and not {TASKS, SUMMARY} <= present:
-        return all(name == TASKS and is_empty_folder(out / name) for name in present)
-    return present <= {TASKS, JOURNAL, SUMS, *SEALED} | LEFT_BY_DESKTOPS
+        empty = all(name == TASKS and is_empty_folder(out / name) for name in present)
+        return [] if empty else None
+    return sorted(present - {TASKS, JOURNAL, SUMS, *SEALED} - LEFT_BY_DESKTOPS)
 
 
 @contextmanager

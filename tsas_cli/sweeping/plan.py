@@ -12,7 +12,8 @@ import pyarrow.csv
 import pyarrow.parquet
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw
 from tsas_cli.support.plausible import AnyNumber
@@ -129,7 +130,8 @@ def _sets(path: Path) -> list[Row]:
     """Return the rows of a table of parameter sets; empty cells are left out."""
     try:
         if path.suffix.lower() == ".csv":
-            table = pa.csv.read_csv(path)
+            options = pa.csv.ConvertOptions(null_values=[""], strings_can_be_null=True)
+            table = pa.csv.read_csv(path, convert_options=options)
         else:
             table = pa.parquet.ParquetFile(path).read()
     except (pa.ArrowException, OSError) as error:

@@ -10,7 +10,8 @@ from pydantic import TypeAdapter, ValidationError
 
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import CONDITIONS
-from tsas_cli.recordings.manifest import Run, parse, read_toml
+from tsas_cli.recordings.manifest import Run, read_toml
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest

@@ -53,7 +53,7 @@ def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
     """Return the condition that options such as `friction_coefficient=0.16@10` describe.
 
     InputError: one is no NAME=VALUE[@SECONDS], names an unknown quantity, has a value that is not
-    allowed, or they begin at more than one time within the run.
+    allowed or given twice, or they begin at more than one time within the run.
     """
     changes = tuple(_change(option, where) for option in options)
     times = sorted({c.from_s for c in changes if c.from_s > 0.0})
@@ -63,6 +63,12 @@ def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
             where=where,
             expected="one time within the run",
         )
+    named = [(c.quantity, c.from_s) for c in changes]
+    for name, from_s in named:
+        if named.count((name, from_s)) > 1:
+            raise InputError(
+                f"{name} is given twice at {from_s:g} s", where=where, expected="one value"
+            )
     return Condition("disturbed", changes)
 
 

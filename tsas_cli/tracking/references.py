@@ -12,6 +12,7 @@ from tsas_cli.tracking import SHAPE_NAMES
 from tsas_cli.tracking.settings import LONGEST_S, ReferenceSettings
 
 WANTED, MEASURED = "f_out_ref_N", "f_out_N"
+FEWEST_SAMPLES = 10  # of a period; far fewer are another wave
 MOST_SAMPLES = 10_000_000  # of a loop, which then takes minutes and 1 GB
 
 
@@ -53,10 +54,18 @@ def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
     linear between its samples.
 
     InputError: there is no such shape or file, the file lacks a column or has gaps, or the force is
-    not positive somewhere, or there are too many samples.
+    not positive somewhere, or there are too many samples, or too few of a period.
     """
     if name in SHAPES:
         where = f"reference {name}"
+        fastest = (2.0 if name == "two-frequency" else 1.0) * form.angular_frequency_rad_per_s
+        if step_s * fastest * FEWEST_SAMPLES > 2.0 * np.pi:
+            raise InputError(
+                f"{fastest:g} rad/s have {2.0 * np.pi / (step_s * fastest):.3g} samples a period",
+                where=where,
+                expected=f"at least {FEWEST_SAMPLES}",
+                remedy="lower reference.angular_frequency_rad_per_s, or raise sensor.rate_Hz",
+            )
         time_s = _grid(round(form.duration_s / step_s) + 1, step_s, where)
         wanted = SHAPES[name](time_s, form)
     elif Path(name).suffix == ".parquet" or Path(name).exists():

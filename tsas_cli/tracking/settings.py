@@ -18,7 +18,8 @@ from tsas_cli.drive.file import IdentifiedDrive, checked_drive, read_drive
 from tsas_cli.paper.settings import printed
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.plant.turntable import Actuator
-from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.plausible import (
     AngularFrequency,
     Bend,

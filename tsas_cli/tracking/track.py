@@ -28,6 +28,7 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.records.tracking import Scores, Spread
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.wording import listed
 from tsas_cli.tracking.settings import Settings
 
 OUTSIDE = 0.02  # of the wanted force's range
@@ -169,7 +170,7 @@ def run_loop(
             f"the loop is unstable: x_in is {columns[X_IN, done - 1]:.4g} mm at "
             f"{time_s[done]:.4g} s, where {path.drive[0, done]:.4g} mm is wanted",
             where=f"controller {controller}",
-            remedy="lower its gains or the filter's cutoff",
+            remedy=_steadier(settings),
         )
     asked = columns[ASKED]
     swings = _swings(asked, limit_rpm, step_s)
@@ -180,7 +181,7 @@ def run_loop(
             f"of ±{limit_rpm:g} rpm, {often:.0f} times a second; x_in is {columns[X_IN, k]:.4g}, "
             f"wanted {path.drive[0, k]:.4g} mm",
             where=f"controller {controller}",
-            remedy="lower its gains or the filter's cutoff",
+            remedy=_steadier(settings),
         )
     return Tracked(
         time_s,
@@ -190,6 +191,14 @@ def run_loop(
         unsettled,
         swings is not None,
     )
+
+
+def _steadier(settings: Settings) -> str:
+    """Return what may end an instability: first the settings that are not the paper's rig."""
+    usual = Settings()
+    own = [t for t in ("rig", "drive", "sensor") if getattr(settings, t) != getattr(usual, t)]
+    checked = f"check {listed(own)} in the settings, then " if own else ""
+    return f"{checked}lower its gains or the filter's cutoff"
 
 
 def _swings(asked: Floats, limit_rpm: float, step_s: float) -> tuple[int, float] | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydantic import Field
 
-from tsas_cli.recordings.manifest import parse
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import Record
 from tsas_cli.records.diagnosis import DiagnosisFile, Findings
 from tsas_cli.support.errors import InputError

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.effect import Parameter
-from tsas_cli.recordings.manifest import parse
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import Record
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import read_json

@@ -30,6 +30,9 @@ def test_the_paper_rig_is_ordinary():
     [
         ({"tendon_diametre_mm": 1.2}, {}, "tendon_diametre_mm in [rig]", "tendon_diameter_mm"),
         ({}, {"preload_n": 25}, "preload_n in run a", "preload_N"),
+        ({}, {"friction_coefficient": 0.3}, "friction_coefficient in run a", "move it to [rig]"),
+        ({}, {"gear_ratio": 3.0}, "gear_ratio in run a", "move it to [rig]"),
+        ({"preload_N": 3.0}, {}, "preload_N in [rig]", "move it to [[run]]"),
     ],
 )
 def test_a_misspelt_key_is_named_with_the_nearest(rig, run, place, nearest):
@@ -61,6 +64,10 @@ LIMITS = [
     ("tendon_modulus_GPa", 999_999.0, 200.0, "MPa"),
     ("tendon_modulus_GPa", 1e6, 200.0, "Pa"),
     ("friction_coefficient", 3.01, 3.0, "percent"),
+    ("turntable_radius_mm", 0.0271, 27.1, "metre"),
+    ("turntable_radius_mm", 27_100.0, 5_000.0, "micrometre"),
+    ("gear_ratio", 1.0 / 120.0, 0.5, "turns of the pulley for one of the motor"),
+    ("inertia_N_mm_s2", 10_001.0, 0.1296, "g cm²"),
     ("proximal_length_mm", 0.49, 0.5, "metre"),
     ("distal_length_mm", 0.01, 0.0, "metre"),
     ("distal_length_mm", 0.49, 0.5, "metre"),

@@ -9,10 +9,11 @@ from pydantic import Field, model_validator
 
 from tsas_cli.recordings import readers
 from tsas_cli.recordings.guess.words import unit_behind
-from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.manifest import read_toml
 from tsas_cli.recordings.readers.offered import Column, Offered
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.recordings.units import conversion
+from tsas_cli.recordings.validation import parse
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.plausible import SampleRate

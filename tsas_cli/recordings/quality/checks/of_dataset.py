@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.dataset import CONDITIONS, Dataset
+from tsas_cli.recordings.manifest import Manifest, RigSheet
 from tsas_cli.recordings.quality.copies.search import find_copies
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, warning
 from tsas_cli.support.errors import printable
@@ -12,27 +12,31 @@ from tsas_cli.support.errors import printable
 def unknown_key(manifest: Manifest) -> Findings:
     """The manifest holds a key that format 1 does not define.
 
-    Such a key is kept but has no effect; a misspelt key loses its value. A run may have keys of its
-    own, conditions that `tsas runs` finds it by.
+    Such a key is kept but has no effect; a misspelt key, or one of another table, loses its value.
+    A run may have keys of its own, conditions that `tsas runs` finds it by.
     """
     places: dict[tuple[str, str], list[str]] = {}
     tables = [("the top", manifest), ("[rig]", manifest.rig)]
     for place, table in [*tables, *((f"run {run.id}", run) for run in manifest.run)]:
         for key, hint in table.unknown_keys().items():
-            places.setdefault((key, hint), []).append(place)
+            remedy = f"move it to {_TABLES[key]}" if key in _TABLES else hint
+            places.setdefault((key, remedy), []).append(place)
     for (key, hint), where in places.items():
-        misspelt = hint.startswith("did you mean")
-        if not misspelt and all(place.startswith("run ") for place in where):
+        lost = hint.startswith(("did you mean", "move it"))
+        if not lost and all(place.startswith("run ") for place in where):
             continue
         yield Finding(
-            "warning" if misspelt else "note",
+            "warning" if lost else "note",
             None,
             f"dataset.toml holds the unknown key {printable(key)} in {where[0]}"
             + (f" and {len(where) - 1} more" if len(where) > 1 else ""),
-            hint if misspelt else "none, if it is a note for readers",
+            hint if lost else "none, if it is a note for readers",
         )
 
 
+_TABLES = dict.fromkeys(RigSheet.model_fields, "[rig]") | dict.fromkeys(
+    (*CONDITIONS, "load"), "[[run]]"
+)
 # Key, whether a value is implausible, and its likely unit.
 _Suspicions = tuple[tuple[str, Callable[[float], bool], str], ...]
 _RUN: _Suspicions = (
@@ -46,6 +50,10 @@ _RIG: _Suspicions = (
     ("tendon_modulus_GPa", lambda v: 1e3 < v < 1e6, "MPa"),
     ("tendon_modulus_GPa", lambda v: v >= 1e6, "Pa"),
     ("friction_coefficient", lambda v: v > 3, "percent"),
+    ("turntable_radius_mm", lambda v: v < 0.5, "metre"),
+    ("turntable_radius_mm", lambda v: v > 5e3, "micrometre"),
+    ("gear_ratio", lambda v: v < 0.1, "turns of the pulley for one of the motor"),
+    ("inertia_N_mm_s2", lambda v: v > 1e4, "g cm²"),
     ("proximal_length_mm", lambda v: 0 < v < 0.5, "metre"),
     ("distal_length_mm", lambda v: 0 < v < 0.5, "metre"),
 )

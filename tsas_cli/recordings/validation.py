@@ -1,0 +1,120 @@
+"""Content of a file against its schema: what is wrong in one line, with its places."""
+
+from collections.abc import Iterable, Iterator
+from functools import partial
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import Raw
+
+T = TypeVar("T", bound=BaseModel)
+_MOST_ERRORS = 5  # listed of one file; further ones are counted
+_VALUE_LENGTH = 80  # characters of an invalid value in a message
+
+
+def parse(model: type[T], content: Raw, path: object) -> T:
+    """Return the validated content of a file; all its errors become one line.
+
+    InputError: a key is missing, unknown or invalid, or a number is written as text.
+    """
+    try:
+        read = model.model_validate(content, context={"file": path})
+    except ValidationError as error:
+        # A list is also reported as too short only because its items are invalid.
+        found = [
+            e
+            for e in error.errors(include_url=False)
+            if not (e["type"] == "too_short" and any(e["input"]))
+        ]
+        alike: dict[tuple[str, ...], list[str]] = {}  # in each table of a list
+        for e in found:
+            keys = (e["type"], repr(e["input"]), *(k for k in e["loc"] if isinstance(k, str)))
+            alike.setdefault(keys, []).append(_sentence(e, model, content))
+        listed = [
+            first + (f" (and {len(others)} more alike)" if others else "")
+            for first, *others in list(alike.values())[:_MOST_ERRORS]
+        ]
+        more = [f"and {len(alike) - _MOST_ERRORS} more"] if len(alike) > _MOST_ERRORS else []
+        raise InputError("; ".join(listed + more), where=path) from error
+    for place, what in _no_numbers(content, read):
+        raise InputError(f"{place}: {what}", where=path)
+    return read
+
+
+def _no_numbers(written: Any, read: Any, place: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the places where true, false or text was read as a number, and what is wrong.
+
+    Pydantic's strict mode would also refuse 1 for 1.0, and lists for tuples.
+    """
+    inside: Iterable[tuple[Any, Any, Any]] = ()
+    if isinstance(written, dict):
+        get = read.get if isinstance(read, dict) else partial(getattr, read)
+        inside = ((key, value, get(key, None)) for key, value in written.items())
+    elif isinstance(written, list) and isinstance(read, list | tuple):
+        inside = ((k, *both) for k, both in enumerate(zip(written, read, strict=False)))
+    elif isinstance(read, int | float) and not isinstance(read, bool):
+        if isinstance(written, bool):
+            yield place, "true and false are no numbers"
+        elif isinstance(written, str):
+            yield place, f"text is no number, got {_shown(written)}; write it without quotes"
+    for key, value, inner in inside:
+        if inner is not None and inner is not value:
+            at = f"{place}.{_named(written, key)}" if place else str(key)
+            yield from _no_numbers(value, inner, at)
+
+
+def _sentence(error: Any, model: type[BaseModel], content: Raw) -> str:
+    place = _place(error["loc"], content)
+    if error["type"] == "extra_forbidden":
+        return (
+            f"unknown key {place} ({nearest(str(error['loc'][-1]), _known(model, error['loc']))})"
+        )
+    if error["type"] == "missing":
+        return f"{place} is missing"
+    message = error["msg"].removeprefix("Value error, ")
+    message = message[0].lower() + message[1:]
+    got = "" if isinstance(error["input"], dict | list) else f", got {_shown(error['input'])}"
+    return f"{place}: {message}{got}" if place else message
+
+
+def _shown(value: object) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= _VALUE_LENGTH else f"{shown[:_VALUE_LENGTH]}…"
+
+
+def _place(location: tuple[Any, ...], content: Any) -> str:
+    """Return the place of an error; of a list's tables it names their ids, unless one is wrong."""
+    names, of_id = list[str](), location[-1:] == ("id",)
+    for part in location:
+        names.append(str(part) if of_id else _named(content, part))
+        try:
+            content = content[part]
+        except (KeyError, IndexError, TypeError):
+            content = None
+    return ".".join(names)
+
+
+def _named(inside: Any, key: Any) -> str:
+    """Return a key, or for that of a table in a list the table's id."""
+    try:
+        own = inside[key]["id"] if isinstance(key, int) else None
+    except (KeyError, IndexError, TypeError):
+        own = None
+    return own if isinstance(own, str) and own else str(key)
+
+
+def _known(model: Any, location: tuple[Any, ...]) -> list[str]:
+    """Return the keys that the model defines at the place of an error, as they are written."""
+    for part in location[:-1]:
+        field = _fields(model).get(part)
+        if field is None:
+            continue
+        inner = [a for a in getattr(field.annotation, "__args__", ()) if hasattr(a, "model_fields")]
+        model = inner[0] if inner else field.annotation
+    return list(_fields(model))
+
+
+def _fields(model: Any) -> dict[str, Any]:
+    return {f.alias or name: f for name, f in getattr(model, "model_fields", {}).items()}
