@@ -49,6 +49,17 @@ def wrong(bench, refused):
     return call
 
 
+def test_a_unit_of_the_map_that_is_another_one_than_the_file_s_is_said_once(bench, ingest):
+    (bench / "map.toml").write_text(
+        MAP.replace('"t", unit = "s"', '"t [s]", unit = "ms"').replace('"x"', '"x [inch]"')
+    )
+    for name in "ab":
+        (bench / f"{name}.csv").write_text(CSV.replace("t,x,f", "t [s],x [inch],f"))
+    said = ingest("a.csv", "b.csv")
+    assert said.count("- t [s] is in s by the file and in ms by the map, which counts.") == 1
+    assert "x [inch]" not in said
+
+
 def test_a_file_becomes_a_dataset_that_knows_what_it_was_made_from(bench, ingest):
     assert "a    3     1 s" in ingest("a.csv")
     (recording,) = read_dataset(bench / "out")

@@ -1,6 +1,7 @@
 """Ingest: raw files to a dataset."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from fnmatch import fnmatch
@@ -12,13 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.canonical import canonical_columns
-from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap, run_conditions
 from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
 from tsas_cli.recordings.readers import READABLE, batches, is_known
 from tsas_cli.recordings.readers.joined import joined_by
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
+from tsas_cli.recordings.units import conversion
 from tsas_cli.recordings.validation import parse
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
@@ -31,7 +33,7 @@ How = Literal["first", "last", "mean"]
 
 @dataclass(frozen=True)
 class Ingested:
-    """One ingested file: its run, size and columns."""
+    """One ingested file: its run, size and columns, and which units of the map are not its own."""
 
     run: str
     source: Path
@@ -39,6 +41,7 @@ class Ingested:
     duration_s: float
     rate_Hz: float
     columns: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
 
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
@@ -113,7 +116,9 @@ def ingest_files(
             )
         written = folder / run.file
         written.parent.mkdir(exist_ok=True)
-        ingested[run.id] = _ingest(chain((first,), parts), run.id, path, mapping, map_path, written)
+        notes = tuple(_other_units(first, mapping))
+        made = _ingest(chain((first,), parts), run.id, path, mapping, map_path, written)
+        ingested[run.id] = replace(made, notes=notes)
         runs.append(run.model_copy(update={"sha256": sha256_of(written)}))
         step()
     content = {
@@ -131,6 +136,23 @@ def ingest_files(
         check_unchanged(path, state)
     write_manifest(folder, parse(Manifest, content, map_path))
     return list(ingested.values())
+
+
+def _other_units(table: ColumnTable, mapping: IngestMap) -> Iterator[str]:
+    """Yield a sentence for each column whose unit in the map is another one than in the file."""
+    for name, column in mapping.columns.items():
+        stated, to = table.units.get(column.source, ""), BY_NAME[name].unit
+        if not column.unit or not stated or column.rate_Hz or column.factor is not None:
+            continue
+        sizes = []
+        for unit in (stated, column.unit):
+            with suppress(InputError):  # of the map's it is an error, which conversion raises
+                sizes.append(conversion(unit, to, pulley_radius_mm=column.pulley_radius_mm))
+        if len(sizes) < 2 or not np.allclose(sizes[0], sizes[1], rtol=1e-9, atol=0.0):
+            yield (
+                f"{column.source} is in {stated} by the file and in {column.unit} by the map, "
+                "which counts."
+            )
 
 
 def _files_in(folder: Path, pattern: str) -> list[Path]:

@@ -8,7 +8,7 @@ from tsas_cli.recordings.guess.proposal import MapProposal, propose
 from tsas_cli.recordings.guess.text import MAP_MARK, content, map_text, tables
 from tsas_cli.recordings.ingest import Ingested, find_files, ingest_files
 from tsas_cli.recordings.ingest_map import read_map
-from tsas_cli.records.result import Result, Table, heading
+from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import Named, file_of, path_of, paths_of
 from tsas_cli.support.files import new_file, new_folder
 from tsas_cli.support.replacing import sealed
@@ -56,6 +56,10 @@ class IngestResult(Result):
             for r in self.runs
         ]
         return [(f"dataset {self.out}", header, rows)]
+
+    def sentences(self) -> list[str]:
+        """Return which units of the map are not those of the files, each once."""
+        return notes([*dict.fromkeys(note for run in self.runs for note in run.notes)])
 
 
 def ingest(

@@ -194,11 +194,26 @@ def test_exchanged_tension_sensors(load):
         ("f_out_N", 1000.0, "kilonewton"),
         ("time_s", 1e-3, "millisecond"),
         ("time_s", 1e-6, "microsecond"),
+        ("time_s", 1e3, "seconds taken for milliseconds"),
+        ("time_s", 1e6, "seconds taken for microseconds"),
     ],
 )
 def test_a_unit_off_by_a_round_factor_is_named(column, factor, unit):
     remark = found(changed(**{column: GOOD[column] / factor}), "unit", column)
     assert remark.sentence.endswith(unit) or f"{unit}, or " in remark.sentence
+
+
+def test_a_room_in_kelvin_is_named():
+    kelvin = changed(temperature_C=np.linspace(294.9, 295.4, N))
+    assert found(kelvin, "unit", "temperature_C").sentence.endswith("looks like kelvin")
+    assert codes(changed(temperature_C=np.linspace(60.0, 199.0, N))) == set()
+
+
+def test_a_channel_that_is_a_copy_of_another_one_is_named():
+    results = dict(remarks(changed(f_in_N=GOOD["f_out_N"])))
+    assert "f_out_N is a copy of f_in_N" in results["duplicate-channel"].sentence
+    rest = GOOD["f_out_N"] + np.random.default_rng(1).normal(0.0, 1e-3, N)
+    assert "duplicate-channel" not in codes(changed(f_in_N=rest))
 
 
 def test_a_load_that_travels_further_than_its_drive_has_a_wrong_scale():

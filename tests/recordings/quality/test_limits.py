@@ -135,6 +135,16 @@ def test_times_look_like_another_unit_where_steps_and_strokes_are_long(step_s, s
     assert [f.sentence.rpartition(" ")[2] for f in told] == [expected] * bool(expected)
 
 
+@pytest.mark.parametrize(
+    ("step_s", "rows", "said"), [(4.9e-5, 390, 1), (5.1e-5, 380, 0), (4e-5, 501, 0)]
+)
+def test_times_look_divided_where_steps_and_strokes_are_short(step_s, rows, said):
+    k = np.arange(2 * rows + 1)
+    x = 10.0 * np.minimum(k, 2 * rows - k) / rows
+    told = [f for f in of(pairs.unit, step_s * k, x_in_mm=x) if f.column == "time_s"]
+    assert len(told) == said
+
+
 @pytest.mark.parametrize(("late", "found"), [(0.16, False), (0.14, True)])
 def test_a_tension_is_coupled_to_ac_where_its_mean_falls_to_a_seventh_of_its_span(late, found):
     swing = 3.0 * (-1.0) ** np.arange(N)

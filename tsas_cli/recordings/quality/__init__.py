@@ -72,6 +72,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
         motion.interference, needs=("x_in_mm",), given=("on_spring", "increases", "unbatched")
     ),
     QualityCheck(pairs.unit, of_long="strokes"),
+    QualityCheck(pairs.duplicate_channel),
     QualityCheck(pairs.delay, needs=("x_out_mm", "f_out_N"), given=("on_spring", "increases")),
     QualityCheck(motion.few_reversals, needs=("x_in_mm",), of_long="decimated"),
     QualityCheck(

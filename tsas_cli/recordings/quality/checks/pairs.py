@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import combinations
 
 import numpy as np
 
@@ -41,6 +42,8 @@ _SAME = 1.25  # factor within which a slope agrees with the stated one
 _FARTHER = 1.2  # travel of the load's end over the drive's, beyond which a scale is wrong
 _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
+_FAST_S, _SHORT_S = 5e-5, 0.02  # a sample interval and a stroke that are normal, divided by 1000
+_HOT_C = 200.0  # no rig is; a room in kelvin is
 
 
 def unit(trial: RunSignals) -> Findings:
@@ -49,10 +52,10 @@ def unit(trial: RunSignals) -> Findings:
     Pairs that must agree are compared: the travel of the tendon's two ends; the level of the two
     tensions (their ratio is averaged geometrically over both directions, which cancels friction);
     the slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval
-    with the duration of the strokes. A slope that is off by no known unit is a wrong gain or a
-    wrong data sheet; a load's end that travels further than the drive's has a wrong scale. A wide
-    dead band also reduces the distal travel, but then the distal path is no scaled copy of the
-    proximal one.
+    with the duration of the strokes; a temperature with that of a room. A slope that is off by no
+    known unit is a wrong gain or a wrong data sheet; a load's end that travels further than the
+    drive's has a wrong scale. A wide dead band also reduces the distal travel, but then the distal
+    path is no scaled copy of the proximal one.
     """
     interval = trial.step_s
     if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
@@ -62,6 +65,22 @@ def unit(trial: RunSignals) -> Findings:
             f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
             "check the unit of time_s and set it at ingest",
         )
+    if interval <= _FAST_S and trial.stroke_s < _SHORT_S:
+        taken = "microseconds" if interval <= _FAST_S / 1000.0 else "milliseconds"
+        yield error(
+            "time_s",
+            f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; time_s looks "
+            f"like seconds taken for {taken}",
+            "check the unit of time_s and set it at ingest",
+        )
+    if "temperature_C" in trial.channels:
+        level = float(np.nanmedian(trial.channels["temperature_C"]))
+        if level > _HOT_C:
+            yield warning(
+                "temperature_C",
+                f"temperature_C is {level:.4g} °C; temperature_C looks like kelvin",
+                "check the unit of temperature_C and set it at ingest",
+            )
     tension, stiffness = _tension_ratio(trial), _slope_ratio(trial)
     travel, farther = None, 0.0
     driven = trial.recording.run.load == "displacement"
@@ -91,6 +110,22 @@ def unit(trial: RunSignals) -> Findings:
             slope.format(stiffness),
             "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
         )
+
+
+def duplicate_channel(trial: RunSignals) -> Findings:
+    """Two channels are the same column, written twice.
+
+    Two sensors never share their noise. A channel without noise of a sensor is not judged: without
+    friction two simulated tensions are the same.
+    """
+    noisy = [name for name in trial.mechanical if trial.is_noisy(name)]
+    for one, other in combinations(noisy, 2):
+        if np.array_equal(trial.channels[one], trial.channels[other], equal_nan=True):
+            yield error(
+                other,
+                f"{other} is a copy of {one}: all values are the same",
+                f"check the columns of {one} and {other} in the map, then ingest again",
+            )
 
 
 def _halved(trial: RunSignals, travel: float | None) -> Iterator[Finding]:
