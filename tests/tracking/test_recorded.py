@@ -41,7 +41,7 @@ def test_every_channel_has_its_noise_and_no_two_the_same():
 
 def test_what_no_dataset_may_hold_is_refused():
     """A mean of 100 MN winds up kilometres, which no other stage reads."""
-    with pytest.raises(InputError, match=r"x_in_mm reaches 6.* at most 1e\+06, as in every rec"):
+    with pytest.raises(InputError, match=r"x_in_mm goes to 6.* at most 1e\+06 mm, as in every rec"):
         track(settings={"reference": {"mean_N": 1e8, "duration_s": 1.0}})
 
 

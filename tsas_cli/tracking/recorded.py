@@ -28,12 +28,10 @@ from tsas_cli.physics.course import Output
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import Channel, new_memory, reading, sensed
-from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.manifest import RigSheet as DataSheet
 from tsas_cli.records.tracking import TrackedResult
 from tsas_cli.support.arrays import Floats
-from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.conditions import Condition
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Known, Plant, Tracked, feedforward
@@ -46,10 +44,7 @@ NOISE = 1  # of the streams of a seed; the loop's own is another
 def table_of(
     run: Tracked, path: DrivePath, rig: Rig, controller: str, seed: int, settings: Settings
 ) -> pa.Table:
-    """Return the recording of a run, with what the controller wanted and remembered.
-
-    InputError: a column reaches what no dataset may hold.
-    """
+    """Return the recording of a run, with what the controller wanted and remembered."""
     rng = np.random.default_rng((seed, NOISE))
     sensor, time_s, columns = settings.sensor, run.time_s, run.columns
 
@@ -78,14 +73,6 @@ def table_of(
         table["sliding_distance_mm_per_s2"] = columns[DISTANCE]
     for i, name in enumerate(gains.COLUMNS):
         table[name] = columns[MEMORY_AT + i]
-    for name, values in table.items():
-        if (most := largest(name)) < np.abs(values).max():
-            raise InputError(
-                f"{name} reaches {np.abs(values).max():.4g}",
-                where="settings",
-                expected=f"at most {most:g}, as in every recording",
-                remedy="check the forces, the stiffnesses and the noise",
-            )
     return pa.table({name: pa.array(values) for name, values in table.items()})
 
 

@@ -25,6 +25,7 @@ from tsas_cli.physics.plant.laws import plant_laws
 from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.columns import largest
 from tsas_cli.records.tracking import Scores, Spread
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
@@ -90,8 +91,11 @@ class Tracked:
 
 
 def plan(wanted_N: Floats, known: Known, settings: Settings) -> DrivePath:
-    """Return the path of the drive by the controller's model; see `controllers.path.follow`."""
-    return follow(
+    """Return the path of the drive by the controller's model; see `controllers.path.follow`.
+
+    InputError: it goes farther than a recording may.
+    """
+    path = follow(
         wanted_N,
         settings.step_s,
         known.rig,
@@ -99,6 +103,15 @@ def plan(wanted_N: Floats, known: Known, settings: Settings) -> DrivePath:
         crossing_s=settings.loop.crossing_s,
         nodes=settings.loop.nodes,
     )
+    farthest, most = float(np.abs(path.drive[0]).max()), largest("x_in_mm")
+    if farthest > most:
+        raise InputError(
+            f"x_in_mm goes to {farthest:.4g} mm",
+            where="the path of the drive",
+            expected=f"at most {most:g} mm, as in every recording",
+            remedy="check the wanted force, friction and stiffness of the rig",
+        )
+    return path
 
 
 def feedforward(path: DrivePath, actuator: Actuator) -> Floats:
