@@ -71,6 +71,16 @@ def moved(path):
     return tuple(np.array(values)[after:] for values in (x_in, f_in, x_out))
 
 
+def test_a_mujoco_model_that_was_edited_stays(tmp_path):
+    call = {"to": "mujoco", "out": tmp_path / "rig.xml", "force": True, **CONDITIONS}
+    tsas.export(model(), **call)
+    tsas.export(model(), **call)
+    text = call["out"].read_text()
+    call["out"].write_text(text.replace("<worldbody>", "<worldbody><light/>"))
+    with pytest.raises(InputError, match=r"rig\.xml: has changed since it was written"):
+        tsas.export(model(), **call)
+
+
 def test_mujoco_does_what_the_file_says_within_the_error_that_it_states(tmp_path):
     path = tmp_path / "rig.xml"
     exported = tsas.export(model(), to="mujoco", out=path, **CONDITIONS)

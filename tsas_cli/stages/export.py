@@ -26,6 +26,7 @@ from tsas_cli.stages.given import Named, file_of, one_of, path_of
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import json_text, new_file
+from tsas_cli.support.replacing import sealed
 
 MARKS = {"json": b'"stage": "export"', "csv": b"name,run,value", "mujoco": b"tsas export"}
 STROKE_MM = 10.0  # where the model's file does not say what it was fitted to
@@ -122,6 +123,7 @@ def export(
             "preload_N": preload_N,
         }
         text, errors, lost = _mujoco(found, fitted or FittedTo(), conditions, path.stem)
+        text = sealed(text, markup=True)
     else:
         head = {"stage": "export", "version": __version__}
         content = head | {"parameters": [asdict(e) for e in found.estimates]}

@@ -23,9 +23,13 @@ _HEAD_BYTES = 4096  # of a file, which contain its mark
 _SEAL = re.compile(rb"^(?:# |<!-- )sha256 of all above: ([0-9a-f]{64})(?: -->)?\n", re.MULTILINE)
 
 
-def sealed(text: str) -> str:
-    """Return the text of a TOML file with a last line that tells whether it was edited since."""
-    return f"{text}# sha256 of all above: {hashlib.sha256(text.encode()).hexdigest()}\n"
+def sealed(text: str, *, markup: bool = False) -> str:
+    """Return the text of a TOML file with a last line that tells whether it was edited since.
+
+    With `markup` the text is HTML or XML.
+    """
+    seal = f"sha256 of all above: {hashlib.sha256(text.encode()).hexdigest()}"
+    return f"{text}<!-- {seal} -->\n" if markup else f"{text}# {seal}\n"
 
 
 def refuse_address(path: Path) -> None:

@@ -17,7 +17,7 @@ from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml
 from tsas_cli.recordings.storage import Location, is_address, location_text, path_from
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
-from tsas_cli.support.replacing import SUMS
+from tsas_cli.support.replacing import SUMS, sealed
 from tsas_cli.verifying.outputs import outputs_of
 
 _TYPE = "<!DOCTYPE html>\n"
@@ -178,8 +178,7 @@ def with_seal(text: str, files: Iterable[tuple[Location, str]], page: Path) -> s
     ]
     listed = json.dumps(read, ensure_ascii=False).replace("--", "-\\u002d")  # would end the comment
     marked = text.replace(_TYPE, _TYPE + _HEAD, 1)
-    body = f"{marked.rstrip()}\n{_READ}{listed} -->\n"
-    return f"{body}<!-- sha256 of all above: {hashlib.sha256(body.encode()).hexdigest()} -->\n"
+    return sealed(f"{marked.rstrip()}\n{_READ}{listed} -->\n", markup=True)
 
 
 def change_notes(given: Iterable[object]) -> list[str]:
