@@ -245,7 +245,7 @@ def test_a_column_that_is_there_twice_is_refused(dataset, columns):
 
 def test_chosen_runs_come_in_the_order_of_the_manifest(tmp_path, columns):
     runs = [{"id": i, "file": f"runs/{i}.parquet", "sha256": "0" * 64} for i in "abc"]
-    manifest = Manifest(format=1, name="", kind="measured", run=runs)
+    manifest = Manifest(format=1, name="bench", kind="measured", run=runs)
     write_dataset(tmp_path, manifest, dict.fromkeys("abc", pa.table(columns)))
     whole = read_dataset(tmp_path)
     chosen = whole.only(["c", "a"])
