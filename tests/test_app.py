@@ -195,7 +195,38 @@ def test_no_room_for_what_is_printed_is_one_line():
         done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
-    assert "the system refuses the call (No space left on device)" in done.stderr
+    assert "standard output: cannot be written (No space left on device)" in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_an_output_without_room_for_what_is_printed_is_complete_and_said_to_be(
+    dataset, tmp_path, unbuffered
+):
+    call = f'"{sys.executable}" -m tsas_cli check dataset --out found > /dev/full'
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    keywords = {"cwd": tmp_path, "env": environment, "stderr": subprocess.PIPE, "text": True}
+    done = subprocess.run(["sh", "-c", call], check=False, **keywords)  # noqa: S607
+    assert done.returncode == 2
+    assert done.stderr == (
+        "tsas: standard output: cannot be written (No space left on device); "
+        "found is complete: only what is printed is lost\n"
+    )
+    assert (tmp_path / "found" / "SHA256SUMS").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("NUMBA_NUM_THREADS", "0"), ("NUMBA_NUM_THREADS", "abc"), ("NUMBA_NUM_THREADS", "")]
+    + [("TSAS_THREADS", value) for value in ("abc", "-1", "1000000000")],
+)
+def test_a_variable_that_is_no_number_of_threads_is_named(tsas, name, value):
+    said = tsas("effects", env=os.environ | {name: value})
+    assert (said.returncode, said.stdout) == (2, "")
+    assert said.stderr == (
+        f"tsas: environment: {name} is {value!r}; expected a whole number from 1 to 10000; "
+        f"correct it, or unset {name}\n"
+    )
 
 
 @pytest.mark.parametrize(

@@ -121,15 +121,15 @@ def run() -> None:
             code = _refused(error)
         else:
             code = _defect(error)
+    try:
+        sys.stdout.flush()
+    except OSError:  # as the error has said
+        _discard_output()
     sys.exit(code)
 
 
 def _refused(error: OSError) -> int:
-    """Report an error of the system, which may concern standard output itself."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        _discard_output()
+    """Report an error of the system."""
     where = f"{error.filename}: " if error.filename else ""
     remedy = REFUSALS[error.errno or 0]
     return _stop(printable(f"{where}the system refuses the call ({error.strerror}); {remedy}"), 2)

@@ -15,9 +15,9 @@ from tsas_cli.identification.calibration import calibrate_runs, with_preload_cor
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import CORRECTION, Model
 from tsas_cli.identification.transfer import Slope
-from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.stages.calibrate import CalibrationResult, _stiffness, _theory
+from tsas_cli.support.limits import THREADS
 from tsas_studies.challenge.rig.motions import sine, two_sines
 from tsas_studies.challenge.rig.recordings import DATA_SHEET
 from tsas_studies.challenge.rig.sensors import Sensors

@@ -6,6 +6,7 @@ from tsas_cli.numerics import side_by_side
 from tsas_cli.numerics.compiled import cache_folder
 from tsas_cli.reporting.viewer.open import SCREENS
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.limits import THREADS
 
 
 @pytest.fixture
@@ -36,9 +37,9 @@ def test_a_cache_that_cannot_be_written_says_what_to_do(told, tmp_path, monkeypa
 
 
 def test_threads_are_as_asked_for(told, monkeypatch):
-    monkeypatch.setenv(side_by_side.THREADS, "7")
+    monkeypatch.setenv(THREADS, "7")
     assert told()["threads"].found.startswith("7 of ")
-    monkeypatch.setenv(side_by_side.THREADS, "many")
+    monkeypatch.setenv(THREADS, "many")
     assert not told()["threads"].works
     with pytest.raises(InputError, match="TSAS_THREADS is 'many'"):
         side_by_side.each(str, [1, 2])

@@ -7,7 +7,8 @@ import time
 
 import pytest
 
-from tsas_cli.numerics.side_by_side import THREADS, each
+from tsas_cli.numerics.side_by_side import each
+from tsas_cli.support.limits import THREADS
 
 
 @pytest.mark.parametrize("threads", ["1", "2", "5"])

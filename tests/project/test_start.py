@@ -97,6 +97,12 @@ def test_what_cannot_be_read_leaves_no_project(tmp_path, refused):
         start(tmp_path / "new", [tmp_path / "a.csv", tmp_path / "b" / "a.csv"])
 
 
+def test_an_unset_variable_of_the_shell_is_no_project(tmp_path, refused):
+    said = refused("init", "", cwd=tmp_path)
+    assert said.startswith("tsas: no folder is named; ")
+    assert list(tmp_path.iterdir()) == []
+
+
 STEPS = ["ingest", "check", "calibrate", "simulate", "diagnose", "report"]
 PAGE, CHECK = "result/report.html", "result/check/check.json"
 

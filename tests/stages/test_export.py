@@ -120,3 +120,18 @@ def test_a_condition_that_the_recordings_do_not_agree_on_is_asked_for(tmp_path):
         groups.out, to="mujoco", out=tmp_path / "a.xml", sheath_length_mm=785.4, total_bend_rad=3.14
     )
     assert 'gear="4428.04' in one.out.read_text()  # 120 / 27.1 mm
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("sheath_length_mm", -5.0, "expected 1e-06 to 1e+09 mm, got -5.0"),
+        ("sheath_length_mm", 1e30, "expected 1e-06 to 1e+09 mm"),
+        ("preload_N", -1.0, "expected 0, or 1e-06 to 1e+09 N"),
+        ("total_bend_rad", float("nan"), "input should be a finite number"),
+    ],
+)
+def test_an_implausible_condition_is_one_line(tmp_path, name, value, told):
+    with pytest.raises(InputError) as error:
+        tsas.export(model(), to="mujoco", out=tmp_path / "a.xml", **CONDITIONS | {name: value})
+    assert error.value.line().startswith(f"{name}: {told}")

@@ -38,6 +38,14 @@ def test_a_place_whose_name_is_no_text_is_refused(tmp_path, new, name):
     assert names(tmp_path) == []
 
 
+@pytest.mark.parametrize("new", [file_of, folder_of])
+def test_an_error_leaves_no_folder_above_the_output_but_those_that_were_there(tmp_path, new):
+    (tmp_path / "there").mkdir()
+    with pytest.raises(RuntimeError), new(tmp_path / "there" / "a" / "b" / "c") as path:
+        fail_after_writing(path if new is file_of else path / "half")
+    assert list(tmp_path.rglob("*")) == [tmp_path / "there"]
+
+
 def test_what_exists_stays_as_it_is_without_force(tmp_path):
     make_output(tmp_path / "out", result="old")
     refused(folder_of(tmp_path / "out"), r"already exists.*--force")

@@ -146,10 +146,29 @@ def run(
 
 def present(result: "Result", *, quiet: bool, as_json: bool) -> None:
     """Print a stage's result on standard output: as JSON, or its tables and sentences."""
-    if not (quiet or as_json):
-        for line in result.intro():
-            print(line)
-    show(result.summary, result.tables(), result.sentences(), quiet=quiet, as_json=as_json)
+    with printed(result.out):
+        if not (quiet or as_json):
+            for line in result.intro():
+                print(line)
+        show(result.summary, result.tables(), result.sentences(), quiet=quiet, as_json=as_json)
+
+
+@contextmanager
+def printed(out: object) -> Iterator[None]:
+    """Say where standard output is refused that the result in the block is written, if it is."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise InputError(
+            f"cannot be written ({error.strerror})",
+            where="standard output",
+            remedy=f"{out} is complete: only what is printed is lost"
+            if out
+            else "make room, and repeat the call",
+        ) from error
 
 
 Streams = Callable[[Path], Iterable[tuple[Path, Sequence[Path]]]]

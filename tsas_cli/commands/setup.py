@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tsas_cli.commands.common import Json, Quiet, progress, show
+from tsas_cli.commands.common import Json, Quiet, printed, progress, show
 from tsas_cli.records.result import Table, heading
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 
 def init(
-    folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", help="The project's folder; nothing is overwritten.")
+    named: Annotated[
+        str, typer.Argument(metavar="FOLDER", help="The project's folder; nothing is overwritten.")
     ],
     sources: Annotated[
         list[Path] | None,
@@ -35,17 +35,22 @@ def init(
     from tsas_cli.project.start import MAP, start
     from tsas_cli.recordings.guess.text import tables as tables_of
 
+    if not named:  # as of an unset variable of the shell; its path would be the current folder
+        raise InputError(
+            "no folder is named", expected="a folder's name", remedy="`tsas init .` takes this one"
+        )
+    folder = Path(named)
     files, proposal = start(folder, sources or [])
     questions = proposal.questions if proposal else {}
     summary = heading("init") | {"folder": str(folder), "files": files, "questions": questions}
     tables: list[Table] = [(f"project {folder}", ("file",), [(name,) for name in files])]
     if proposal:
         tables.extend(tables_of(proposal, folder / MAP))
-    show(summary, tables, quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        todo = questions or not proposal
-        first = f"answer the questions in {folder / MAP}, then " if todo else ""
-        print(printable(f"Next: {first}`make -C {shlex.quote(str(folder))}`"))
+    todo = questions or not proposal
+    first = f"answer the questions in {folder / MAP}, then " if todo else ""
+    following = printable(f"Next: {first}`make -C {shlex.quote(str(folder))}`")
+    with printed(folder):
+        show(summary, tables, [following], quiet=quiet, as_json=as_json)
 
 
 def doctor(quiet: Quiet = False, as_json: Json = False) -> None:

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.numerics.compiled import cache_folder
-from tsas_cli.numerics.side_by_side import THREADS, threads
+from tsas_cli.numerics.side_by_side import threads
 from tsas_cli.reporting.pdf import browser
 from tsas_cli.reporting.viewer.child import drawn_with, program
 from tsas_cli.reporting.viewer.open import SCREENS, has_screen
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.limits import THREADS
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,10 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import TypeVar
 
-from tsas_cli.support.errors import InputError
+from tsas_cli.support.limits import THREADS, threads_by
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-
-THREADS = "TSAS_THREADS"  # environment variable: how many threads, by default one for each core
 
 
 def each(
@@ -31,14 +29,9 @@ def each(
 def threads() -> int:
     """Return how many threads share such calls.
 
-    InputError: the environment variable is not a whole number.
+    InputError: the environment variable is no such number.
     """
-    asked = os.environ.get(THREADS) or str(os.cpu_count() or 1)
-    if not asked.isdecimal():
-        raise InputError(
-            f"{THREADS} is {asked!r}", where="environment", expected="a whole number, 1 or more"
-        )
-    return int(asked)
+    return threads_by(THREADS) or os.cpu_count() or 1
 
 
 @cache

@@ -19,13 +19,13 @@ from tsas_cli.physics.lumped import HELD, Lumped, follow, lumped_of
 from tsas_cli.physics.mechanics import mechanics_of
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
-from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.manifest import Run, parse
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import Named, file_of, one_of, path_of
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import json_text, new_file
+from tsas_cli.support.files import Raw, json_text, new_file
 from tsas_cli.support.replacing import sealed
 
 MARKS = {"json": b'"stage": "export"', "csv": b"name,run,value", "mujoco": b"tsas export"}
@@ -155,7 +155,8 @@ def _mujoco(
     if known["preload_N"] is None:
         own = [e.value for e in model.estimates if e.name == "preload_N"]
         known["preload_N"] = float(np.mean(own)) if own else None
-    run = Run(id="exported", file="none", sha256="0" * 64, **known)
+    nothing: Raw = {"id": "exported", "file": "none", "sha256": "0" * 64}
+    run = parse(Run, nothing | known, "")
     rig = model.rig(run)
     stroke = fitted.ranges.get("stroke_mm", (0.0, STROKE_MM))[1]
     lumped = lumped_of(rig, stroke)

@@ -6,7 +6,7 @@ import json
 import math
 import os
 from collections.abc import Callable, Collection, Iterable, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from contextvars import ContextVar
 from functools import partial
 from pathlib import Path
@@ -113,6 +113,7 @@ def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -
             refuse_address(path)
             refuse_kind(path, folder=folder)
             refuse()
+            stack.callback(_remove_empty, [p for p in path.parents if not p.exists()])
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
             temporary.mkdir() if folder else temporary.touch()
@@ -121,6 +122,13 @@ def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -
         with _written(path):
             refuse()  # another process may have written it meanwhile
             (place_folder if folder else place_file)(temporary, path, replace=force)
+
+
+def _remove_empty(folders: Iterable[Path]) -> None:
+    """Remove folders that hold nothing, up to the first that holds something."""
+    with suppress(OSError):
+        for folder in folders:
+            folder.rmdir()
 
 
 def own_file(path: Path) -> AbstractContextManager[Path]:

@@ -39,6 +39,8 @@ ITEMS = 1_000_000  # variables, cells, blocks of one file
 LARGEST = {"mm": 1e6, "N": 1e9, "rpm": 1e9, "rad": 1e9, "°C": 1e6}
 SMALLEST = 1e-30  # of what a channel reaches, in any unit: far below what rounding leaves of zero
 SHORTEST_STEP_S, LONGEST_STEP_S = 1e-10, 1e9  # from a sample to the next
+THREADS = "TSAS_THREADS"  # environment variable: how many threads, by default one for each core
+MOST_THREADS = 10_000
 _DOTTED = re.compile(
     r"""(?<![\w"'.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % DEPTH  # noqa: UP031
 )
@@ -182,6 +184,8 @@ def loadable() -> None:
 
     Under a low limit of memory they abort, or never end.
     """
+    for name in (THREADS, "NUMBA_NUM_THREADS"):
+        threads_by(name)
     try:
         os.getcwd()  # noqa: PTH109 # without a Path
     except OSError as error:
@@ -203,6 +207,24 @@ def loadable() -> None:
             expected=f"at least {size(LOADING)}, which the libraries take",
             remedy="raise the limit (`ulimit -v`)",
         )
+
+
+def threads_by(name: str) -> int | None:
+    """Return a number of threads that an environment variable sets, None where it sets none.
+
+    InputError: it is no such number.
+    """
+    asked = os.environ.get(name)
+    if asked is None or (name == THREADS and not asked):
+        return None
+    if not re.fullmatch("[0-9]{1,9}", asked) or not 1 <= int(asked) <= MOST_THREADS:
+        raise InputError(
+            f"{name} is {asked!r}",
+            where="environment",
+            expected=f"a whole number from 1 to {MOST_THREADS}",
+            remedy=f"correct it, or unset {name}",
+        )
+    return int(asked)
 
 
 def fits(path: object, bytes_: int) -> None:

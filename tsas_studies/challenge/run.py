@@ -11,13 +11,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.records.diagnosis import RecordingFault
 from tsas_cli.stages.check import check
 from tsas_cli.stages.diagnose import diagnose as diagnose_recordings
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, stage_folder, write_json, write_sums
+from tsas_cli.support.limits import THREADS
 from tsas_studies.challenge.baselines import bic, sparse, training
 from tsas_studies.challenge.entry import FILE, LOG
 from tsas_studies.challenge.sums import CASES, DATASET
