@@ -66,6 +66,13 @@ def test_a_dataset_of_which_no_run_can_be_read_is_refused(make, refused):
     refused("check", folder)
 
 
+def test_a_channel_that_is_too_short_is_not_said_to_be_missing(make):
+    report = check_dataset(read_dataset(make(a={n: v[:10] for n, v in GOOD.items()})))
+    reasons = {entry.code: entry.reason for entry in report.not_checked}
+    assert reasons["sign"] == "x_in_mm with fewer than 16 valid samples"
+    assert not any("not recorded" in reason for reason in reasons.values())
+
+
 def test_a_check_whose_columns_are_missing_has_not_passed(make):
     drive = {name: GOOD[name] for name in ("time_s", "x_in_mm", "f_in_N")}
     report = check_dataset(read_dataset(make(a=drive)))

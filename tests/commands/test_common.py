@@ -1,4 +1,4 @@
-from tsas_cli.commands.common import progress, show
+from tsas_cli.commands.common import names, progress, show
 
 TABLES = [
     ("two runs", ("run", "noise"), [("a", "0.1 N"), ("b\x1b[2J", "12.5 N")]),
@@ -25,3 +25,11 @@ def test_no_bar_is_drawn_into_a_file(capsys):
         step.ahead(2)
         step()
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_name_with_a_comma_is_given_in_quotes():
+    assert names(None) is None
+    assert names("a, b ,c") == ["a", "b", "c"]
+    assert names('"a,b",5",c d') == ["a,b", '5"', "c d"]
+    assert names("") == names("\n") == [""]
+    assert names("a\nb,") == ["a", "b", ""]

@@ -120,6 +120,7 @@ def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, wrong):
         ("b.parquet", b"PAR1", "cannot be read as Parquet"),
         ("b.docx", b"PK", "unknown file format .docx"),
         ("b\x1b[31m.csv", CSV.encode(), "usable as a file name"),
+        ("con.csv", CSV.encode(), "run id 'con' is a device on Windows, not a file name; set an"),
         ("none.csv", None, "does not exist"),
         ("empty", "folder", "holds no file"),
     ],

@@ -220,7 +220,7 @@ CASES = cases(
         "an integer has thousands of digits": {
             "an integer of 10^5 digits": also("preload_N = " + "1" * 100_000),
         },
-        "should be a valid number": {
+        "should be a number": {
             "an integer of 4000 digits": also("preload_N = " + "1" * 4000),
             "a model with an integer of 4000 digits": model(
                 "format = 1\n[parameters.preload_N]\nunit = 'N'\norigin = 'x'\nvalue = "
@@ -240,9 +240,9 @@ CASES = cases(
             "a date beyond all": also("started = 9999-99-99"),
         },
         "at least 1 item": {"no runs": no_run("[]")},
-        "run.0: input should be a valid dictionary": {"runs that are no tables": no_run("[1]")},
+        "run.0: input should be a table": {"runs that are no tables": no_run("[1]")},
         "is a device on Windows": {"a file called con.csv": table("con.csv")},
-        "\\x1b[2Jx.csv: id: must be usable as a file name": {
+        "\\x1b[2Jx.csv: run id '\\\\x1b[2Jx' must be usable as a file name": {
             "a file with an escape": table("\x1b[2Jx.csv"),
         },
         "its name is not UTF-8": {

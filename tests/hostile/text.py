@@ -99,12 +99,14 @@ CASES = cases(
         "is not text in the encoding": {
             "UTF-16": csv(HONEST.encode("utf-16")),
             "a lone surrogate": csv(b"t,x,f\xed\xa0\x80\n" + ROWS.encode()),
-            "an encoding that is none": read('encoding = "bz2"'),
             "punycode": written(
                 "a.csv",
                 HONEST + ROWS * 299,
                 lambda path: ingesting(path, MAP + '[read]\nencoding = "punycode"\n'),
             ),
+        },
+        "read.encoding of the map: the encoding": {
+            "an encoding that is none": read('encoding = "bz2"'),
             "an encoding with a NUL": read('encoding = "a\\u0000b"'),
         },
         "did you mean \\ufefft?": {

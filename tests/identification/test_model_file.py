@@ -73,7 +73,7 @@ def test_what_is_written_is_read_back(tmp_path, ranges):
         ("ranges.f_in_N = [80.0, 20.0]", "f_in_N begins at 80, above its end 20"),
         ("ranges.f_in_N = [20.0]", "fitted_to.ranges.f_in_N"),
         ("ranges.f_in_N = [0.0, inf]", "should be a finite number"),
-        ("words.load = [1]", "should be a valid string"),
+        ("words.load = [1]", "should be text"),
         ("span.f_in_N = [0.0, 1.0]", "unknown key fitted_to.span"),
     ],
 )
@@ -113,7 +113,7 @@ def test_a_range_that_cannot_be_is_one_line(tmp_path, entry, says):
         (friction("nan"), "value: input should be a finite number, got nan"),
         (friction("-0.1"), "is -0.1; expected 0, or 0.0001 to 10"),
         (friction("1e300"), "friction_coefficient is 1e+300; expected 0, or 0.0001 to"),
-        (friction("'x'"), "should be a valid number"),
+        (friction("'x'"), "should be a number"),
         (friction("true"), "value: true and false are no numbers"),
         (friction(more="stdder = 0.1"), "did you mean stderr"),
         (friction(more="stderr = nan"), "friction_coefficient.stderr: input should be a finite"),
@@ -148,7 +148,7 @@ def test_a_wrong_model_is_one_line(tmp_path, text, says):
     [
         ({"value": -1.0}, "friction_coefficient is -1; expected 0, or 0.0001 to 10"),
         ({"value": math.nan}, "friction_coefficient: value: input should be a finite number"),
-        ({"unit": None}, "unit: input should be a valid string"),
+        ({"unit": None}, "unit: input should be text"),
         ({"name": "friktion"}, "unknown parameter friktion"),
         ({"name": "bristles.stiffness_N_per_mm", "unit": "N/mm", "value": 0.0}, "expected 0.01 to"),
         ({"name": "backlash.play_mm", "unit": "mm", "run": "b"}, "belongs to run b; expected one"),

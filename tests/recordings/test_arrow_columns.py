@@ -95,7 +95,7 @@ def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
     ("table", "message"),
     [
         ({"x_in_mm": [1.0], "f_in_N": [1.0]}, "time_s is missing"),
-        ({"time_s": [0.0], "x_in_mm": [1.0], "f_in_N": [1.0]}, "1 rows"),
+        ({"time_s": [0.0], "x_in_mm": [1.0], "f_in_N": [1.0]}, "1 row"),
     ],
 )
 def test_a_file_without_time_is_refused(dataset, table, message):

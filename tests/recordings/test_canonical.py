@@ -48,6 +48,17 @@ def test_the_files_own_unit_counts_where_the_map_says_none():
         ask(force={"source": "f"})
 
 
+def test_a_column_that_is_called_like_a_channel_has_its_unit():
+    columns = ask(
+        {"time_s": [0, 1, 2], "x_out_mm": [1, 2, 3]},
+        time={"source": "time_s"},
+        place={"source": "x_out_mm"},
+    )
+    assert (columns["time_s"].tolist(), columns["x_in_mm"].tolist()) == ([0, 1, 2], [1, 2, 3])
+    with pytest.raises(InputError, match="the file states no unit for time"):
+        ask({"time": [0, 1, 2]}, time={"source": "time"})
+
+
 def test_a_map_cannot_say_another_unit_than_the_type_of_a_column():
     table = ColumnTable({s: np.arange(3.0) for s in "txf"}, {"t": "s"}, typed=frozenset("t"))
 
@@ -93,7 +104,7 @@ def test_rows_that_repeat_go_only_when_the_map_says_so():
         ({"t": [0, np.nan, 1]}, "a.csv, row 11: the time is empty"),
         ({"f": [1, 2, np.inf]}, "a.csv, row 12: f_in_N is infinite"),
         ({"f": [1, 2]}, "columns differ in length: t has 3, x has 3, f has 2"),
-        ({"t": [0], "x": [0], "f": [0]}, "1 rows; expected at least two"),
+        ({"t": [0], "x": [0], "f": [0]}, "1 row; expected at least two"),
     ],
 )
 def test_what_cannot_be_a_recording_is_refused_with_its_row(values, message):

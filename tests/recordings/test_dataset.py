@@ -167,7 +167,7 @@ def scaled(factor):
         (without("f_in_N"), ": an input and an output column are needed"),
         (without("x_in_mm", "f_in_N"), ": an input and an output column are needed"),
         (lambda c: {n: v[:0] for n, v in c.items()}, ": 0 rows; expected at least two samples"),
-        (lambda c: {n: v[:1] for n, v in c.items()}, ": 1 rows; expected at least two samples"),
+        (lambda c: {n: v[:1] for n, v in c.items()}, ": 1 row; expected at least two samples"),
         (lambda c: c | {"f_in_N": ["5 N"] * 500}, ": column f_in_N holds "),
         (lambda c: c | {"f_in_N": [True] * 500}, ": column f_in_N holds "),
         (changed("f_in_N", 12, np.inf), ", row 12: f_in_N is infinite"),

@@ -74,6 +74,14 @@ def test_the_smallest_map_and_the_columns_it_takes(ask):
         (WHOLE.replace("source = 1", "rate_Hz = true"), "columns.time_s.rate_Hz: true and false"),
         (WHOLE.replace("source = 1", "source = true"), "columns.time_s.source: true and false"),
         (WHOLE + "[read]\nextra = ['a', true]\n", "read.extra.1: true and false are no numbers"),
+        (
+            WHOLE + "offset = 'last'\n",
+            "map.toml: columns.f_in_N.offset: input should be a number or 'first', got 'last'",
+        ),
+        (WHOLE + "offset = nan\n", "offset: input should be a finite number or 'first', got nan"),
+        (WHOLE.replace('"m"', "2026-01-01"), "name: input should be text, got 2026-01-01"),
+        (WHOLE + "[read]\nextra = 5\n", "read.extra: input should be a list, got 5"),
+        (WHOLE.replace("1\n", "1.5\n"), "source: input should be text or a whole number, got 1.5"),
         ("[dataset", "is not TOML"),
     ],
 )

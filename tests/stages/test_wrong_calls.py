@@ -13,7 +13,7 @@ from tsas_cli.records.result import Result
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
-        (lambda data: tsas.read(data / "none"), "no dataset.toml here"),
+        (lambda data: tsas.read(data / "none"), "does not exist"),
         (lambda data: tsas.calibrate(data, dynamics="static"), "expected slip or lugre"),
         (lambda data: tsas.simulate(data, dynamics="lugra"), "did you mean lugre"),
         (lambda data: tsas.diagnose(data, runs=["b"]), "there is no run 'b'"),

@@ -118,7 +118,7 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
         ({"options": {"model": "m.toml"}}, "m.toml: does not exist; expected the file of model"),
         ({"options": {"model": 3}}, "model is 3; expected a file's path"),
         ({"vary": {"nodes": [10, 20, 10]}}, "duplicate task .*; expected distinct points"),
-        ({"datasets": "rigs/c"}, r"rigs/c: no dataset.toml here; expected a dataset folder$"),
+        ({"datasets": "rigs/c"}, r"rigs/c: does not exist; expected a dataset folder$"),
         ({"datasets": "rigs"}, r"its subfolders are datasets: use 'rigs/\*'"),
         ({"datasets": "rigs/e*"}, r"rigs/e\*: no dataset matches; .*; 1 other files and folders"),
         ({"stage": "check", "options": {"preload_N": 2}}, "unknown name preload_N"),

@@ -1,5 +1,6 @@
 """Common options of the subcommands, their progress bar, and the printing of results and hints."""
 
+import csv
 import logging
 import os
 import shutil
@@ -26,8 +27,9 @@ if TYPE_CHECKING:
 
 
 def names(listed: str | None) -> list[str] | None:
-    """Return the comma-separated names of an option, or None without it."""
-    return None if listed is None else [name.strip() for name in listed.split(",")]
+    """Return the comma-separated names of an option, one with a comma in quotes; or None."""
+    rows = csv.reader((listed or "").splitlines(), skipinitialspace=True)
+    return None if listed is None else [name.strip() for row in rows for name in row] or [""]
 
 
 ENDS = (
@@ -50,7 +52,7 @@ ChosenRuns = Annotated[
     typer.Option(
         "--runs",
         metavar="IDS",
-        help="Only these runs, comma-separated; default: all.",
+        help="Only these runs, comma-separated (one with a comma in quotes); default: all.",
         autocompletion=run_ids,
         callback=names,
     ),
@@ -162,12 +164,11 @@ def printed(out: object) -> Iterator[None]:
     except BrokenPipeError:
         raise
     except OSError as error:
+        done = f"{out} is complete: only what is printed is lost"
         raise InputError(
             f"cannot be written ({error.strerror})",
             where="standard output",
-            remedy=f"{out} is complete: only what is printed is lost"
-            if out
-            else "make room, and repeat the call",
+            remedy=done if out else "make room, and repeat the call",
         ) from error
 
 

@@ -13,6 +13,7 @@ from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.wording import count_of
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ def canonical_columns(
         raise InputError(f"columns differ in length: {listed}", where=path, expected="one length")
     rows = max(lengths.values())
     if rows < (1 if before else 2):
-        raise InputError(f"{rows} rows", where=path, expected="at least two samples")
+        raise InputError(count_of(rows, "row"), where=path, expected="at least two samples")
     before = before or PrecedingRows()
     columns, offsets = dict[str, Floats](), dict(before.offsets)
     for name, column in mapping.columns.items():
@@ -88,6 +89,8 @@ def _converted(
     else:
         values = table.columns[column.source]
         unit = column.unit or table.units.get(column.source, "")
+        if not unit and column.source in BY_NAME:  # which ends with its unit
+            unit = BY_NAME[str(column.source)].unit
     if not unit:
         raise InputError(
             f"the file states no unit for {column.source}",

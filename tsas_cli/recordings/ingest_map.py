@@ -13,7 +13,7 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
-from tsas_cli.recordings.manifest import Load, RigSheet, read_toml
+from tsas_cli.recordings.manifest import Load, RigSheet, check_run_name, read_toml
 from tsas_cli.recordings.readers import stem
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
@@ -184,6 +184,14 @@ def run_conditions(
             hint = nearest(word, words)
             raise InputError(f"run.id: {{{word}}} is unknown", remedy=hint)
     name = re.sub(r"\{(\w+)\}", lambda word: words[word[1]], run_map.id)
+    try:
+        check_run_name(name)
+    except ValueError as error:
+        raise InputError(
+            f"run id {name!r} {error}",
+            where=path,
+            remedy='set another in the map, such as id = "run_{stem}" under [run]',
+        ) from error
     converted = {
         condition: _converted(condition, rule, groups, path)
         for condition, rule in run_map.conditions.items()

@@ -188,13 +188,20 @@ def read_manifest(folder: Location) -> Manifest:
     if not path.is_file():
         inside = in_subfolders(folder, (MANIFEST_FILE,))
         raise InputError(
-            "is a file" if folder.is_file() else "no dataset.toml here",
+            why_no_dataset(folder),
             where=folder,
             expected="a dataset folder",
             remedy=inside or "make one from your files with `tsas ingest`",
         )
     check_inside(path, folder)
     return parse(Manifest, read_toml(path), path)
+
+
+def why_no_dataset(folder: Location) -> str:
+    """Return why a place without a manifest is no dataset."""
+    if isinstance(folder, Path) and not folder.exists():
+        return "does not exist"
+    return "is a file" if folder.is_file() else "no dataset.toml here"
 
 
 def read_toml(path: Location) -> Raw:

@@ -34,6 +34,7 @@ from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, state_of
+from tsas_cli.support.wording import count_of
 
 
 def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Recording:
@@ -124,7 +125,7 @@ def open_run(folder: Location, run: Run) -> RunColumns:
     opened = RunColumns(**vars(_opened(checked_file(folder, run), path)), run=run)
     _check_columns(opened.known, opened.file.schema_arrow.names, path)
     if 0 <= opened.rows < 2:  # a negative number is damage, which reading reports
-        raise InputError(f"{opened.rows} rows", where=path, expected="at least two samples")
+        raise InputError(count_of(opened.rows, "row"), where=path, expected="at least two samples")
     return opened
 
 

@@ -1,6 +1,7 @@
 """Content of a file against its schema: what is wrong in one line, with its places."""
 
 from collections.abc import Iterable, Iterator
+from datetime import date, time
 from functools import partial
 from typing import Any, TypeVar
 
@@ -12,6 +13,20 @@ from tsas_cli.support.files import Raw
 T = TypeVar("T", bound=BaseModel)
 _MOST_ERRORS = 5  # listed of one file; further ones are counted
 _VALUE_LENGTH = 80  # characters of an invalid value in a message
+_EXPECTED = "input should be "
+_KINDS = {  # of Pydantic's errors
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "int_type": "a whole number",
+    "int_parsing": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "text",
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "bool_type": "true or false",
+    "dict_type": "a table",
+    "model_type": "a table",
+}
 
 
 def parse(model: type[T], content: Raw, path: object) -> T:
@@ -22,22 +37,7 @@ def parse(model: type[T], content: Raw, path: object) -> T:
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:
-        # A list is also reported as too short only because its items are invalid.
-        found = [
-            e
-            for e in error.errors(include_url=False)
-            if not (e["type"] == "too_short" and any(e["input"]))
-        ]
-        alike: dict[tuple[str, ...], list[str]] = {}  # in each table of a list
-        for e in found:
-            keys = (e["type"], repr(e["input"]), *(k for k in e["loc"] if isinstance(k, str)))
-            alike.setdefault(keys, []).append(_sentence(e, model, content))
-        listed = [
-            first + (f" (and {len(others)} more alike)" if others else "")
-            for first, *others in list(alike.values())[:_MOST_ERRORS]
-        ]
-        more = [f"and {len(alike) - _MOST_ERRORS} more"] if len(alike) > _MOST_ERRORS else []
-        raise InputError("; ".join(listed + more), where=path) from error
+        raise InputError(_sentences(error, content, model), where=path) from error
     for place, what in _no_numbers(content, read):
         raise InputError(f"{place}: {what}", where=path)
     return read
@@ -65,34 +65,72 @@ def _no_numbers(written: Any, read: Any, place: str = "") -> Iterator[tuple[str,
             yield from _no_numbers(value, inner, at)
 
 
-def _sentence(error: Any, model: type[BaseModel], content: Raw) -> str:
-    place = _place(error["loc"], content)
+def _sentences(error: ValidationError, content: Raw, model: type[BaseModel]) -> str:
+    """Return the errors of a file's content as one line.
+
+    Those of one place are one of them, and so are those that are alike in each table of a list.
+    """
+    # A list is also reported as too short only because its items are invalid.
+    found: dict[str, list[Any]] = {}
+    for each in error.errors(include_url=False):
+        if not (each["type"] == "too_short" and any(each["input"])):
+            found.setdefault(_place(each, content), []).append(each)
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for place, errors in found.items():
+        first = errors[0]
+        keys = (k for k in first["loc"] if isinstance(k, str))
+        key = (first["type"], repr(first["input"]), *keys)
+        alike.setdefault(key, []).append(_sentence(place, errors, model))
+    listed = [
+        first + (f" (and {len(others)} more alike)" if others else "")
+        for first, *others in list(alike.values())[:_MOST_ERRORS]
+    ]
+    more = [f"and {len(alike) - _MOST_ERRORS} more"] if len(alike) > _MOST_ERRORS else []
+    return "; ".join(listed + more)
+
+
+def _sentence(place: str, errors: list[Any], model: type[BaseModel]) -> str:
+    """Return what is wrong at one place; of several errors, each says what could be there."""
+    error = errors[0]
     if error["type"] == "extra_forbidden":
         return (
             f"unknown key {place} ({nearest(str(error['loc'][-1]), _known(model, error['loc']))})"
         )
     if error["type"] == "missing":
         return f"{place} is missing"
-    message = error["msg"].removeprefix("Value error, ")
-    message = message[0].lower() + message[1:]
+    first, *others = (_message(each) for each in errors)
+    message = " or ".join([first, *(other.removeprefix(_EXPECTED) for other in others)])
     got = "" if isinstance(error["input"], dict | list) else f", got {_shown(error['input'])}"
     return f"{place}: {message}{got}" if place else message
 
 
+def _message(error: Any) -> str:
+    if error["type"] in _KINDS:
+        return f"{_EXPECTED}{_KINDS[error['type']]}"
+    message: str = error["msg"].removeprefix("Value error, ")
+    return message[0].lower() + message[1:]
+
+
 def _shown(value: object) -> str:
-    shown = repr(value)
+    shown = str(value) if isinstance(value, date | time) else repr(value)
     return shown if len(shown) <= _VALUE_LENGTH else f"{shown[:_VALUE_LENGTH]}…"
 
 
-def _place(location: tuple[Any, ...], content: Any) -> str:
-    """Return the place of an error; of a list's tables it names their ids, unless one is wrong."""
-    names, of_id = list[str](), location[-1:] == ("id",)
+def _place(error: Any, content: Any) -> str:
+    """Return the place of an error, without the kinds that Pydantic has tried there.
+
+    Of a list's tables it names their ids, unless one is wrong.
+    """
+    names, location = list[str](), error["loc"]
+    of_id = location[-1:] == ("id",)
     for part in location:
-        names.append(str(part) if of_id else _named(content, part))
+        name = str(part) if of_id else _named(content, part)
         try:
             content = content[part]
-        except (KeyError, IndexError, TypeError):
-            content = None
+        except (LookupError, TypeError):
+            if error["type"] != "missing" or part != location[-1]:
+                continue
+        names.append(name)
     return ".".join(names)
 
 

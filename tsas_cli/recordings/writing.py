@@ -23,6 +23,7 @@ from tsas_cli.recordings.storage import is_inside
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
+from tsas_cli.support.wording import count_of
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -
     """Refuse a result whose number of samples differs from the recording's."""
     if found != rows:
         raise InputError(
-            f"{found} rows",
+            count_of(found, "row"),
             where=path,
             expected=f"{rows}, as the recording has",
             remedy=f"run {stage} again",

@@ -18,6 +18,7 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw
 from tsas_cli.support.plausible import AnyNumber
 from tsas_cli.support.strict_table import StrictTable, Texts
+from tsas_cli.support.wording import count_of
 from tsas_cli.sweeping.outcome import Row
 
 StageName = Literal["check", "calibrate", "simulate", "diagnose", "track"]
@@ -142,5 +143,5 @@ def _sets(path: Path) -> list[Row]:
     if len(set(table.column_names)) < len(table.column_names):
         raise InputError("duplicate column", where=path)
     if not 0 < table.num_rows <= MOST_TASKS:
-        raise InputError(f"{table.num_rows} rows", where=path, expected=f"1 to {MOST_TASKS}")
+        raise InputError(count_of(table.num_rows, "row"), where=path, expected=f"1 to {MOST_TASKS}")
     return [{k: v for k, v in row.items() if v is not None} for row in table.to_pylist()]

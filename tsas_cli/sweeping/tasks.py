@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml
+from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml, why_no_dataset
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import in_subfolders, sha256_of
 from tsas_cli.sweeping.outcome import Row, versions
@@ -153,7 +153,7 @@ def _source(name: str, base: Path) -> SweepSource:
     if not (folder / MANIFEST_FILE).is_file():
         inside = in_subfolders(folder, (MANIFEST_FILE,))
         raise InputError(
-            "no dataset.toml here",
+            why_no_dataset(folder),
             where=folder,
             expected="a dataset folder",
             remedy=f"its subfolders are datasets: use '{name}/*'" if inside else "",

@@ -16,6 +16,7 @@ from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, sha256_of
+from tsas_cli.support.plausible import Range
 from tsas_cli.tracking.settings import RigSettings, read_settings
 
 KINDS = ("options", "files", "conditions", "settings", "model", "plant")
@@ -128,7 +129,7 @@ def _quantity(label: str, value: Any, name: str) -> float:
         raise InputError(
             f"{label} is {number:g}",
             where="the plan",
-            expected=f"{quantity.lower:g} to {quantity.upper:g} {quantity.unit}",
+            expected=str(Range(quantity.lower, quantity.upper, quantity.unit)),
         )
     return number
 

@@ -3,6 +3,7 @@
 import gzip
 import lzma
 
+import numpy as np
 import pytest
 
 from tsas_cli.recordings.readers import names
@@ -39,3 +40,12 @@ def test_damage_is_one_line(tmp_path, name, content, message):
         names(tmp_path / name, ReadOptions())
     assert str(tmp_path / name) in raised.value.line()
     assert "\n" not in raised.value.line()
+
+
+def test_no_advice_to_unpickle_is_passed_on(tmp_path):
+    np.save(tmp_path / "a.npy", np.array([{}, {}]), allow_pickle=True)
+    (tmp_path / "a.npz").write_bytes(TEXT)
+    for name in ("a.npy", "a.npz"):
+        with pytest.raises(InputError) as raised:
+            names(tmp_path / name, ReadOptions())
+        assert "allow_pickle" not in raised.value.line()

@@ -1,4 +1,6 @@
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli.recordings.readers import read
@@ -107,6 +109,8 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("t,f\n0,1\n1,fast\n", ("row 3", "column f", "'fast'")),
         ("t,f\n" + "0,1\n" * 20_000 + "1,fast\n", ("row 20002", "column f", "'fast'")),
         ("t,f\n0,1\n1,2,3\n", ("row 3", "3 fields", "expected 2")),
+        ("t,f\n0,1\n1\n", ("row 3", "1 field;", "expected 2")),
+        ("t;f\n0.5;1.5\n0.75;2.5\n1.25;2,5\n", ("row 4", "column f", "'2,5'")),
         ("t,f,g\n0,1\n1,2\n", ("row 2", "3 column names and 2 fields")),
         ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),
         ("0,1\n1,2\n", ("2 columns without names",)),
@@ -128,9 +132,37 @@ def test_what_is_wrong_is_reported_with_its_place(ask, text, message):
     assert error.value.line().isprintable()
 
 
-def test_the_wrong_encoding_is_reported(ask):
-    with pytest.raises(InputError, match="cp1252"):
-        ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")
+@pytest.mark.parametrize(
+    ("encoding", "remedy"),
+    [
+        ("cp1252", 'set it in the map: encoding = "cp1252"'),
+        ("utf-16", 'set it in the map: encoding = "utf-16"'),
+        ("utf-32", 'set it in the map: encoding = "utf-32"'),
+        ("utf-16-le", "is this a text table?"),
+    ],
+)
+def test_the_wrong_encoding_is_reported_with_the_one_that_reads_the_file(ask, encoding, remedy):
+    text = "t;µ\n0;1\n1;2\n"
+    with pytest.raises(InputError, match=f"is not text in the encoding utf-8-sig; {remedy}"):
+        ask(text, "t", bytes_in=encoding)
+    assert ask(text, "t", bytes_in=encoding, encoding=encoding)[0] == {"t": [0, 1]}
+
+
+def test_zero_bytes_in_names_are_no_text_whatever_is_set(ask):
+    with pytest.raises(InputError, match=r"in the encoding cp1252; .* encoding = .utf-16"):
+        ask("t;f\n0;1\n1;2\n", "t", bytes_in="utf-16", encoding="cp1252")
+
+
+def test_what_is_no_text_table_is_not_said_to_be_one(tmp_path):
+    pq.write_table(pa.table({"t": [0.0, 1.0]}), tmp_path / "a.csv")
+    for encoding in ("utf-8", "cp1252"):
+        with pytest.raises(InputError, match=r"is this a text table\? its name ends in \.csv$"):
+            read(tmp_path / "a.csv", ReadOptions(encoding=encoding), ["t"])
+
+
+def test_an_encoding_that_does_not_exist_is_unknown(ask):
+    with pytest.raises(InputError, match="encoding of the map: the encoding 'klingon' is unknown"):
+        ask("t,f\n0,1\n1,2\n", "t", encoding="klingon")
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,7 @@ def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
         ({"data": ROWS, "dt": 1}, {}, "its keys are: data, dt"),
         ({"data": ROWS}, {"table": "date"}, "did you mean data"),
         ([[0, 1], [1, "fast"]], {}, "row 2: column 2 holds 'fast'"),
-        ([[0, 1], [1]], {}, "row 2: 1 values; expected 2"),
+        ([[0, 1], [1]], {}, "row 2: 1 value; expected 2"),
         ([], {}, "holds no table"),
         ([[0, 1], [1, "1_2"]], {}, "row 2: column 2 holds '1_2'"),
     ],

@@ -1,8 +1,11 @@
 """Formats whose readers offer named arrays: known numbers come back, whatever holds them."""
 
+import json
+
 import h5py
 import numpy as np
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from pyarrow import feather
 
@@ -96,3 +99,28 @@ def test_zeros_that_fill_the_memory_are_refused(tmp_path):
         file.create_dataset("x", (1 << 40,), "f8", compression="gzip")
     with pytest.raises(InputError, match="at most 500 times its size"):
         read(tmp_path / "a.h5", ReadOptions(), ["x"])
+
+
+@pytest.mark.parametrize("name", ["a.jsonl", "a.npz", "a.feather", "a.parquet", "a.h5"])
+def test_a_unit_in_brackets_counts_in_any_format(tmp_path, name):
+    data = {"Time [s]": TIME, "F (kN)": FORCE, "x [mm]": TIME, "F": FORCE}
+    path = tmp_path / name
+    if name == "a.jsonl":
+        rows = zip(*(values.tolist() for values in data.values()), strict=True)
+        path.write_text("\n".join(json.dumps(dict(zip(data, row, strict=True))) for row in rows))
+    elif name == "a.npz":
+        np.savez(path, **data)
+    elif name == "a.h5":
+        with h5py.File(path, "w") as file:
+            for key, values in data.items():
+                file[key] = values
+            file["x [mm]"].attrs["unit"] = "m"  # what the file states counts more
+    else:
+        (feather.write_feather if name == "a.feather" else pq.write_table)(pa.table(data), path)
+    units = {"Time [s]": "s", "F (kN)": "kN", "x [mm]": "m" if name == "a.h5" else "mm"}
+    assert read(path, ReadOptions(), [*data]).units == units
+
+
+def test_the_number_of_a_column_of_a_matrix_is_no_unit(tmp_path):
+    hdf5(tmp_path / "a.h5")
+    assert read(tmp_path / "a.h5", ReadOptions(), ["m(:,1)", "m(:,2)"]).units == {}

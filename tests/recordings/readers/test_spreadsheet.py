@@ -24,6 +24,20 @@ def test_numbers_gaps_and_faults_of_formulas(write):
     assert table.units == {"Zeit [s]": "s", "Kraft [N]": "N"}
 
 
+@pytest.mark.parametrize("cell", ["25,3", "25,300"])
+def test_a_text_with_a_comma_among_numbers_is_what_is_wrong(write, cell):
+    rows = [[0.01 * i, 20.0 + 0.125 * i] for i in range(5)]
+    path = write(Log=[LOG[0], *rows, [0.05, cell]])
+    with pytest.raises(InputError, match=rf"row 7: column Kraft \[N\] holds '{cell}'"):
+        read(path, ReadOptions(), LOG[0])
+
+
+def test_numbers_that_are_text_have_their_own_mark(write):
+    rows = [LOG[0], ["0,1", "1,5"], ["0,2", "2,5"]]
+    table = read(write(Log=rows), ReadOptions(table="Log"), LOG[0])
+    assert table.columns["Kraft [N]"].tolist() == [1.5, 2.5]
+
+
 def test_a_sheet_is_chosen_by_its_numbers_or_named(write):
     path = write(Notes=NOTES, Short=LOG[:3], Log=LOG)
     assert tables(path) == ["Log", "Short"]

@@ -15,6 +15,7 @@ T = TypeVar("T")
 Keys = dict[str, tuple[Any, str]]  # of a table of the map: value and reason
 _PREAMBLE = 60  # lines above a table that are tried
 _ENCODINGS = {  # that a map has to set, and why
+    "utf-32": "the file begins with the byte-order mark of UTF-32",
     "utf-16": "the file begins with the byte-order mark of UTF-16",
     "cp1252": "the file is not UTF-8; cp1252 is usual on Windows",
     "gb18030": "the file is not UTF-8, and all pairs of its bytes are Chinese characters",

@@ -34,7 +34,7 @@ from tsas_cli.recordings.quality.checks import (
 )
 from tsas_cli.recordings.quality.finding import Finding, NotChecked, QualityCheck
 from tsas_cli.recordings.quality.samples import Size, span_of, step_of
-from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.recordings.quality.trial import FEWEST, RunSignals
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import RunColumns, read_recording
 from tsas_cli.support.arrays import Floats
@@ -173,7 +173,9 @@ def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
     with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         missing = [name for name in check.needs if name not in trial.channels]
         if missing:
-            return [NotChecked(f"{' and '.join(missing)} not recorded", code=check.code)]
+            absent = [name for name in missing if name not in trial.recording.columns]
+            why = "not recorded" if absent else f"with fewer than {FEWEST} valid samples"
+            return [NotChecked(f"{' and '.join(absent or missing)} {why}", code=check.code)]
         for name in check.given:
             if not getattr(trial, name):
                 return [NotChecked(GIVEN[name], code=check.code)]

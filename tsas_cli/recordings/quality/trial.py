@@ -21,7 +21,7 @@ COMMANDED = "motor_speed_rpm"
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
 _STEPS, _ROUNDING = 2.0, 1e-5  # of a step, and of the span: the least noise of a sensor
-_FEWEST = 16  # samples of a channel that is checked
+FEWEST = 16  # samples of a channel that is checked
 _SMALL_OFFSET = 0.02  # of a tension's range
 _STROKE = 0.2  # of the drive's span: the smallest reversal that begins a new stroke
 
@@ -238,4 +238,4 @@ class RunSignals:
 
 
 def _with_enough_values(channels: dict[str, Floats]) -> dict[str, Floats]:
-    return {n: v for n, v in channels.items() if np.isfinite(v).sum() >= _FEWEST}
+    return {n: v for n, v in channels.items() if np.isfinite(v).sum() >= FEWEST}

@@ -98,7 +98,9 @@ def _member(archive: zipfile.ZipFile, path: Path) -> str:
 
 def _is_known(name: str) -> bool:
     inside = PurePosixPath(name)
-    hidden = any(part.startswith((".", "__MACOSX")) for part in inside.parts)
+    hidden = any(
+        part.startswith((".", "__MACOSX")) and part not in {".", ".."} for part in inside.parts
+    )
     return inside.suffix.lower() in {*readers.SUFFIXES} - {*PACKED} and not hidden
 
 

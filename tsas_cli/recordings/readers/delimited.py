@@ -31,6 +31,7 @@ from tsas_cli.recordings.readers.timebase import Seconds, is_stamp
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.wording import count_of
 
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
@@ -116,7 +117,7 @@ def _line_by_line(
             cells = fields(line, layout.delimiter)
             if len(cells) != len(layout.names):
                 raise InputError(
-                    f"{len(cells)} fields",
+                    count_of(len(cells), "field"),
                     where=f"{path}, row {row}",
                     expected=f"{len(layout.names)}, as in the rows above",
                 )

@@ -9,6 +9,7 @@ from tsas_cli.recordings.readers.offered import Column, Offered, flat
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
+from tsas_cli.support.wording import count_of
 
 
 def offered(path: Path, options: ReadOptions) -> Iterator[Offered]:
@@ -73,7 +74,9 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[
         for row, cells in enumerate(content, start=1):
             if len(cells) != len(names):
                 raise InputError(
-                    f"{len(cells)} values", where=f"{path}, row {row}", expected=f"{len(names)}"
+                    count_of(len(cells), "value"),
+                    where=f"{path}, row {row}",
+                    expected=str(len(names)),
                 )
         return names, lambda i: [row[i] for row in content]
     keys = f"; its keys are: {', '.join(content)}" if isinstance(content, dict) else ""

@@ -2,21 +2,22 @@
 
 import csv
 import re
-from codecs import getincrementaldecoder
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE, BOM_UTF32_BE, BOM_UTF32_LE, getincrementaldecoder
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from tsas_cli.recordings.readers.table import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions, unit_in
 from tsas_cli.recordings.readers.timebase import is_stamp
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.wording import count_of
 
 _SAMPLE = 200  # lines of the table for the detection
 _LONG = 4 * limits.LINE  # characters of them, if lines are long
-_UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_DECIMAL_POINT = re.compile(r"(?![+-]?[1-9]\d{0,2}\.\d{3}$)[+-]?\d*\.\d+([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # or three decimals
 _GROUPED = {  # numbers with separators between thousands, by their decimal mark
     ".": re.compile(r"[+-]?[1-9]\d{0,2}(?:([,' \u00a0\u202f])\d{3})(?:\1\d{3})*(\.\d*)?"),
@@ -63,6 +64,8 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     comments, lines = _head(path, options)
     if not lines:
         raise InputError("holds no table", where=path, expected="rows of numbers")
+    if "\0" in lines[0][1]:
+        raise _not_text(path, options.encoding)
     shared = (d for d in "\t;, " if all(d in text.strip(" ") for _, text in lines))
     delimiter = options.delimiter or next(shared, ",")
     rows = [fields(text, delimiter) for _, text in lines]
@@ -80,9 +83,7 @@ def detect(path: Path, options: ReadOptions) -> Layout:
         raise InputError("holds no row of numbers", where=path)
     first_line = lines[len(lines) - len(rows)][0]
     names = _fitted(names, rows[0], path, first_line)
-    units = [cell.strip("[]()") for cell in units] or [
-        found[1].strip() if (found := _UNIT_IN_NAME.search(name)) else "" for name in names
-    ]
+    units = [cell.strip("[]()") for cell in units] or [unit_in(name) for name in names]
     units += [""] * (len(names) - len(units))
     stamps = frozenset(i for i, cell in enumerate(rows[0]) if is_stamp(cell))
     units = ["s" if i in stamps else unit for i, unit in enumerate(units)]
@@ -92,14 +93,16 @@ def detect(path: Path, options: ReadOptions) -> Layout:
 
 
 def encoding_of(path: Path) -> str:
-    """Return UTF-16, UTF-8, or where the head is neither, that of Windows in Western Europe.
+    """Return UTF-32 or -16, UTF-8, or where the head is neither, that of Windows in Western Europe.
 
     Where all that is not ASCII are Chinese characters of two bytes, it is that of Windows there: a
     letter with an accent is one byte, and seldom stands beside another one.
     """
     with path.open("rb") as stream:
         head = stream.read(1 << 20)
-    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
+    if head.startswith((BOM_UTF32_LE, BOM_UTF32_BE)):
+        return "utf-32"
+    if head.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
         return "utf-16"
     for encoding, known_by in (("utf-8-sig", "utf-8"), ("gb18030", "gb2312")):
         try:
@@ -171,6 +174,25 @@ def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, 
     return comments, lines
 
 
+def _not_text(path: Path, encoding: str) -> InputError:
+    """Return the error for a file that is not text in the encoding that was set."""
+    try:
+        "".encode(encoding)
+    except (LookupError, ValueError):
+        what, expected = f"the encoding {encoding!r} is unknown", 'one such as "utf-8" or "cp1252"'
+        return InputError(what, where="read.encoding of the map", expected=expected)
+    likely = encoding_of(path)
+    with path.open("rb") as stream:
+        is_binary = likely not in {"utf-16", "utf-32"} and b"\0" in stream.read(1 << 20)
+    return InputError(
+        f"is not text in the encoding {encoding}",
+        where=path,
+        remedy=f"is this a text table? its name ends in {path.suffix}"
+        if is_binary or likely == encoding
+        else f'set it in the map: encoding = "{likely}" under [read]',
+    )
+
+
 def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:
     """Yield the lines after those to skip, with their line numbers."""
     try:
@@ -178,17 +200,17 @@ def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:
             numbered = enumerate(limits.lines(stream, path), start=1)
             yield from islice(numbered, options.skip_lines, None)
     except (UnicodeError, LookupError, ValueError) as error:
-        raise InputError(
-            f"is not text in the encoding {options.encoding}",
-            where=path,
-            remedy='set it in the map, such as encoding = "cp1252" under [read]',
-        ) from error
+        raise _not_text(path, options.encoding) from error
 
 
 def _decimal(
     rows: Sequence[Sequence[str]], delimiter: str, path: Path, options: ReadOptions
 ) -> str:
-    if delimiter == "," or not any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row):
+    commas, points = (
+        sum(mark.fullmatch(cell) is not None for row in rows for cell in row)
+        for mark in (_DECIMAL_COMMA, _DECIMAL_POINT)
+    )
+    if delimiter == "," or points >= commas:
         return "."
     with_comma, without = dict[int, str](), dict[int, str]()
     for _, line in _lines(path, options):  # the first rows may all exceed a thousand
@@ -229,7 +251,7 @@ def _fitted(names: list[str], row: list[str], path: Path, line: int) -> list[str
         return [*names, ""]
     if len(names) != len(row):
         raise InputError(
-            f"{len(names)} column names and {len(row)} fields",
+            f"{count_of(len(names), 'column name')} and {count_of(len(row), 'field')}",
             where=f"{path}, row {line}",
             expected="as many fields as names",
             remedy="set delimiter, decimal or skip_lines under [read] of the map",

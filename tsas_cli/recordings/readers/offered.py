@@ -18,6 +18,7 @@ from tsas_cli.recordings.readers.table import (
     ReadOptions,
     floats,
     resolve,
+    unit_in,
 )
 from tsas_cli.recordings.readers.timebase import TIME, Seconds, is_stamp, on_one_clock
 from tsas_cli.support.arrays import Floats
@@ -89,7 +90,8 @@ def read(
         if times or clocks:
             series = {s: (_clock_of(s, times, columns, path), columns[s]) for s in columns}
             columns = on_one_clock(series, path, clock_sources=clocks, resample=options.resample)
-        units = {s: column.unit for s, column in found.items() if column.unit}
+        named = {s: column.unit or unit_in(column.name) for s, column in found.items()}
+        units = {s: unit for s, unit in named.items() if unit}
         units |= dict.fromkeys(typed, "s") | dict.fromkeys(clocks, clock_unit)
         return ColumnTable(columns, units, offered.header, typed=frozenset(typed))
 

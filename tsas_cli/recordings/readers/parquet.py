@@ -20,6 +20,7 @@ from tsas_cli.recordings.readers.table import (
     ReadOptions,
     floats,
     resolve,
+    unit_in,
 )
 from tsas_cli.recordings.readers.timebase import Seconds
 
@@ -35,7 +36,7 @@ def batches(path: Path, _: ReadOptions, wanted: Sequence[ColumnSource]) -> Itera
         schema = file.schema_arrow
         at = resolve(wanted, schema.names, path)
         fields = {source: schema.field(i) for source, i in at.items()}
-        units = {s: unit for s, f in fields.items() if (unit := unit_of(f))}
+        units = {s: unit for s, f in fields.items() if (unit := unit_of(f) or unit_in(f.name))}
         names = [field.name for field in fields.values()]
         check_size(file, path, names, whole=False)
         # A duplicate name is read twice: `order` is the number among columns of that name.

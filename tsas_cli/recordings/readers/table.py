@@ -1,5 +1,6 @@
 """What every reader takes and returns: options, a table, its columns by their source in a map."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -18,6 +19,8 @@ from tsas_cli.support.strict_table import StrictTable, Texts
 
 ColumnSource = str | int  # a column's name, or its number counted from 1
 
+_IN_BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
+_INDEX = re.compile(r"[\d:,\s]*")
 BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of its run
 
 
@@ -69,6 +72,16 @@ def resolve(
     """
     limits.columns(names, path)
     return {source: _index(source, names, path) for source in wanted}
+
+
+def unit_in(name: str) -> str:
+    """Return the unit in brackets at the end of a column's name, empty text without one.
+
+    >>> [unit_in(name) for name in ("F [N]", "F (kN)", "effort[0]", "data(:,2)")]
+    ['N', 'kN', '', '']
+    """
+    found = _IN_BRACKETS.search(name)
+    return "" if found is None or _INDEX.fullmatch(found[1]) else found[1].strip()
 
 
 def whole(parts: Iterable[ColumnTable]) -> ColumnTable:
