@@ -242,7 +242,7 @@ CASES = cases(
         "at least 1 item": {"no runs": no_run("[]")},
         "run.0: input should be a table": {"runs that are no tables": no_run("[1]")},
         "is a device on Windows": {"a file called con.csv": table("con.csv")},
-        "\\x1b[2Jx.csv: run id '\\\\x1b[2Jx' must be usable as a file name": {
+        "\\x1b[2Jx.csv: run id '\\x1b[2Jx' must be usable as a file name": {
             "a file with an escape": table("\x1b[2Jx.csv"),
         },
         "its name is not UTF-8": {
