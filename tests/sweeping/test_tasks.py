@@ -114,6 +114,7 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
         ({"vary": {"total_bend_rad": [2.0, float("nan")]}}, "total_bend_rad is nan; .* finite"),
         ({"vary": {"friction_coefficient": [float("inf")]}}, "friction_coefficient is inf; .* fin"),
         ({"vary": {"total_bend_rad": [-1]}}, "total_bend_rad: expected 0, or 1e-09 .* rad, got -1"),
+        ({"vary": {"friction_coefficient": [99.0]}}, r"is 99; expected \S+ to [\d.]+$"),
         ({"options": {"sheath_length_mm": 0}}, "the plan: sheath_length_mm: expected .* mm, got 0"),
         ({"options": {"model": "m.toml"}}, "m.toml: does not exist; expected the file of model"),
         ({"options": {"model": 3}}, "model is 3; expected a file's path"),
