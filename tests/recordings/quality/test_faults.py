@@ -66,6 +66,7 @@ CLIPPED = [
     ("x_out_mm", None, 17.0),
     ("x_in_mm", None, 18.0),
 ]
+DEAD = {"f_in_N": 0.08, "f_out_N": 1e-4, "x_out_mm": 0.01}  # and their noise
 ENCODER = columns(Bench(noise_mm=0.0, step_mm=0.02))
 POUNDS = {name: GOOD[name] / 4.448 for name in ("f_in_N", "f_out_N")}
 
@@ -87,6 +88,8 @@ POUNDS = {name: GOOD[name] / 4.448 for name in ("f_in_N", "f_out_N")}
         (repeated(np.where((ROWS >= 700) & (ROWS < 760), 700, ROWS)),
          "repeated-rows", "59 of 3200", {"first_s": pytest.approx(701 * 0.005)}),
         (changed(f_out_N=np.full(N, 30.0)), "stuck", "", {"column": "f_out_N"}),
+        *((changed(**{name: 30.0 + noise * np.random.default_rng(3).standard_normal(N)}), "stuck",
+           "shows its noise alone", ERROR | {"column": name}) for name, noise in DEAD.items()),
         (changed(f_in_N=GOOD["f_in_N"] - 25.0), "negative-tension", "", {"column": "f_in_N"}),
         (GOOD | POUNDS, "unit", "", {"column": "f_out_N"}),  # against the data sheet
         (kept(slice(800)), "few-reversals", "", {"column": "x_in_mm"}),

@@ -48,16 +48,22 @@ def ac_coupled(trial: RunSignals) -> Findings:
 
 _FEWEST_UPDATES = 20
 _MARGIN = 0.1  # of the rows of a plateau, at either end
+_MOVES_WITH = {
+    "f_in_N": ("f_out_N", "x_in_mm"),
+    "f_out_N": ("x_out_mm",),
+    "x_out_mm": ("f_out_N",),
+}
 _LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel
 
 
 def stuck(trial: RunSignals) -> Findings:
-    """A channel does not change at all while the motion goes back and forth.
+    """A channel does not change, or by its noise alone, while the motion goes back and forth.
 
     The sensor, its cable or its software hangs. A channel with noise in its calm rows is stuck if
     it does not change for 20 updates during visible motion; one without only if the drive crosses
     most of its span and returns, because the distal end also rests in a dead band, and a drive that
-    hunts within a step of its encoder moves the tension.
+    hunts within a step of its encoder moves the tension. With a spring as load f_out moves with
+    x_out, and f_in with both: noise alone is a sensor that is dead, or not connected.
     """
     for name, values in trial.mechanical.items():
         if name == trial.prescribed:
@@ -65,6 +71,11 @@ def stuck(trial: RunSignals) -> Findings:
             continue
         if trial.sizes[name].lowest == trial.sizes[name].highest:
             yield _unchanging("warning", trial, name, slice(0, values.size))
+            continue
+        moving = [other for other in _MOVES_WITH.get(name, ()) if other in trial.channels]
+        if trial.on_spring and not trial.moves(name) and any(map(trial.moves, moving)):
+            with_x_in_alone = not any(trial.moves(other) for other in moving if other != "x_in_mm")
+            yield _dead("warning" if with_x_in_alone else "error", trial, name)
             continue
         between = rows_between_changes(values)
         shortest = int(_FEWEST_UPDATES * np.median(between)) if between.size else _FEWEST_UPDATES
@@ -84,6 +95,17 @@ def _unchanging(severity: Severity, trial: RunSignals, name: str, rows: slice) -
         f"(it stays at {trial.channels[name][rows.start]:.6g})",
         "check the sensor and its cable, and leave the column or this stretch out",
         float(begin),
+    )
+
+
+def _dead(severity: Severity, trial: RunSignals, name: str) -> Finding:
+    unit = name.rsplit("_", 1)[1]
+    return Finding(
+        severity,
+        name,
+        f"{name} shows its noise alone while the drive moves (it stays at "
+        f"{float(np.nanmean(trial.channels[name])):.4g} {unit})",
+        "check the sensor and its cable, and leave the column out",
     )
 
 
