@@ -16,7 +16,7 @@ def test_it_prints_all_that_a_person_needs(done, effect):
 
 def test_parameters_come_with_unit_and_bounds(done):
     lines = done("explain", "force_sensor_gain").splitlines()
-    assert ["f_out_gain", "1", "1", "0.01", "100"] in [line.split() for line in lines]
+    assert ["f_out_gain", "1", "1", "0.2", "5"] in [line.split() for line in lines]
     header = next(line for line in lines if "neutral" in line)
     assert header.split() == ["parameter", "unit", "neutral", "lowest", "highest"]
 

@@ -47,13 +47,31 @@ def gain_anywhere(without: HeldOutFit, with_it: HeldOutFit) -> Reduction:
     weighted = gain(without.squares, with_it.squares)
     if weighted.convincing:
         return weighted
-    sums = {name: float(of.sum()) for name, of in without.raw_squares.items()}
-    before, after = (
-        np.sum([fit.raw_squares[name] / total for name, total in sums.items()], axis=0)
-        for fit in (without, with_it)
-    )
-    raw = gain(before, after)
+    raw = raw_gain(without.raw_squares, with_it.raw_squares)
     return raw if raw.convincing else weighted
+
+
+def raw_gain(without: dict[str, Floats], with_it: dict[str, Floats]) -> Reduction:
+    """Return the reduction of the squares of each block, each channel's over all that it has."""
+    sums = {name: float(of.sum()) for name, of in without.items()}
+    before, after = (
+        np.sum([squares[name] / total for name, total in sums.items()], axis=0)
+        for squares in (without, with_it)
+    )
+    return gain(before, after)
+
+
+def raw_squares(bench: Bench, trial: HypothesisFit, folds: Folds) -> dict[str, Floats]:
+    """Return the squares of each channel's errors of a fit in each block, in its unit."""
+    out = {name: np.zeros(folds.blocks) for name in bench.channels}
+    first = 0
+    for k, run in enumerate(bench.errors_for(trial)):
+        for name, errors in run.raw(bench.rig(trial, k)).items():
+            of_means = np.add.reduceat(errors**2, mean_edges(errors.size))
+            block = folds.block[first : first + of_means.size]
+            out[name] += np.bincount(block, of_means, folds.blocks)
+            first += of_means.size
+    return out
 
 
 def refitted(

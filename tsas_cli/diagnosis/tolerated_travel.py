@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsas_cli.diagnosis.hypotheses import Hypotheses
+from tsas_cli.diagnosis.refitted import raw_gain, raw_squares
 from tsas_cli.diagnosis.tolerances import GROWTH, LONGEST_MM, PRESLIDING, TRAVEL, TRAVEL_MM
 from tsas_cli.effects.presliding import AT_N, Presliding, travel_at
 from tsas_cli.identification.estimate import Estimate
@@ -36,6 +37,7 @@ def is_tolerated(bench: Bench, trial: HypothesisFit) -> bool:
 def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     """Return a search whose bench frees the travel beside its named effects, if it is significant.
 
+    Or if it lowers the raw squares, since what lags at each reversal has next to no weight.
     Unchanged where a cause has a travel of its own, or more than the plausible travel fits best.
     """
     bench, effects = search.bench, sorted(search.named)
@@ -51,9 +53,12 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     held = trial.holding([GROWTH])  # without a travel its growth has no meaning (Davies 1977)
     found = with_errors(held.unknowns, held.solution, counted, by_run=True)
     at = [u.name for u in held.unknowns].index(TRAVEL)
-    significant = found.values[at] > SIGNIFICANT * found.stderr[at]
-    if found.at_bound[at] or not significant or not is_tolerated(bench, trial):
+    if found.at_bound[at] or not is_tolerated(bench, trial):
         return search
+    if found.values[at] < SIGNIFICANT * found.stderr[at]:
+        without = raw_squares(bench, search.trial(search.named), search.folds)
+        if not raw_gain(without, raw_squares(freed, trial, search.folds)).convincing:
+            return search
     return replace(search, bench=freed, trials={(search.named, True): trial}, squares={})
 
 

@@ -37,6 +37,6 @@ FORCE_SENSOR_GAIN = Effect(
     closed_form=True,
     equation="reading of f_out = gain · T",
     doc=__doc__,
-    parameters=(Parameter("f_out_gain", "1", neutral=1.0, start=1.05, lower=0.01, upper=100.0),),
+    parameters=(Parameter("f_out_gain", "1", neutral=1.0, start=1.05, lower=0.2, upper=5.0),),
     experiment="Hang one weight on both force sensors in series: they must read the same.",
 )
