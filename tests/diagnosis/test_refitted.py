@@ -9,7 +9,14 @@ from scipy.optimize import least_squares
 
 from tsas_cli.diagnosis import refitted as module
 from tsas_cli.diagnosis.held_out import folds_of, held_out_values
-from tsas_cli.diagnosis.refitted import HeldOutFit, gain_anywhere, refitted, refitted_values
+from tsas_cli.diagnosis.refitted import (
+    HeldOutFit,
+    gain_anywhere,
+    raw_gain,
+    raw_squares,
+    refitted,
+    refitted_values,
+)
 from tsas_cli.identification.fit import Unknown, solve
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 
@@ -124,6 +131,27 @@ def test_what_has_no_weight_is_a_gain_where_most_of_the_raw_squares_go(raw, part
     assert found.convincing is (raw == 2.0)
     clear = errors_of([5.0] * 8, [raw] * 8)
     assert gain_anywhere(without, clear).part == pytest.approx(0.5)
+
+
+def test_each_channel_counts_by_its_own_squares():
+    """A displacement in millimetres has a millionth of the squares of a force, and counts alike."""
+    without = {"f_in_N": np.full(8, 4.0), "x_out_mm": np.full(8, 4e-6)}
+    found = raw_gain(without, without | {"x_out_mm": np.full(8, 2e-6)})
+    assert (found.part, found.convincing) == (pytest.approx(0.25), True)
+    assert not raw_gain(without, without).convincing
+
+
+def test_raw_squares_are_those_of_a_fit_in_each_block(fitted):
+    runs, bench, trial, folds = fitted
+    rigs = [{"rate": trial.solution.values[0], "offset": v} for v in trial.solution.values[1:]]
+    bench = SimpleNamespace(**vars(bench), rig=lambda trial, k: rigs[k])
+    parts = [
+        part
+        for run, rig in zip(runs, rigs, strict=True)
+        for part in np.split(run.data - curve(rig["rate"], rig["offset"], run.k), 4)
+    ]
+    found = raw_squares(bench, trial, folds)
+    np.testing.assert_allclose(found["f_in_N"], [float(part @ part) for part in parts])
 
 
 def test_a_held_out_run_has_a_plausible_friction_of_its_own(fitted):
