@@ -19,7 +19,8 @@ from tsas_cli.physics.lumped import HELD, Lumped, follow, lumped_of
 from tsas_cli.physics.mechanics import mechanics_of
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
-from tsas_cli.recordings.manifest import Run, parse
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import Named, file_of, one_of, path_of
