@@ -47,11 +47,14 @@ def test_one_folder_of_a_stage_is_enough_and_leads_to_the_dataset(folder, here):
 def test_an_existing_page_stays_without_force(folder, here, refused):
     page, call = folder / "r.html", [folder / "check", "--out", folder / "r.html"]
     assert here("report", *call)[0] == 0
-    page.write_text(page.read_text() + "earlier")
+    whole = page.read_text()
     refused(*call, says=["r.html", "--force"])
-    assert page.read_text().endswith("earlier")
+    page.write_text(whole + "edited")
+    refused(*call, "--force", says=["r.html", "has changed since it was written"])
+    assert page.read_text().endswith("edited")
+    page.write_text(whole)
     assert here("report", *call, "--force")[0] == 0
-    assert not page.read_text().endswith("earlier")
+    assert page.read_text() == whole
     page.write_text("mine")
     refused(*call, "--force", says=["r.html", "not an earlier output"])
     assert page.read_text() == "mine"

@@ -7,6 +7,7 @@ import pytest
 
 from tsas_cli.identification import long_runs as long
 from tsas_cli.numerics.conditioning_pieces import Cleaned
+from tsas_cli.numerics.noise import Noise
 from tsas_cli.recordings import pieces as reading
 
 
@@ -32,7 +33,7 @@ def run_of(rows, names=("x_in_mm",)):
         SimpleNamespace(rows=rows),
         "x_in_mm",
         dict.fromkeys(names, plan),
-        {"f_in_N": 0.2},
+        {"f_in_N": Noise(0.2, 0.5)},
         60.0,
     )
 
@@ -70,4 +71,5 @@ def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
     assert prepared.measured["f_in_N"].tolist() == (500 + whole).tolist()
     assert (prepared.every, prepared.all_rows, prepared.session_s) == (5, 98, 60.0)
     assert prepared.noise == {"f_in_N": 0.2}
+    assert prepared.noises == {"f_in_N": Noise(0.2, 0.5**5)}  # of every fifth row
     assert prepared.in_gap.tolist() == (whole % 7 == 0).tolist()

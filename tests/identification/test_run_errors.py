@@ -20,6 +20,7 @@ from tsas_cli.identification.run_errors import (
     run_errors,
 )
 from tsas_cli.identification.run_simulation import fitted_samples
+from tsas_cli.numerics.noise import Noise, with_memory
 from tsas_studies.challenge.rig.motions import Motion, nested, sine, through, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -133,10 +134,13 @@ def conditioned(sd=0.01):
     return SimpleNamespace(values=X, reversals=REVERSALS, sd=np.full(X.size, sd))
 
 
-def errors_with(samples, measured=None, predicted=3.0):
+def errors_with(samples, measured=None, predicted=3.0, correlation=0.0):
     """Return errors of weight one, without the shape of a wrong turn."""
     size = max(at.max() for at in samples.values()) + 1
-    run = SimpleNamespace(measured=measured or dict.fromkeys(samples, np.arange(size) ** 2.0))
+    run = SimpleNamespace(
+        measured=measured or dict.fromkeys(samples, np.arange(size) ** 2.0),
+        noises=dict.fromkeys(samples, Noise(1.0, correlation)),
+    )
     return RunErrors(
         run,
         samples,
@@ -234,6 +238,15 @@ def test_means_of_neighbours_keep_a_variance_of_one():
     assert found.size == 834
     assert found[0] == pytest.approx(white[:3].sum() / np.sqrt(3.0))
     assert found[-1] == white[-1]
+
+
+def test_means_of_noise_with_a_memory_keep_a_variance_of_one_too():
+    """Of three samples with a correlation of 0.5: 3 + 4 · 0.5 + 2 · 0.25 in place of 3."""
+    noise = with_memory(np.random.default_rng(3).standard_normal(2500), 0.5)
+    made = errors_with({"f_in_N": np.arange(2500)}, {"f_in_N": -noise}, 0.0, correlation=0.5)
+    found = made.residuals(None)
+    assert found[0] == pytest.approx(noise[:3].sum() / np.sqrt(5.5))
+    assert np.mean(found**2) == pytest.approx(1.0, abs=0.15)
 
 
 def test_raw_errors_are_measured_less_simulated():

@@ -89,11 +89,23 @@ def tree(path: Path) -> dict[str, str]:
 def make_old(reference: Path, path: Path) -> None:
     """Put an earlier result, which differs from what the stage writes, under a name."""
     if reference.is_file():
-        path.write_bytes(reference.read_bytes() + b"<!-- earlier -->\n")
+        path.write_bytes(unsealed(reference) + b"<!-- earlier -->\n")
         return
     shutil.copytree(reference, path)
-    with next(p for p in sorted(path.rglob("*")) if p.is_file()).open("ab") as file:
-        file.write(b"\n")
+    first = next(p for p in sorted(path.rglob("*")) if p.is_file())
+    first.write_bytes(unsealed(first) + b"\n")
+    for sums in path.rglob(SUMS):
+        name = first.relative_to(sums.parent).as_posix()
+        lines = sums.read_text(encoding="utf-8").splitlines()
+        digest = hashlib.sha256(first.read_bytes()).hexdigest()
+        now = (f"{digest}  {name}" if line.endswith(f"  {name}") else line for line in lines)
+        sums.write_text("".join(f"{line}\n" for line in now), encoding="utf-8")
+
+
+def unsealed(file: Path) -> bytes:
+    """Return the content of a file without the last line that tells whether it was edited."""
+    lines = file.read_bytes().splitlines(keepends=True)
+    return b"".join(lines[:-1] if lines and b"sha256 of all above" in lines[-1] else lines)
 
 
 def faults_of(path: Path, reference: dict[str, str]) -> list[str]:

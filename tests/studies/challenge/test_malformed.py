@@ -50,7 +50,7 @@ def test_wrong_answers(tmp_path, change, told):
     ("content", "told"),
     [
         ("{", "is not JSON"),
-        ("[]", "dictionary"),
+        ("[]", "a table"),
         ("{}", "format is missing; kind is missing"),
         (json.dumps({"format": 2, "kind": "x", "seed": 1, "cases": {}}), "format: "),
     ],
