@@ -71,6 +71,14 @@ def test_a_motion_at_any_rate_is_no_memory(motion, coarse, sd):
         assert noise_of(values) == Noise(noise_sd(values), 0.0)
 
 
+@pytest.mark.parametrize("period", [2, 4, 8])
+def test_what_repeats_after_a_few_samples_has_no_memory(period):
+    """Third differences of every second or fourth sample vanish, or are those of rounding."""
+    values = np.tile(np.random.default_rng(1).standard_normal(period), 100)
+    assert noise_of(values).correlation == 0.0
+    assert noise_of(np.tile([0.0, 1.0], 100)).correlation == 0.0
+
+
 def test_a_mean_of_noise_with_a_memory_is_as_uncertain_as_it_says():
     """The variance of means of c samples, over that of one sample divided by c."""
     for correlation in (0.0, 0.5, 0.9):

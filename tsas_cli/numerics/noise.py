@@ -48,15 +48,14 @@ def noise_of(values: Floats) -> Noise:
     if not white > rounding:
         return Noise(rounding if white <= rounding else math.nan)
     clean = values[np.isfinite(values)]
-    squares = np.array([_third_square(clean, stride) for stride in STRIDES])
-    grown = squares[1:] / squares[:-1]
+    first, second, last = (_third_square(clean, stride) for stride in STRIDES)
     certain = math.exp(CERTAIN * SCATTER / math.sqrt(clean.size))
-    faster = math.log(grown[1]) > FASTER * math.log(max(grown[0], certain))
-    if faster or not certain < grown[0] < MOST_GROWN:
+    grown = second / first
+    if not certain < grown < MOST_GROWN or last / second > grown**FASTER:
         return Noise(white)
     correlation = min(
-        float(np.interp(squares[k] / squares[0], _SHARES[k] / _SHARES[0], CORRELATIONS))
-        for k in (1, 2)
+        float(np.interp(square / first, shares / _SHARES[0], CORRELATIONS))
+        for square, shares in zip((second, last), _SHARES[1:], strict=True)
     )
     share = float(np.interp(correlation, CORRELATIONS, _SHARES[0]))
     return Noise(white / math.sqrt(share), correlation)

@@ -168,6 +168,18 @@ def test_a_damped_load_jumps_by_half_of_what_an_interference_does():
     assert "damping of the load, or interference" in remark.sentence
 
 
+@pytest.mark.parametrize("x_out", [None, 5.0])
+def test_without_the_travel_of_the_load_a_jump_may_be_its_damping(x_out):
+    """It was not recorded, or its sensor is dead."""
+    speed = np.gradient(columns(Bench(noise_mm=0.0))["x_in_mm"], TIME)
+    taken = GOOD | {"f_out_N": GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)}
+    noise = 0.01 * np.random.default_rng(5).standard_normal(N)
+    taken = {n: v for n, v in taken.items() if n != "x_out_mm"}
+    taken |= {} if x_out is None else {"x_out_mm": x_out + noise}
+    remark = told(taken, "interference")
+    assert (remark.column, remark.severity) == ("f_out_N", "warning")
+
+
 @pytest.mark.parametrize(("turns", "said"), [(5, True), (3, False)])
 def test_three_jumps_that_are_alike_are_an_interference(turns, said):
     """The drive turns so often, and the load rests at three or less of these times."""

@@ -188,7 +188,7 @@ def _between_branches(trial: RunSignals) -> float:
         rows = moves & np.isfinite(f)
         parts.append(np.column_stack([x[rows], f[rows], np.full(rows.sum(), stroke.direction)]))
     x, f, way = np.concatenate(parts).T
-    if np.ptp(way) == 0.0:
+    if not ((way > 0.0).any() and (way < 0.0).any()):
         return math.inf
     columns = np.column_stack([0.5 * way, np.vander(x - x.mean(), 4)])
     return float(np.linalg.lstsq(columns, f, rcond=None)[0][0])
