@@ -17,7 +17,7 @@ from tsas_cli.identification.model_file import (
     recordings_of,
 )
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import DatasetSource, OfDataset, ParameterValue, parameters_of
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
@@ -58,20 +58,14 @@ class Side:
         folder = self.path.parent if self.kind == "model" else self.path
         return next((folder / file for file in self.files if file.endswith(".toml")), None)
 
-    @property
-    def _where(self) -> Path:
-        """The file that says what was read."""
-        return self.path if self.kind == "model" else self.path / next(iter(self.files))
-
     @cached_property
     def _read(self) -> tuple[Dataset | None, str]:
         """The dataset as it was read, with the runs that were; or None, and why."""
         if self.source is None:
             return None, ""
-        where = self._where
+        where = self.path if self.kind == "model" else self.path / next(iter(self.files))
         try:
-            dataset = read_dataset(self.source.found(where))
-            self.source.check(dataset, where)
+            dataset = self.source.read(where)
         except InputError as error:
             return None, error.what if error.where == str(where) else error.line()
         dataset, chosen = dataset.under(**self.source.conditions), self.source.chosen
@@ -90,7 +84,8 @@ class Side:
     @cached_property
     def recordings(self) -> dict[str, str] | None:
         """The checksum of each recording that was read, by run id; None where it is not said."""
-        return None if self.source is None else recordings_of(self.source, self._where)
+        runs = () if self.dataset is None else self.dataset.runs
+        return None if self.source is None else recordings_of(self.source, runs)
 
     @property
     def named(self) -> tuple[NamedCause, ...]:

@@ -9,7 +9,7 @@ what is reported. Parameters of a single run (its preload, its zeros) are fitted
 every hypothesis. With fewer than three runs, stretches of the runs are held out.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
@@ -136,14 +136,14 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     by themselves. That rise, and the determinant of the prediction's covariance, count as squares
     of the held-out run's residuals, of each by the variance of its prediction.
     """
-    of_folds = _by_fold(trial, folds)
-    step = gauss_newton_step(trial, normal_equations(trial))
+    whole, without = _with_and_without(trial, folds)
+    step = gauss_newton_step(trial, whole)
     out = (trial.solution.residual + trial.solution.jacobian @ step) ** 2
-    for fold, others in _others(trial, of_folds):
+    for fold, others in without.items():
         alone = gauss_newton_step(trial, others)
         weak = float(_weak(trial) @ (step**2 - alone**2))
         rise = others.squares(step) - others.squares(alone) + weak
-        variance, determinant = _prediction_variance(trial, folds, fold, others, of_folds[fold])
+        variance, determinant = _prediction_variance(trial, folds, fold, whole, others)
         share = variance / max(float(variance.sum()), TINY)
         out[folds.fold == fold] += (max(rise, 0.0) + determinant) * share
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
@@ -171,18 +171,14 @@ def gauss_newton_step(trial: Hypothesis, kept: NormalEquations) -> Floats:
     return step
 
 
-def _by_fold(trial: Hypothesis, folds: Folds) -> dict[int, NormalEquations]:
-    """Return the normal equations of each fold's residuals."""
-    return {int(k): normal_equations(trial, folds.fold == k) for k in np.unique(folds.fold)}
-
-
-def _others(
-    trial: Hypothesis, of_folds: dict[int, NormalEquations]
-) -> Iterator[tuple[int, NormalEquations]]:
-    """Yield each fold and the normal equations of all others."""
-    of_none = normal_equations(trial, slice(0))
-    for fold in of_folds:
-        yield fold, reduce(add, (one for k, one in of_folds.items() if k != fold), of_none)
+def _with_and_without(
+    trial: Hypothesis, folds: Folds
+) -> tuple[NormalEquations, dict[int, NormalEquations]]:
+    """Return the normal equations of all residuals, and by fold those of all others."""
+    own = {int(k): normal_equations(trial, folds.fold == k) for k in np.unique(folds.fold)}
+    none = normal_equations(trial, slice(0))
+    without = {k: reduce(add, (own[other] for other in own if other != k), none) for k in own}
+    return reduce(add, own.values()), without
 
 
 def _weak(trial: Hypothesis) -> Floats:
@@ -198,7 +194,7 @@ def _within(trial: Hypothesis, step: Floats) -> Floats:
 
 
 def _prediction_variance(
-    trial: Hypothesis, folds: Folds, fold: int, others: NormalEquations, own: NormalEquations
+    trial: Hypothesis, folds: Folds, fold: int, whole: NormalEquations, others: NormalEquations
 ) -> tuple[Floats, float]:
     """Return the variance of a fold's prediction by the others, over that of the noise.
 
@@ -208,8 +204,7 @@ def _prediction_variance(
     free = ~(own_of_fold(trial, folds, fold) | trial.solution.at_bound)
     weak = np.diag(_weak(trial))
     without, together = (
-        equations.gram[np.ix_(free, free)] + weak[np.ix_(free, free)]
-        for equations in (others, others + own)
+        (equations.gram + weak)[np.ix_(free, free)] for equations in (others, whole)
     )
     unit = 1.0 / np.sqrt(np.diagonal(without))  # units of the unknowns in which the matrix is even
     J = trial.solution.jacobian[folds.fold == fold][:, free] * unit
@@ -225,9 +220,9 @@ def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
 
     A run is, where its prediction by the others is more uncertain than its noise.
     """
-    of_folds = _by_fold(trial, folds)
-    for fold, others in _others(trial, of_folds):
-        variance, _ = _prediction_variance(trial, folds, fold, others, of_folds[fold])
+    whole, without = _with_and_without(trial, folds)
+    for fold, others in without.items():
+        variance, _ = _prediction_variance(trial, folds, fold, whole, others)
         if float(np.mean(variance)) > 1.0:
             return in_stretches(folds)
     return folds

@@ -5,7 +5,7 @@ each fold is left out of a fit from that step on, and simulated with its values.
 a plausible friction of its own where that is mere scatter, as its own preload and zeros.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,12 +66,20 @@ def raw_squares(bench: Bench, trial: HypothesisFit, folds: Folds) -> dict[str, F
     out = {name: np.zeros(folds.blocks) for name in bench.channels}
     first = 0
     for k, run in enumerate(bench.errors_for(trial)):
-        for name, errors in run.raw(bench.rig(trial, k)).items():
-            of_means = np.add.reduceat(errors**2, mean_edges(errors.size))
-            block = folds.block[first : first + of_means.size]
-            out[name] += np.bincount(block, of_means, folds.blocks)
-            first += of_means.size
+        for name, squares, here in _behind_residuals(run.raw(bench.rig(trial, k)), first):
+            out[name] += np.bincount(folds.block[here], squares, folds.blocks)
+            first = here.stop
     return out
+
+
+def _behind_residuals(raw: Mapping[str, Floats], first: int) -> Iterator[tuple[str, Floats, slice]]:
+    """Yield each channel of a run, its squares behind each residual, and where these are.
+
+    `first` is the number of the run's first residual.
+    """
+    for name, errors in raw.items():
+        squares = np.add.reduceat(errors**2, mean_edges(errors.size))
+        yield name, squares, slice(first, first := first + squares.size)
 
 
 def refitted(
@@ -85,7 +93,7 @@ def refitted(
     raw: dict[tuple[int, str], list[Floats]] = {}
     over_noise: dict[str, list[Floats]] = {}
     weighted = np.empty(folds.fold.size)
-    raw_squares = {name: np.zeros(folds.blocks) for name in bench.channels}
+    in_blocks = {name: np.zeros(folds.blocks) for name in bench.channels}
     starts = np.concatenate(([0], np.cumsum(trial.sizes)))
     for fold in range(int(folds.fold.max()) + 1):
         held_out = np.split(folds.fold == fold, starts[1:-1])
@@ -100,13 +108,10 @@ def refitted(
             rig = rig_at(bench.rigs[k], k, trial.unknowns, own)
             of_run = weighted[starts[k] : starts[k + 1]]
             of_run[held_out[k]] = run.residuals(rig)[held_out[k]]
-            first = starts[k]
-            for name, errors in run.raw(rig).items():
-                of_means = np.add.reduceat(errors**2, mean_edges(errors.size))
-                here = slice(first, first + of_means.size)  # residuals of this channel
-                chosen = of_means * (folds.fold[here] == fold)
-                raw_squares[name] += np.bincount(folds.block[here], chosen, folds.blocks)
-                first += of_means.size
+            errors_of = run.raw(rig)
+            for name, of_means, here in _behind_residuals(errors_of, int(starts[k])):
+                errors, chosen = errors_of[name], of_means * (folds.fold[here] == fold)
+                in_blocks[name] += np.bincount(folds.block[here], chosen, folds.blocks)
                 there = run.spread(name, held_out[k])
                 raw.setdefault((k, name), []).append(errors[there])
                 over_noise.setdefault(name, []).append(run.over_noise(name, errors, there))
@@ -117,7 +122,7 @@ def refitted(
     }
     normalised = {name: rms_of(parts) for name, parts in over_noise.items()}
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
-    return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run, raw_squares)
+    return HeldOutFit(rmse, normalised, squares.astype(np.float64), by_run, in_blocks)
 
 
 def _with_own_friction(

@@ -1,6 +1,6 @@
 """`model.toml`: a model written, read and checked, and the record of the model that was given."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +13,7 @@ from tsas_cli.identification.estimate import Estimate, StoredValue, check_value
 from tsas_cli.identification.fitted_to import FittedTo
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.recordings.dataset import read_dataset, read_from
+from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, read_toml
 from tsas_cli.recordings.session import Session
 from tsas_cli.recordings.validation import parse
@@ -53,11 +53,12 @@ def model_for(given: Model | Path, runs: Sequence[Run]) -> Model:
     InputError: as from `read_model`.
     """
     model = model_of(given)
-    source = None if isinstance(given, Model) else read_source(given)
-    if source is None or isinstance(given, Model):
+    if isinstance(given, Model) or (source := read_source(given)) is None:
         return model
-    where = given / MODEL_FILE if given.is_dir() else given
-    return model.for_runs(recordings_of(source, where), runs)
+    read: Sequence[Run] = ()
+    with suppress(InputError):
+        read = source.read(_file_of(given)).manifest.run
+    return model.for_runs(recordings_of(source, read), runs)
 
 
 def read_source(path: Path) -> DatasetSource | None:
@@ -69,16 +70,12 @@ def read_source(path: Path) -> DatasetSource | None:
     return parse(DatasetSource, said, path) if "hashes" in said else None
 
 
-def recordings_of(source: DatasetSource, where: Path) -> dict[str, str]:
-    """Return the checksum of each recording, by run id, that the file `where` says was read.
+def recordings_of(source: DatasetSource, runs: Iterable[Run]) -> dict[str, str]:
+    """Return the checksum of each recording that was read, by run id.
 
-    Without the dataset the ids are those that the files are named after.
+    `runs` are those of the dataset; without them the ids are those that the files are named after.
     """
-    ids: dict[str, str] = {}
-    with suppress(InputError):
-        dataset = read_dataset(source.found(where))
-        source.check(dataset, where)
-        ids = {run.file: run.id for run in dataset.manifest.run}
+    ids = {run.file: run.id for run in runs}
     named = {
         ids.get(file, Path(file).stem): digest.lower()
         for file, digest in source.hashes.items()
@@ -185,7 +182,7 @@ def read_model(path: Path) -> Model:
         for effect, named in file.effects.items()
         for name, v in named.items()
     ]
-    where = path / MODEL_FILE if path.is_dir() else path
+    where = _file_of(path)
     for_all = {name for name, run, _ in values if run is None}
     for name, run, _ in values:  # a sweep may set both
         if run is not None and name in for_all:
@@ -206,8 +203,13 @@ def read_fitted_to(path: Path) -> FittedTo | None:
     return _read(path).fitted_to
 
 
+def _file_of(path: Path) -> Path:
+    """Return a model's file, that in a folder where the path is one."""
+    return path / MODEL_FILE if path.is_dir() else path
+
+
 def _read(path: Path) -> _ModelTables:
-    path = path / MODEL_FILE if path.is_dir() else path
+    path = _file_of(path)
     return parse(_ModelTables, read_toml(path), path)
 
 

@@ -79,7 +79,10 @@ class Prepared:
         if self.all_noise is None:
             return {name: noise_of(values) for name, values in self.measured.items()}
         of_all = {name: self.all_noise[name] for name in self.measured}
-        return {n: Noise(one.sd, one.correlation**self.every) for n, one in of_all.items()}
+        return {
+            name: one._replace(correlation=one.correlation**self.every)
+            for name, one in of_all.items()
+        }
 
     @cached_property
     def step_tolerance(self) -> float:

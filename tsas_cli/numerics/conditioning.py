@@ -25,7 +25,7 @@ from tsas_cli.numerics.local_polynomial import (
     corners,
     smoothed,
 )
-from tsas_cli.numerics.noise import Noise, noise_of, quantisation_step, with_memory
+from tsas_cli.numerics.noise import Noise, noise_of, with_memory
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -116,7 +116,7 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
         noise.sd,
         reversals,
         threshold,
-        quantisation_step(values),
+        noise.step,
         noise.correlation,
     )
 
@@ -124,8 +124,8 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
 def memory_of(values: Floats, noise: Noise) -> float:
     """Return for how many samples the error of a signal persists."""
     plateau = values.size / (1.0 + np.count_nonzero(np.diff(values)))  # mean samples at one level
-    quantised = quantisation_step(values) > 0.0
-    return max(plateau if quantised else 1.0, float(noise.growth(np.array(float(values.size)))))
+    correlated = float(noise.growth(np.array(float(values.size))))
+    return max(plateau if noise.step > 0.0 else 1.0, correlated)
 
 
 def smooth_out(

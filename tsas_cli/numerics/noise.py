@@ -9,7 +9,7 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEWEST_SAMPLES = 16  # for an estimate
-STRIDES = (1, 2, 4)  # samples, by which third differences show whether noise has a memory
+STRIDES = (2, 4)  # samples, by which third differences show whether noise has a memory
 CERTAIN = 4.0  # standard deviations by which they have to differ
 SCATTER = 2.8  # standard deviation of the logarithm of a ratio of two mean squares, times √n
 MOST_GROWN = 2.1  # of one ratio: a random walk has 2, a vibration and motion have more
@@ -20,11 +20,13 @@ CORRELATIONS = np.linspace(0.0, 0.9, 901)  # of neighbouring samples
 class Noise(NamedTuple):
     """Noise of a channel: its standard deviation, and the correlation of neighbouring samples.
 
-    That of samples k apart is its k-th power, as behind a first-order low pass.
+    That of samples k apart is its k-th power, as behind a first-order low pass. `step` is that of
+    the channel's quantisation, which is a part of its noise.
     """
 
     sd: float
     correlation: float = 0.0
+    step: float = 0.0
 
     def growth(self, count: Floats | Indices) -> Floats:
         """Return the variance of a mean of so many samples, over that of white noise."""
@@ -43,22 +45,22 @@ def noise_of(values: Floats) -> Noise:
     step, within chance; how long follows from the first one (or from both where it is less), by an
     autoregressive process of first order. A vibration over a few samples counts as such noise.
     """
-    rounding = quantisation_step(values) / math.sqrt(12.0)
-    white = noise_sd(values)
+    step, white = quantisation_step(values), noise_sd(values)
+    rounding = step / math.sqrt(12.0)
     if not white > rounding:
-        return Noise(rounding if white <= rounding else math.nan)
+        return Noise(rounding if white <= rounding else math.nan, step=step)
     clean = values[np.isfinite(values)]
-    first, second, last = (_third_square(clean, stride) for stride in STRIDES)
+    first, (second, last) = white**2, (_third_square(clean, stride) for stride in STRIDES)
     certain = math.exp(CERTAIN * SCATTER / math.sqrt(clean.size))
     grown = second / first
     if not certain < grown < MOST_GROWN or last / second > grown**FASTER:
-        return Noise(white)
+        return Noise(white, step=step)
     correlation = min(
         float(np.interp(square / first, shares / _SHARES[0], CORRELATIONS))
         for square, shares in zip((second, last), _SHARES[1:], strict=True)
     )
     share = float(np.interp(correlation, CORRELATIONS, _SHARES[0]))
-    return Noise(white / math.sqrt(share), correlation)
+    return Noise(white / math.sqrt(share), correlation, step)
 
 
 def noise_sd(values: Floats) -> float:
@@ -87,7 +89,7 @@ def _share(correlation: Floats) -> Floats:
     return 1.0 - 1.5 * correlation + 0.6 * correlation**2 - 0.1 * correlation**3
 
 
-_SHARES = np.array([_share(CORRELATIONS**stride) for stride in STRIDES])
+_SHARES = np.array([_share(CORRELATIONS**stride) for stride in (1, *STRIDES)])
 
 
 @kernel

@@ -20,7 +20,7 @@ from pydantic import (
     model_validator,
 )
 
-from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.storage import Location, recorded_location
@@ -134,6 +134,15 @@ class DatasetSource(Record):
                 remedy="give the dataset's folder too",
             )
         return folder
+
+    def read(self, where: Path) -> Dataset:
+        """Return the dataset as it was read by the stage that wrote the file `where`.
+
+        InputError: there is none any more, or it has changed.
+        """
+        dataset = read_dataset(self.found(where))
+        self.check(dataset, where)
+        return dataset
 
     def check(self, dataset: Dataset, where: Path) -> None:
         """Refuse a dataset that has changed since the stage that wrote `where` has read it."""

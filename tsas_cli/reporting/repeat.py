@@ -18,6 +18,7 @@ from tsas_cli.reporting.content import Section, table_of
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.support import __version__
 from tsas_cli.support.files import sha256_of
+from tsas_cli.support.wording import quoted
 
 SETTINGS = "settings.toml"
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
@@ -93,7 +94,7 @@ def _options(stage: StageFile, inputs: Inputs) -> Iterator[str]:
             yield from (f"--{name}", str(value))
     if isinstance(stage, OfDataset):
         if stage.chosen is not None:
-            yield from ("--runs", ",".join(stage.chosen))
+            yield from ("--runs", ",".join(map(quoted, stage.chosen)))
         for code in dict.fromkeys(error.code for error in stage.despite):
             yield from ("--despite", code)
     if isinstance(stage, SimulationFile) and stage.own_values_fitted:

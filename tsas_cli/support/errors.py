@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from tsas_cli.support.wording import quoted
+
 LONGEST_WORD = 200  # characters, in a message
 NO_MEMORY = (
     "this needs more memory than is free; "
@@ -64,7 +66,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     >>> nearest("frictoin", ["fit_own", "friction_coefficient"])
     'did you mean friction_coefficient?'
     """
-    known, name = [f'"{one}"' if "," in one else one for one in known], str(name)
+    known, name = [quoted(one) for one in known], str(name)
     begins = {other[: len(name)]: other for other in reversed(known)}  # of a name that is cut short
     close = get_close_matches(name, begins, n=1, cutoff=0.8) if len(name) > 3 else []
     found = get_close_matches(name, [*known, *close], n=1, cutoff=0.6)

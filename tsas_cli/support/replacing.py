@@ -9,7 +9,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from tsas_cli.support.errors import InputError
@@ -173,7 +173,15 @@ def _refuse_foreign(path: Path, stage: str) -> None:
     # A link to a folder is a file.
     files = (p for p in path.rglob("*") if p.is_symlink() or not p.is_dir())
     names = (p.relative_to(path).as_posix() for p in files if p.name not in LEFT_BY_DESKTOPS)
-    foreign = sorted(set(names) - ours.keys())
+    refuse_others(path, sorted(set(names) - ours.keys()), stage)
+    for name in sorted(ours):
+        file, digest = path / name, ours[name]
+        if digest and file.is_file() and not _fits(file, digest):
+            raise _edited(file)
+
+
+def refuse_others(path: Path, foreign: Sequence[str], stage: str) -> None:
+    """Refuse a folder that holds files of other origin than a stage, unless there are none."""
     if foreign:
         raise InputError(
             f"holds files that `tsas {stage}` has not written ({', '.join(foreign[:5])})",
@@ -181,10 +189,6 @@ def _refuse_foreign(path: Path, stage: str) -> None:
             expected="an earlier output only",
             remedy="move them elsewhere, or choose another --out",
         )
-    for name in sorted(ours):
-        file, digest = path / name, ours[name]
-        if digest and file.is_file() and not _fits(file, digest):
-            raise _edited(file)
 
 
 def _edited(path: Path) -> InputError:

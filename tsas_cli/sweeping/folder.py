@@ -10,7 +10,13 @@ from typing import TextIO
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import own_file, read_json, sha256_of, sums_text, unwritable
 from tsas_cli.support.limits import text_name
-from tsas_cli.support.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
+from tsas_cli.support.replacing import (
+    LEFT_BY_DESKTOPS,
+    SUMS,
+    refuse_holding,
+    refuse_kind,
+    refuse_others,
+)
 from tsas_cli.support.temporaries import TEMPORARY, is_empty_folder, remove
 from tsas_cli.sweeping.outcome import TaskOutcome, success
 from tsas_cli.sweeping.tasks import TASK_FILE, Task
@@ -49,32 +55,27 @@ def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
 def _locked_journal(out: Path) -> TextIO:
     """Return the journal of a sweep's folder, open, and locked until it is closed."""
     with _writing(out):
-        foreign = _foreign(out) if out.is_dir() else []
-        if foreign is None or foreign:
-            raise InputError(
-                "is no folder of an earlier sweep"
-                if foreign is None
-                else f"holds files that `tsas sweep` has not written ({', '.join(foreign[:5])})",
-                where=out,
-                expected="a new name, or a sweep to resume",
-                remedy=f"{'move them elsewhere, or ' if foreign else ''}choose another --out",
-            )
+        if out.is_dir():
+            _refuse_foreign(out)
         out.mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
         _lock(journal, out)
     return journal
 
 
-def _foreign(out: Path) -> list[str] | None:
-    """Return what a sweep's folder holds of other origin; None where it is no sweep's.
-
-    One that holds nothing yet may become a sweep's.
-    """
+def _refuse_foreign(out: Path) -> None:
+    """Refuse a folder of another kind, or with files of other origin; an empty one is a sweep's."""
     present = {path.name for path in out.iterdir() if not TEMPORARY.search(path.name)}
-    if JOURNAL not in present and not {TASKS, SUMMARY} <= present:
-        empty = all(name == TASKS and is_empty_folder(out / name) for name in present)
-        return [] if empty else None
-    return sorted(present - {TASKS, JOURNAL, SUMS, *SEALED} - LEFT_BY_DESKTOPS)
+    if JOURNAL in present or {TASKS, SUMMARY} <= present:
+        ours = {TASKS, JOURNAL, SUMS, *SEALED} | LEFT_BY_DESKTOPS
+        refuse_others(out, sorted(present - ours), "sweep")
+    elif not all(name == TASKS and is_empty_folder(out / name) for name in present):
+        raise InputError(
+            "is no folder of an earlier sweep",
+            where=out,
+            expected="a new name, or a sweep to resume",
+            remedy="choose another --out",
+        )
 
 
 @contextmanager
