@@ -182,6 +182,22 @@ def test_exchanged_tension_sensors(load):
     found(swapped, "exchanged", load=load)
 
 
+OF_BOTH_ENDS = {
+    "x_in_mm": GOOD["x_out_mm"],
+    "x_out_mm": GOOD["x_in_mm"],
+    "f_in_N": GOOD["f_out_N"],
+    "f_out_N": GOOD["f_in_N"],
+}
+
+
+@pytest.mark.parametrize("names", [("x_in_mm", "x_out_mm"), tuple(OF_BOTH_ENDS)])
+def test_exchanged_displacements_are_told_from_a_sensor_that_is_late(names):
+    swapped = remarks(GOOD | {name: OF_BOTH_ENDS[name] for name in names})
+    assert "x_in_mm" in {remark.column for code, remark in swapped if code == "exchanged"}
+    late = GOOD | {"x_in_mm": np.interp(TIME - 0.02, TIME, GOOD["x_in_mm"])}
+    assert "exchanged" not in codes(late)
+
+
 @pytest.mark.parametrize(
     ("column", "factor", "unit"),
     [

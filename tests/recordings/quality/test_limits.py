@@ -164,7 +164,9 @@ def test_friction_beside_any_gain_is_told_and_a_negative_gain_is_none(gain):
         for at in (made.direction == 1.0, made.direction == -1.0)
     )
     shift = gain * (up - down) if gain < 0.0 else 0.0  # what the directions differ by themselves
-    assert motion._excess_while_pulling(made) == pytest.approx(0.7 + shift, abs=1e-9)
+    assert motion._excess_while_pulling(made, "f_in_N", "f_out_N") == pytest.approx(
+        0.7 + shift, abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("delay_s", [-0.02, 0.0, 0.05])

@@ -76,15 +76,18 @@ def negative_tension(trial: RunSignals) -> Findings:
             )
 
 
-_CLEAR_EXCESS = 0.03
+_CLEAR_EXCESS = 0.03  # of the span
+_CLEARLY_LESS = 0.5  # times off a spring
 
 
 def exchanged(trial: RunSignals) -> Findings:
-    """The two tension sensors are exchanged.
+    """The two tension sensors are exchanged, or the two displacement sensors.
 
     With friction, at the same distal tension, the proximal tension is higher during contraction
     than during loosening. If it is lower, the proximal and the distal column are exchanged (or
-    `x_in_mm` has the wrong sign, if no other channel shows its sign).
+    `x_in_mm` has the wrong sign, if no other channel shows its sign). So is the displacement at the
+    drive at the same displacement of the load. If it is lower, its sensor may also be late: on a
+    spring, a tension that follows the drive and not the load shows that the two are exchanged.
     """
     against = [n for n in ("f_in_N", "f_out_N") if (trial.follows(n) or 0.0) < 0.0]
     if against and trial.on_spring:
@@ -93,35 +96,65 @@ def exchanged(trial: RunSignals) -> Findings:
     if len({stroke.direction for stroke in trial.strokes}) < 2:
         yield NotChecked("the drive does not move in both directions")
         return
-    excess = _excess_while_pulling(trial)
-    visible = 0.5 * (trial.visible("f_in_N") + trial.visible("f_out_N"))
-    if excess < -max(_CLEAR_EXCESS * trial.sizes["f_in_N"].span, visible):
+
+    def visible(*names: str) -> float:
+        return float(np.mean([trial.visible(name) for name in names]))
+
+    excess = _excess_while_pulling(trial, "f_in_N", "f_out_N")
+    if excess < -max(_CLEAR_EXCESS * trial.sizes["f_in_N"].span, visible("f_in_N", "f_out_N")):
         yield error(
             "f_in_N",
             f"at the same f_out_N, f_in_N is {-excess:.3g} N lower in contraction than in "
             "loosening; friction makes it higher",
             "exchange the columns of f_in_N and f_out_N at ingest, or check the sign of x_in_mm",
         )
+    if not trial.on_spring or "x_out_mm" not in trial.mechanical:
+        return
+    excess = _excess_while_pulling(trial, "x_in_mm", "x_out_mm")
+    at_drive, at_load = (_off_a_spring(trial, name) for name in ("x_in_mm", "x_out_mm"))
+    if excess < -visible("x_in_mm", "x_out_mm") and at_drive < _CLEARLY_LESS * at_load:
+        yield error(
+            "x_in_mm",
+            f"at the same x_out_mm, x_in_mm is {-excess:.3g} mm lower in contraction than in "
+            "loosening, and a tension follows x_in_mm as a spring's follows the load's end",
+            "exchange the columns of x_in_mm and x_out_mm at ingest",
+        )
 
 
-def _excess_while_pulling(trial: RunSignals) -> float:
-    """Return d of f_in = a + b f_out + d/2 · direction, fitted over the travel of the drive [N].
+def _excess_while_pulling(trial: RunSignals, proximal: str, distal: str) -> float:
+    """Return d of proximal = a + b distal + d/2 · direction.
 
-    Each row counts by what the drive moves there: in a rest friction may have either sign. A wrong
-    gain or offset of a sensor enters a and b. If the load's own tension reverses with the
-    direction, b and d are indistinguishable; a negative b is implausible and left out.
+    It is fitted over the travel of the drive: each row counts by what the drive moves there, since
+    in a rest friction may have either sign. A wrong gain or offset of a sensor enters a and b. If
+    the load's own tension reverses with the direction, b and d are indistinguishable; a negative b
+    is implausible and left out.
     """
-    f_in, f_out, direction = trial.channels["f_in_N"], trial.channels["f_out_N"], trial.direction
+    y, x, direction = trial.channels[proximal], trial.channels[distal], trial.direction
     travel = direction * np.gradient(trial.channels["x_in_mm"])
-    rows = (travel > 0.0) & np.isfinite(f_in) & np.isfinite(f_out)
+    rows = (travel > 0.0) & np.isfinite(y) & np.isfinite(x)
     weight = np.sqrt(travel[rows])
-    terms = np.column_stack([direction[rows] / 2.0, np.ones(weight.size), f_out[rows]])
+    terms = np.column_stack([direction[rows] / 2.0, np.ones(weight.size), x[rows]])
     terms *= weight[:, None]
-    measured = weight * f_in[rows]
+    measured = weight * y[rows]
     fit = np.linalg.lstsq(terms, measured, rcond=None)[0]
     if fit[2] < 0.0:
         fit = np.linalg.lstsq(terms[:, :2], measured, rcond=None)[0]
     return float(fit[0])
+
+
+def _off_a_spring(trial: RunSignals, displacement: str) -> float:
+    """Return by how much the tension that follows a displacement most closely is off a parabola.
+
+    RMS over the standard deviation of the tension.
+    """
+    off = []
+    for name in ("f_in_N", "f_out_N"):
+        x, force = trial.channels[displacement], trial.channels[name]
+        rows = np.isfinite(x) & np.isfinite(force)
+        terms = np.vander((x[rows] - x[rows].mean()) / np.std(x[rows]), 3)
+        fitted = terms @ np.linalg.lstsq(terms, force[rows], rcond=None)[0]
+        off.append(float(np.std(force[rows] - fitted) / np.std(force[rows])))
+    return min(off)
 
 
 _BESIDE_S, _OF_A_STROKE = 0.4, 0.06  # stretch on either side, at most
