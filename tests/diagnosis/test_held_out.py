@@ -237,3 +237,20 @@ def test_a_fit_ready_for_a_change_is_the_least_squares_beside_it_within_the_boun
         trial, unknowns=(names[0], replace(names[1], lower=low, upper=low), *names[2:])
     )
     assert bounded.ready_for(change).solution.values[1] == low
+
+
+def test_slopes_that_differ_in_the_run_alone_make_its_prediction_uncertain(linear):
+    """Two unknowns do the same in all other runs, where rounding hides what separates them."""
+    x, folds = linear[0][:, :1], folds_of(blocks())
+
+    def squares(steepness):
+        J = steepness * np.hstack((x, x))
+        J[:ROWS, 1] *= 0.5
+        trial = single(J, np.zeros(len(J)), [unknown("a"), unknown("b")])
+        return float(held_out_squares(trial, folds)[:6].sum())
+
+    own, others, weak = float(np.sum(x[:ROWS] ** 2)), float(np.sum(x[ROWS:] ** 2)), 1e-6
+    without = (2.0 * others + weak) * weak
+    together = own * others / 4.0 + weak * (2.0 * others + 1.25 * own) + weak**2
+    assert squares(1.0) == pytest.approx(np.log(together / without), rel=1e-6)
+    assert squares(1.0) < squares(1e10) < np.inf

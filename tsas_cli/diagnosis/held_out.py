@@ -26,6 +26,7 @@ FEWEST_RUNS = 3  # of which one can be held out
 MOST_FOLDS = 8  # of more runs, several are held out together
 STRETCHES = 4  # of each run, where runs are too few
 TINY = np.finfo(float).tiny
+ROUNDING = 1e-14  # of a sum of squares
 
 
 class Hypothesis(Protocol):
@@ -160,7 +161,8 @@ def gauss_newton_step(trial: Hypothesis, kept: NormalEquations) -> Floats:
     step = np.zeros(free.size)
     while free.any():
         toward = -(kept.gradient + gram @ np.where(free, 0.0, step))
-        step[free] = np.linalg.solve(gram[np.ix_(free, free)], toward[free])
+        factor = _factor(gram[np.ix_(free, free)])
+        step[free] = np.linalg.solve(factor.T, np.linalg.solve(factor, toward[free]))
         inside = _within(trial, step) - trial.solution.values
         beyond = free & ~np.isclose(step, inside, rtol=1e-9, atol=1e-12)
         if not beyond.any():
@@ -206,13 +208,24 @@ def _prediction_variance(
     without, together = (
         (equations.gram + weak)[np.ix_(free, free)] for equations in (others, whole)
     )
-    unit = 1.0 / np.sqrt(np.diagonal(without))  # units of the unknowns in which the matrix is even
-    J = trial.solution.jacobian[folds.fold == fold][:, free] * unit
-    even = without * np.outer(unit, unit)
-    with np.errstate(invalid="ignore"):  # NaN, which convinces nobody, without finite slopes
-        variance = np.sum((J @ np.linalg.inv(even)) * J, axis=1)
-        logarithms = [float(np.linalg.slogdet(matrix)[1]) for matrix in (together, without)]
-    return variance, logarithms[0] - logarithms[1]
+    J = trial.solution.jacobian[folds.fold == fold][:, free]
+    factor, rest = _factor(without), _factor(together)
+    variance = np.sum(np.linalg.solve(factor, J.T) ** 2, axis=0)
+    logarithms = np.log(np.diagonal(rest) / np.diagonal(factor))
+    return variance, 2.0 * float(logarithms.sum())
+
+
+def _factor(precision: Floats) -> Floats:
+    """Return the lower Cholesky factor of a precision, shape (p, p), as far as rounding knows it.
+
+    What a sum of products loses in double precision could make it indefinite. Without finite slopes
+    it is NaN, which convinces nobody.
+    """
+    if not np.isfinite(precision).all():
+        return np.full_like(precision, np.nan)
+    size = np.sqrt(np.diagonal(precision))
+    even = precision / np.outer(size, size) + ROUNDING * np.eye(size.size)
+    return np.asarray(size[:, None] * np.linalg.cholesky(even))
 
 
 def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
