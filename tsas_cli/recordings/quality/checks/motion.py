@@ -77,7 +77,7 @@ def negative_tension(trial: RunSignals) -> Findings:
 
 
 _CLEAR_EXCESS = 0.03  # of the span
-_CLEARLY_LESS = 0.5  # times off a spring
+_OF_THE_LEAD = 0.1  # by which a displacement may differ from a tension that it sets
 
 
 def exchanged(trial: RunSignals) -> Findings:
@@ -86,8 +86,9 @@ def exchanged(trial: RunSignals) -> Findings:
     With friction, at the same distal tension, the proximal tension is higher during contraction
     than during loosening. If it is lower, the proximal and the distal column are exchanged (or
     `x_in_mm` has the wrong sign, if no other channel shows its sign). So is the displacement at the
-    drive at the same displacement of the load. If it is lower, its sensor may also be late: on a
-    spring, a tension that follows the drive and not the load shows that the two are exchanged.
+    drive at the same displacement of the load. If it is lower, a sensor may also be late; that a
+    tension is the same in both directions at the same `x_in_mm`, as a spring at the load has it,
+    shows that the two are exchanged.
     """
     against = [n for n in ("f_in_N", "f_out_N") if (trial.follows(n) or 0.0) < 0.0]
     if against and trial.on_spring:
@@ -110,13 +111,13 @@ def exchanged(trial: RunSignals) -> Findings:
         )
     if not trial.on_spring or "x_out_mm" not in trial.mechanical:
         return
-    excess = _excess_while_pulling(trial, "x_in_mm", "x_out_mm")
-    at_drive, at_load = (_off_a_spring(trial, name) for name in ("x_in_mm", "x_out_mm"))
-    if excess < -visible("x_in_mm", "x_out_mm") and at_drive < _CLEARLY_LESS * at_load:
+    lead = -_excess_while_pulling(trial, "x_in_mm", "x_out_mm")
+    apart = [_excess_while_pulling(trial, "x_in_mm", tension) for tension in ("f_in_N", "f_out_N")]
+    if min(map(abs, apart)) < _OF_THE_LEAD * lead and lead > visible("x_in_mm", "x_out_mm"):
         yield error(
             "x_in_mm",
-            f"at the same x_out_mm, x_in_mm is {-excess:.3g} mm lower in contraction than in "
-            "loosening, and a tension follows x_in_mm as a spring's follows the load's end",
+            f"at the same x_out_mm, x_in_mm is {lead:.3g} mm lower in contraction than in "
+            "loosening, and a tension follows x_in_mm as it follows a spring at the load",
             "exchange the columns of x_in_mm and x_out_mm at ingest",
         )
 
@@ -140,21 +141,6 @@ def _excess_while_pulling(trial: RunSignals, proximal: str, distal: str) -> floa
     if fit[2] < 0.0:
         fit = np.linalg.lstsq(terms[:, :2], measured, rcond=None)[0]
     return float(fit[0])
-
-
-def _off_a_spring(trial: RunSignals, displacement: str) -> float:
-    """Return by how much the tension that follows a displacement most closely is off a parabola.
-
-    RMS over the standard deviation of the tension.
-    """
-    off = []
-    for name in ("f_in_N", "f_out_N"):
-        x, force = trial.channels[displacement], trial.channels[name]
-        rows = np.isfinite(x) & np.isfinite(force)
-        terms = np.vander((x[rows] - x[rows].mean()) / np.std(x[rows]), 3)
-        fitted = terms @ np.linalg.lstsq(terms, force[rows], rcond=None)[0]
-        off.append(float(np.std(force[rows] - fitted) / np.std(force[rows])))
-    return min(off)
 
 
 _BESIDE_S, _OF_A_STROKE = 0.4, 0.06  # stretch on either side, at most
