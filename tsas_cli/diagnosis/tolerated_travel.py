@@ -56,8 +56,13 @@ def with_tolerated_travel(search: Hypotheses) -> Hypotheses:
     if found.at_bound[at] or not is_tolerated(bench, trial):
         return search
     if found.values[at] < SIGNIFICANT * found.stderr[at]:
-        without = raw_squares(bench, search.trial(search.named), search.folds)
-        if not raw_gain(without, raw_squares(freed, trial, search.folds)).convincing:
+        plain = search.trials.get((search.named, bench.on_mesh(effects)))
+        if plain is None:  # what is left of a set that fails need not have been fitted
+            plain = bench.fit(effects, near=search.nearest(search.named))
+        without, beside = (
+            raw_squares(of, fit, search.folds) for of, fit in ((bench, plain), (freed, trial))
+        )
+        if not raw_gain(without, beside).convincing:
             return search
     return replace(search, bench=freed, trials={(search.named, True): trial}, squares={})
 
