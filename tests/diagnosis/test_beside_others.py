@@ -151,14 +151,15 @@ def test_a_channel_that_leads_by_as_much_as_it_lags_does_neither(delay_s, lag_s,
 @pytest.mark.parametrize(
     ("rivals", "left", "refused"),
     [
-        (("free_tendon", "force_sensor_tilt"), 0.2, True),
-        (("free_tendon", "force_sensor_tilt"), 0.0, False),
-        (("free_tendon", "uneven_friction"), 0.2, False),
+        (("free_tendon", "force_sensor_tilt"), {"f_in_N": 0.2, "x_out_mm": 0.0}, True),
+        (("free_tendon", "force_sensor_tilt"), {"f_in_N": 0.0, "x_out_mm": 0.0}, False),
+        (("free_tendon", "uneven_friction"), {"f_in_N": 0.2, "x_out_mm": 0.0}, False),
+        (("free_tendon", "force_sensor_tilt"), {"f_in_N": 0.2}, False),  # no channel tells where
     ],
 )
 def test_what_three_parts_of_a_rig_do_is_no_cause_where_more_is_wrong(rivals, left, refused):
     cause = FoundCause("drive_compliance", rivals, (), 50.0, (40.0, 60.0))
-    start, after = Remainder(9.0, {}, ()), Remainder(1.0, {"f_in_N": left}, ())
+    start, after = Remainder(9.0, {}, ()), Remainder(1.0, left, ())
     failed = beside_what_is_left(cause, start, after, 0.004).failed
     said = "does what effects of the drive, sensor and tendon do as well, and more is wrong"
     assert failed == ((said,) if refused else ())

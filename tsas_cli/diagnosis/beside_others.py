@@ -101,7 +101,7 @@ def beside_what_is_left(
     if left > MOST_LEFT:
         cause = cause.refused(f"leaves {100.0 * left:.0f} % of what could be explained")
     parts = parts_of((cause.effect, *cause.rivals))
-    if len(parts) >= SOME_PARTS:
+    if len(parts) >= SOME_PARTS and len(after.explained) > 1:  # one channel never tells the place
         said = f"does what effects of the {listed(sorted(parts))} do as well, and more is wrong"
         cause = cause.refused(said)
     if cause.effect == CHANNEL_DELAY.name and all(
