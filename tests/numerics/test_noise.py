@@ -26,6 +26,25 @@ def test_white_noise_on_a_motion_is_recovered(sd, seed, motion):
     assert noise_sd(values) == pytest.approx(sd, rel=0.05)
 
 
+@pytest.mark.parametrize("correlation", [0.0, 0.6])
+def test_noise_of_samples_at_uneven_times_is_that_beside_the_motion_of_then(correlation):
+    """Of a log by a busy computer; without the times half a sample of the motion is noise too."""
+    rng = np.random.default_rng(2)
+    time_s = TIME_S + 2e-4 * rng.standard_normal(TIME_S.size).clip(-2.0, 2.0)
+    noise = 0.003 * with_memory(rng.standard_normal(TIME_S.size), correlation)
+    values = 10.0 * np.sin(np.pi * time_s) + noise
+    found = noise_of(values, time_s)
+    assert found.sd == pytest.approx(0.003, rel=0.05)
+    assert found.correlation == pytest.approx(correlation, abs=0.05)
+    assert noise_sd(values, time_s) == pytest.approx(noise_sd(noise), rel=0.05)
+    assert noise_sd(values) > 1.5 * noise_sd(values, time_s)
+
+
+@pytest.mark.parametrize("written_s", [np.round(TIME_S / 3e-4) * 3e-4, np.floor(TIME_S)])
+def test_times_that_are_rounded_or_repeat_hide_no_even_clock(written_s):
+    assert noise_of(noisy(0.005), written_s) == noise_of(noisy(0.005))
+
+
 def test_the_motion_itself_is_not_noise():
     assert noise_sd(SINE) < 1e-5
 

@@ -190,10 +190,10 @@ def thinned_notes(runs: Sequence[Prepared]) -> list[str]:
 def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, Noise]:
     """Return the noise of each channel with any finite value: the median over the pieces."""
     found: dict[str, list[Noise]] = {name: [] for name in names}
-    for piece in pieces(run, names) if names else ():
+    for piece in pieces(run, [TIME, *names]) if names else ():
         for name in names:
             if np.isfinite(piece.columns[name]).any():
-                found[name].append(noise_of(piece.columns[name]))
+                found[name].append(noise_of(piece.columns[name], piece.columns[TIME]))
     known = {n: [one for one in found[n] if not math.isnan(one.sd)] for n in names if found[n]}
     return {
         n: Noise(*map(float, np.median(levels, axis=0))) if levels else Noise(math.nan)

@@ -77,7 +77,7 @@ class Prepared:
     def noises(self) -> dict[str, Noise]:
         """Noise of each measured channel with its memory, from sample to sample of these."""
         if self.all_noise is None:
-            return {name: noise_of(values) for name, values in self.measured.items()}
+            return {n: noise_of(values, self.time_s) for n, values in self.measured.items()}
         of_all = {name: self.all_noise[name] for name in self.measured}
         return {
             name: one._replace(correlation=one.correlation**self.every)

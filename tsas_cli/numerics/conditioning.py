@@ -100,7 +100,7 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
         return replace(
             cleaned, values=clean, sd=sd, unseen=unseen, reversals=reversals, recorded=finite
         )
-    noise = noise_of(values)
+    noise = noise_of(values, time_s)
     if not noise.sd > 0.0:  # noise-free, or too short for an estimate
         nothing = np.zeros(values.size)
         return Conditioned(values, nothing, nothing, 0.0, 0.0, turning_points(values, 0.0))

@@ -87,7 +87,7 @@ def plan(pieces: Iterable[Samples], count: int) -> CleaningPlan:
         if finite.sum() < FEWEST:
             continue
         time_s, values = time_s[finite], values[finite]
-        found = noise_of(values)
+        found = noise_of(values, time_s)
         here, lasts = found.sd, memory_of(values, found)
         noise.append(here)
         memory.append(lasts)

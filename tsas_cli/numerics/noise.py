@@ -14,6 +14,7 @@ CERTAIN = 4.0  # standard deviations by which they have to differ
 SCATTER = 2.8  # standard deviation of the logarithm of a ratio of two mean squares, times √n
 MOST_GROWN = 2.1  # of one ratio: a random walk has 2, a vibration and motion have more
 FASTER = 1.2  # growth of the second ratio over that of the first, in logarithms; a motion has 1.6
+UNEVEN = 1e-3  # of the interval: the scatter of times that are not those of an even clock
 CORRELATIONS = np.linspace(0.0, 0.9, 901)  # of neighbouring samples
 
 
@@ -36,7 +37,7 @@ class Noise(NamedTuple):
         )
 
 
-def noise_of(values: Floats) -> Noise:
+def noise_of(values: Floats, time_s: Floats | None = None) -> Noise:
     """Return the noise of a channel, with quantisation; NaN for too few samples.
 
     Third differences of every second and fourth sample have the mean square of those of all where
@@ -44,13 +45,21 @@ def noise_of(values: Floats) -> Noise:
     times as much or more at each step. So noise has a memory where they grow less from step to
     step, within chance; how long follows from the first one (or from both where it is less), by an
     autoregressive process of first order. A vibration over a few samples counts as such noise.
+    The times are those at which the samples were taken, or rounded ones of an even clock, as
+    without any: of the two noises the smaller one.
     """
-    step, white = quantisation_step(values), noise_sd(values)
+    return min(
+        (_noise_of(*clean) for clean in _at_times(values, time_s)), key=lambda noise: noise.sd
+    )
+
+
+def _noise_of(clean: Floats, time_s: Floats | None) -> Noise:
+    step, white = quantisation_step(clean), _noise_sd(clean, time_s)
     rounding = step / math.sqrt(12.0)
     if not white > rounding:
         return Noise(rounding if white <= rounding else math.nan, step=step)
-    clean = values[np.isfinite(values)]
-    first, (second, last) = white**2, (_third_square(clean, stride) for stride in STRIDES)
+    first = white**2
+    second, last = (_third_square(clean, time_s, stride) for stride in STRIDES)
     certain = math.exp(CERTAIN * SCATTER / math.sqrt(clean.size))
     grown = second / first
     if not certain < grown < MOST_GROWN or last / second > grown**FASTER:
@@ -63,25 +72,58 @@ def noise_of(values: Floats) -> Noise:
     return Noise(white / math.sqrt(share), correlation, step)
 
 
-def noise_sd(values: Floats) -> float:
+def noise_sd(values: Floats, time_s: Floats | None = None) -> float:
     """Return the standard deviation of the sample-to-sample noise of a channel.
 
     Third differences remove the motion; the noise is their trimmed mean square, without the largest
     5 % (jumps and reversals among them) and corrected for that. Slow disturbances are not counted.
     NaN for fewer than 16 samples.
     """
-    clean = values[np.isfinite(values)]
-    return math.nan if clean.size < FEWEST_SAMPLES else math.sqrt(_third_square(clean, 1))
+    return min(_noise_sd(*clean) for clean in _at_times(values, time_s))
 
 
-def _third_square(values: Floats, stride: int) -> float:
-    """Return the mean square of third differences, zero for a parabola, of one in `stride` samples.
+def _noise_sd(clean: Floats, time_s: Floats | None) -> float:
+    return math.nan if clean.size < FEWEST_SAMPLES else math.sqrt(_third_square(clean, time_s, 1))
+
+
+def _at_times(values: Floats, time_s: Floats | None) -> list[tuple[Floats, Floats | None]]:
+    """Return the finite values at even times (None), and at the given ones where these are uneven.
+
+    Times that do not increase are none at which samples were taken.
+    """
+    finite = np.isfinite(values)
+    clean = values[finite]
+    if time_s is None:
+        return [(clean, None)]
+    interval = np.diff(time_s[finite])
+    uneven = interval.size > 0 and interval.min() > 0.0 and np.ptp(interval) > UNEVEN * interval[0]
+    return [(clean, None), *([(clean, time_s[finite])] if uneven else [])]
+
+
+def _third_square(values: Floats, time_s: Floats | None, stride: int) -> float:
+    """Return the mean square of third differences of one in `stride` samples.
 
     Trimmed and corrected, and over that of white noise of variance one; infinite for too few.
     """
-    a, b, c, d = (values[k * stride : values.size - (3 - k) * stride] for k in range(4))
-    third = np.sort(np.abs(a - 3.0 * b + 3.0 * c - d))[: int(0.95 * a.size)]
-    return float(np.mean(third**2)) / _TRIMMED / 20.0 if third.size else math.inf
+    third = np.abs(third_differences(values, time_s, stride))
+    third = np.sort(third)[: int(0.95 * third.size)]
+    return float(np.mean(third**2)) / _TRIMMED if third.size else math.inf
+
+
+def third_differences(values: Floats, time_s: Floats | None = None, stride: int = 1) -> Floats:
+    """Return the third differences of one in `stride` samples, by times, or even ones if None.
+
+    They are zero for a parabola, and of variance one for white noise of variance one.
+    """
+    four = [slice(k * stride, max(values.size - (3 - k) * stride, 0)) for k in range(4)]
+    a, b, c, d = (values[part] for part in four)
+    if time_s is None:
+        return np.asarray((a - 3.0 * b + 3.0 * c - d) / math.sqrt(20.0))
+    t = np.array([time_s[part] for part in four])
+    apart = t[:, None] - t
+    apart[range(4), range(4)] = 1.0
+    weights = 1.0 / np.prod(apart, axis=1)
+    return np.asarray((weights * [a, b, c, d]).sum(axis=0) / np.sqrt((weights**2).sum(axis=0)))
 
 
 def _share(correlation: Floats) -> Floats:

@@ -101,7 +101,7 @@ class Inputs:
         for recording in self.recordings:
             for name in CHANNELS:
                 values = recording.get(name)
-                level = math.nan if values is None else noise_of(values).sd
+                level = math.nan if values is None else noise_of(values, recording.time_s).sd
                 if values is not None and level > 0.0:
                     squares.setdefault(name, []).append((level**2, values.size))
         return {

@@ -13,7 +13,7 @@ TIME = np.arange(2000) / 500.0
 
 def standing_out(values, time_s=TIME):
     """Return the rows that stand out of a channel."""
-    return np.flatnonzero(outlying(time_s, values, size_of(values), most=1e6)).tolist()
+    return np.flatnonzero(outlying(time_s, values, size_of(values, time_s), most=1e6)).tolist()
 
 
 def with_wild(name, rows, value):

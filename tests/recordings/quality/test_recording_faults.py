@@ -104,6 +104,19 @@ def test_sampling_at_other_times_than_are_written():
     assert said_ms == pytest.approx(6.0, rel=0.25)
 
 
+def test_sampling_at_uneven_times_that_are_written_is_no_fault():
+    at = TIME + 0.001 * np.random.default_rng(1).uniform(-2.0, 2.0, N)
+    clean = columns(Bench(noise_mm=0.0, noise_N=0.0))
+    rng = np.random.default_rng(2)
+    moved = {
+        n: np.interp(at, TIME, clean[n]) + 0.2 * step * rng.standard_normal(N)
+        for n, step in STEPS.items()
+    }
+    codes = [{code for code, _ in remarks({"time_s": time_s} | moved)} for time_s in (at, TIME)]
+    assert "unsteady-sampling" not in codes[0]
+    assert "unsteady-sampling" in codes[1]
+
+
 def test_a_hum_is_told_with_its_frequency():
     hum = GOOD["f_out_N"] + 0.7 * np.sin(2.0 * np.pi * 7.3 * TIME)
     remark = told(GOOD | {"f_out_N": hum}, "hum")

@@ -245,12 +245,13 @@ def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:
             finite = values[np.isfinite(values)]
             if finite.size and name != TIME:
                 ends = float(finite.min()), float(finite.max())
-                part = finite[::every].copy(), noise_sd(finite), *ends
+                noise = noise_sd(values, piece.columns[TIME])
+                part = finite[::every].copy(), noise, *ends
                 seen.setdefault(name, []).append(part)
     overall = {}
     for name, parts in seen.items():
-        valid, noise, lowest, highest = zip(*parts, strict=True)
-        each, known = np.concatenate(valid), [sd for sd in noise if not math.isnan(sd)]
+        valid, noises, lowest, highest = zip(*parts, strict=True)
+        each, known = np.concatenate(valid), [sd for sd in noises if not math.isnan(sd)]
         middle = float(np.median(known)) if known else math.nan
         overall[name] = Size(middle, step_of(each), span_of(each), min(lowest), max(highest))
     return overall, {name: np.concatenate(parts) for name, parts in decimated.items()}

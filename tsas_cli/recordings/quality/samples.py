@@ -56,10 +56,10 @@ class Size:
     highest: float
 
 
-def size_of(values: Floats) -> Size:
-    """Return the size of a channel, shape (n,)."""
+def size_of(values: Floats, time_s: Floats) -> Size:
+    """Return the size of a channel at given times, shapes (n,)."""
     ends = float(np.nanmin(values)), float(np.nanmax(values))
-    return Size(noise_sd(values), step_of(values), span_of(values), *ends)
+    return Size(noise_sd(values, time_s), step_of(values), span_of(values), *ends)
 
 
 def step_of(values: Floats) -> float:

@@ -81,7 +81,7 @@ class RunSignals:
 
         A commanded speed may jump for a sample or two: there only implausible values are.
         """
-        sizes = self.overall or {name: size_of(values) for name, values in self._recorded.items()}
+        sizes = self.overall or self._sizes_of(self._recorded)
         return {
             name: np.abs(values) > largest(name)
             if name == COMMANDED
@@ -110,7 +110,10 @@ class RunSignals:
     @cached_property
     def sizes(self) -> Mapping[str, Size]:
         """The size of each channel over the whole run, by name."""
-        return self.overall or {name: size_of(values) for name, values in self.channels.items()}
+        return self.overall or self._sizes_of(self.channels)
+
+    def _sizes_of(self, channels: Mapping[str, Floats]) -> dict[str, Size]:
+        return {name: size_of(values, self.time_s) for name, values in channels.items()}
 
     @cached_property
     def batches(self) -> Batches | None:

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from tsas_cli.numerics.noise import third_differences
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals
@@ -90,7 +91,7 @@ def time_jitter(trial: RunSignals) -> Findings:
 
 _BLOCK = 16  # rows
 _FEWEST_BLOCKS = 30
-_MEDIAN_OF_THIRD = 0.6745 * np.sqrt(20.0)  # of |third difference|, for noise of unit deviation
+_MEDIAN = 0.6745  # of |noise| of unit deviation
 _SLOW, _FAST = 0.3, 0.7  # quantiles of the speed
 _TIMES = 2.0  # the noise of slow motion
 _ALIKE = 1.5  # ratio of two times at most
@@ -124,8 +125,8 @@ def _scatter_s(time_s: Floats, values: Floats) -> float | None:
     count = (values.size - 3) // _BLOCK
     if count < _FEWEST_BLOCKS:
         return None
-    third = np.abs(np.diff(values, 3))[: count * _BLOCK].reshape(count, _BLOCK)
-    noise = np.median(third, axis=1) / _MEDIAN_OF_THIRD
+    third = [third_differences(values, at)[: count * _BLOCK] for at in (None, time_s)]
+    noise = np.median(np.abs(third).reshape(2, count, _BLOCK), axis=2).min(axis=0) / _MEDIAN
     ends = _BLOCK * np.arange(count + 1)
     speed = np.abs(np.diff(values[ends]) / np.diff(time_s[ends]))
     slow, fast = np.quantile(speed, (_SLOW, _FAST))
