@@ -161,6 +161,24 @@ def test_a_load_cell_that_feels_the_other_a_little_explains_what_lags_at_reversa
     assert remainder(bench, trial, folds, signals_at_residuals(bench, trial), tolerated).late == ()
 
 
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+def test_tolerances_move_no_parameter_out_of_its_bounds(tmp_path, sense):
+    """Of a tolerance that does what a travel does, and more; the residual has two of it."""
+    bench = bench_for(tmp_path / "dataset", Sensors(rate_Hz=40.0))
+    trial, folds = bench.fit(["presliding"]), bench_folds(bench)
+    at = [u.name for u in trial.unknowns].index("presliding.length_mm")
+    of_travel = trial.solution.jacobian[:, at]
+    more = 10.0 * np.random.default_rng(3).standard_normal(of_travel.size)
+    tolerated = np.zeros_like(tolerances(bench, trial))
+    tolerated[:, 0] = sense * 10.0 * of_travel + more
+    moved = replace(trial, solution=replace(trial.solution, residual=2.0 * more))
+    rigs = rigs_with_tolerances(bench, moved, tolerated, folds.run)
+    lengths_mm = {rig.effects.presliding.length_mm for rig in rigs}
+    assert len(lengths_mm) == 1
+    assert min(lengths_mm) >= 0.0
+    assert (min(lengths_mm) > trial.values()["presliding.length_mm"]) == (sense > 0.0)
+
+
 @pytest.mark.parametrize(
     ("force", "length", "worse"),
     [

@@ -110,10 +110,12 @@ def rigs_with_tolerances(
 ) -> list[Rig]:
     """Return the rig of each run with the plausible tolerances that its residuals show.
 
-    Linear: by the columns of `without_tolerances`, the other parameters moved by them.
+    Linear: by the columns of `without_tolerances`, the other parameters moved by them within their
+    bounds.
     """
     columns, amounts = _explained_by(trial, tolerated, run)
-    values = trial.solution.values - trial.moved_by(columns) @ amounts
+    lower, upper = np.array([(u.lower, u.upper) for u in trial.unknowns]).T
+    values = np.clip(trial.solution.values - trial.moved_by(columns) @ amounts, lower, upper)
     fitted, sizes = trial.values(), _sizes(bench)
     frictions, of_effects, bends = np.split(
         -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes)))
