@@ -47,5 +47,5 @@ def test_what_leaves_no_more_than_a_complete_model_may_leaves_noise(share, noise
     plain = beside(trial_of(NOISE), TOLERATED, RUN).squares
     search = search_of(NOISE * np.sqrt(share * RUN.size / plain))
     for names in (frozenset(), frozenset({"backlash"})):
-        left = leaves_noise(search, names, SimpleNamespace(found=(fault(1.0),)))
+        left = leaves_noise(search, names, SimpleNamespace(found=(fault(1.0),), usual=RUN.size))
         assert left == noise

@@ -18,21 +18,21 @@ AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the 
 
 def effects_as_good(fits: Fits, fault: FoundFault) -> Iterator[str]:
     """Yield the effects of the catalogue that explain as much as a fault, each fitted by itself."""
-    nominal, count = fits.trial(frozenset()), fits.folds.run.size
+    nominal = fits.trial(frozenset())
     squares = float(nominal.solution.residual @ nominal.solution.residual)
-    beyond = max(fault.rest - count, 0.0)  # the noise: an effect may leave twice as much
+    beyond = max(fault.rest - fault.usual, 0.0)  # the noise: an effect may leave twice as much
     least = LINEAR * fault.share * fault.excess / squares
     for screened in fits.screen(frozenset()):
         if screened.part < least:
             return
         name = screened.effect.name
-        if _left_by(fits, frozenset({name}), fault) < fault.rest + beyond + AS_GOOD * count:
+        if _left_by(fits, frozenset({name}), fault) < fault.rest + beyond + AS_GOOD * fault.usual:
             yield name
 
 
 def leaves_noise(fits: Fits, names: Names, fault: FoundFault) -> bool:
     """Return whether a set of effects leaves no more than a complete model may."""
-    most = (1.0 + EXCESS_OF_COMPLETE_MODEL) * fits.folds.run.size
+    most = (1.0 + EXCESS_OF_COMPLETE_MODEL) * fault.usual
     return _left_by(fits, names, fault) < most
 
 

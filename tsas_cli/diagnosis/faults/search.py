@@ -22,6 +22,7 @@ from tsas_cli.diagnosis.faults.candidates import (
 from tsas_cli.diagnosis.faults.shapes import WINDOWS, ReadRun, runs_at
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
+from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_EXCESS = 0.05  # of the squares of the noise, that a fault is sought for
@@ -30,6 +31,7 @@ TWICE, NOISE, MOST_RIVALS = 2.0, 0.1, 2  # what a rival leaves, over the best, a
 AS_GOOD = 0.97  # of the best reduction, by a fault that is simpler
 CLOSER = 0.7  # of the best reduction, by a fault that is looked at more closely
 FINER = np.arange(-8, 9) / 8.0  # of a part of the run, or powers of two of a time constant
+FEWEST_RUNS, STANDS_OUT = 3, 4.0  # of which one's fault explains so many times that of any other
 STEP, MOST_STEPS = 0.1, 4  # least share of the excess by a step, and steps of a zero in a run
 
 
@@ -37,21 +39,23 @@ STEP, MOST_STEPS = 0.1, 4  # least share of the excess by a step, and steps of a
 class FoundFault:
     """The best fault and others as good.
 
-    `share` is that of the `excess` of the squares over the noise's that it explains, `rest` the
-    squares that are left with it.
+    `share` is that of the `excess` of the squares over the `usual` ones that it explains, `rest`
+    the squares that are left with it.
     """
 
     found: tuple[Candidate, ...]
     share: float
     excess: float
     rest: float
+    usual: float
 
 
 def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | None:
     """Return the fault that explains most of what the nominal model leaves, and faults as good.
 
     None is returned where the nominal model leaves little, or no fault explains most of it: a
-    mechanism acts in every run. Faults of the codes that are `accepted` are not sought.
+    mechanism acts in every run. What all runs have, as slow noise, is none of a fault that stands
+    out in one. Faults of the codes that are `accepted` are not sought.
     """
     bench, trial, run = fits.bench, fits.trial(frozenset()), fits.folds.run
     tolerated = fits.tolerated[trial.on_mesh]
@@ -61,11 +65,12 @@ def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | No
         reads = runs_at(bench, trial)
         found = [c for c in candidates(bench, trial, reads, left, run) if c.code not in accepted]
         closer = [c for c in _closer(found, reads, left, run) if c.code not in accepted]
-        choices.append(_judged(closer, left.squares, run.size))
+        usual = _usual(fits, left.residual) if _stands_out(closer) else run.size
+        choices.append(_judged(closer, left.squares, usual))
     if OWN_FRICTION not in accepted:
         own = of_frictions(trial, tolerated, run, [rig.total_bend_rad for rig in bench.rigs])
         choices += [_judged([c], squares, run.size) for c, squares in own]
-    convincing = [fault for fault in choices if _convinces(fault, run.size)]
+    convincing = [fault for fault in choices if _convinces(fault)]
     return min(convincing, key=lambda fault: fault.rest) if convincing else None
 
 
@@ -75,11 +80,42 @@ def simplest(found: Sequence[Candidate]) -> Candidate:
     return min(good, key=lambda c: (c.edges, c.code == "run-lag", -c.reduction))
 
 
-def _judged(found: Sequence[Candidate], squares: float, count: int) -> FoundFault:
+def _stands_out(found: Sequence[Candidate]) -> bool:
+    """Return whether the best fault is one of a run that explains far more than any of another."""
+    best: dict[int, float] = {}
+    for c in found:
+        if c.run is not None:
+            best.setdefault(c.run, c.reduction)
+    others = [reduction for run, reduction in best.items() if run != found[0].run]
+    return (
+        found[0].run is not None
+        and len(best) >= FEWEST_RUNS
+        and found[0].reduction > STANDS_OUT * max(others)
+    )
+
+
+def _usual(fits: Fits, residual: Floats) -> float:
+    """Return the squares of a residual whose channels are as large in all runs as in the median.
+
+    They are at least those of noise.
+    """
+    bench, run = fits.bench, fits.folds.run
+    channel = signals_at_residuals(bench, fits.trial(frozenset())).channel
+    usual = 0.0
+    for number in np.unique(channel):
+        here = channel == number
+        means = [
+            np.mean(residual[: run.size][here & (run == k)] ** 2) for k in np.unique(run[here])
+        ]
+        usual += max(float(np.median(means)), 1.0) * np.count_nonzero(here)
+    return usual
+
+
+def _judged(found: Sequence[Candidate], squares: float, usual: float) -> FoundFault:
     """Return the simplest of the best faults, with those that are as good elsewhere."""
     best = simplest(found)
-    excess = squares - count
-    most = TWICE * max(excess - best.reduction, 0.0) + NOISE * count
+    excess = squares - usual
+    most = TWICE * max(excess - best.reduction, 0.0) + NOISE * usual
     where = {(best.run, best.channels)}
     rivals: list[Candidate] = []
     for other in found:
@@ -90,12 +126,13 @@ def _judged(found: Sequence[Candidate], squares: float, count: int) -> FoundFaul
             where.add((other.run, other.channels))
             rivals.append(other)
     share = best.reduction / max(excess, TINY)
-    return FoundFault((best, *rivals), share, excess, squares - best.reduction)
+    return FoundFault((best, *rivals), share, excess, squares - best.reduction, usual)
 
 
-def _convinces(fault: FoundFault, count: int) -> bool:
+def _convinces(fault: FoundFault) -> bool:
     known = fault.found[0].code == OF_THE_CATALOGUE
-    return not known and explains(fault.share, fault.excess / count, fault.rest / count)
+    relative = fault.excess / fault.usual, fault.rest / fault.usual
+    return not known and explains(fault.share, *relative)
 
 
 def explains(share: float, excess: float, left: float) -> bool:
