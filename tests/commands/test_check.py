@@ -2,9 +2,8 @@ import json
 
 import pytest
 
+import tsas_cli as tsas
 from tests.recordings.quality.bench import LOAD, Bench, columns
-from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.support.files import sha256_of
 from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
@@ -23,11 +22,8 @@ def make(tmp_path):
     return make
 
 
-def test_a_good_dataset_has_no_findings(make, done):
-    assert "the checks found nothing" in done("check", make(a=GOOD))
-
-
 def test_findings_are_the_result_and_no_failure(make, done):
+    assert "the checks found nothing" in done("check", make(a=GOOD))
     printed = done("check", make(a=GOOD, b=BACKWARDS))
     assert "time-order" in printed
     assert "correct the clock" in printed
@@ -48,36 +44,29 @@ def test_json_and_the_written_file_agree(make, done, tmp_path):
     assert ("time-jitter", "a") not in reasons
 
 
-def test_what_is_no_dataset_is_refused_in_one_line(refused, tmp_path):
-    assert "dataset.toml" in refused("check", tmp_path, "--out", tmp_path / "out")
-    assert not (tmp_path / "out").exists()
-
-
-def test_one_run_that_cannot_be_read_is_a_finding_and_the_others_are_checked(make):
+def test_one_run_that_cannot_be_read_is_a_finding_and_a_dataset_of_none_is_refused(make, refused):
     folder = make(a=GOOD, b=BACKWARDS)
     (folder / "runs" / "a.parquet").write_bytes(b"")
-    findings = check_dataset(read_dataset(folder)).findings
+    findings = tsas.check(folder).findings
     assert [(f.code, f.run) for f in findings] == [("unreadable", "a"), ("time-order", "b")]
-
-
-def test_a_dataset_of_which_no_run_can_be_read_is_refused(make, refused):
-    folder = make(a=GOOD)
-    (folder / "runs" / "a.parquet").write_bytes(b"")
+    (make(a=GOOD) / "runs" / "a.parquet").write_bytes(b"")
     refused("check", folder)
 
 
+def reasons_of(report):
+    return {entry.code: entry.reason for entry in report.not_checked}
+
+
 def test_a_channel_that_is_too_short_is_not_said_to_be_missing(make):
-    report = check_dataset(read_dataset(make(a={n: v[:10] for n, v in GOOD.items()})))
-    reasons = {entry.code: entry.reason for entry in report.not_checked}
+    reasons = reasons_of(tsas.check(make(a={n: v[:10] for n, v in GOOD.items()})))
     assert reasons["sign"] == "x_in_mm with fewer than 16 valid samples"
     assert not any("not recorded" in reason for reason in reasons.values())
 
 
 def test_a_check_whose_columns_are_missing_has_not_passed(make):
-    drive = {name: GOOD[name] for name in ("time_s", "x_in_mm", "f_in_N")}
-    report = check_dataset(read_dataset(make(a=drive)))
-    reasons = {entry.code: entry.reason for entry in report.not_checked}
-    assert report.findings == ()
+    report = tsas.check(make(a={name: GOOD[name] for name in ("time_s", "x_in_mm", "f_in_N")}))
+    reasons = reasons_of(report)
+    assert list(report.findings) == []
     assert reasons["exchanged"] == "f_out_N not recorded"
     assert reasons["delay"] == "x_out_mm and f_out_N not recorded"
     assert {"unit", "no-steady-motion"} <= reasons.keys()

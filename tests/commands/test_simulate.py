@@ -8,6 +8,7 @@ import pytest
 
 import tsas_cli as tsas
 from tests.commands.documented import documented
+from tests.refusals import refusal
 from tests.rigs import dataset_of, recorded
 from tsas_cli.identification.model_file import stated_model
 from tsas_studies.challenge.rig.tendon import Rig
@@ -107,9 +108,7 @@ def test_gaps_of_the_drive_are_null(tmp_path):
 @pytest.mark.parametrize("load", ["force", "displacement"])
 def test_the_static_model_knows_springs_only(tmp_path, load):
     folder = dataset_of(TRUE, tmp_path / "d", told={"load": load}, a=recorded(TRUE, 200.0))
-    with pytest.raises(tsas.InputError) as refused:
-        tsas.simulate(folder, dynamics="static", out=tmp_path / "out")
-    assert refused.value.line() == (
+    assert refusal(tsas.simulate, folder, dynamics="static", out=tmp_path / "out") == (
         "run a: the static model is valid for a spring load and a drive by displacement "
         "only; use --dynamics slip"
     )
@@ -155,13 +154,12 @@ def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(mod
     folder = dataset_of(TRUE, tmp_path / "d", a=whole, b=shifted)
     wrong = tmp_path / "wrong.toml"
     wrong.write_text(MODEL.replace("value = 0.16", "value = 0.15"), encoding="utf-8")
-    residuals = {}
-    for name, file, fit_own in (
-        ("as it is", model(), False),
-        ("own", model(), True),
-        ("wrong", wrong, True),
-        ("again", tmp_path / "own", False),  # with the model as it was used
-    ):
+    residuals, cases = {}, {"as it is": (model(), False), "own": (model(), True)}
+    cases |= {
+        "wrong": (wrong, True),
+        "again": (tmp_path / "own", False),
+    }  # the model as it was used
+    for name, (file, fit_own) in cases.items():
         out = tmp_path / name
         result = tsas.simulate(folder, model=file, fit_own=fit_own, runs=["b"], out=out)
         assert list(result.summary["runs"]) == result.summary["chosen"] == ["b"]

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.drive.verdicts import STATED, TITLE, TOLD, cause, terms, verdict
-from tsas_cli.diagnosis.evidence import gain
+from tests.drive.verdicts import STATED, TITLE, TOLD, MadeUpSquares, cause, terms, verdict
 from tsas_cli.drive import diagnosis as dd
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING
@@ -15,25 +14,17 @@ from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME
 from tsas_cli.numerics.linear_response import sampled
 
 
-class Searched:
-    """Held-out mean squares by set of terms, even over twenty blocks of ten residuals."""
+class Searched(MadeUpSquares):
+    """Held-out mean squares by set of terms, even over blocks of ten residuals."""
 
     def __init__(self, squares, *, stated=None, blocks=20, rivals=()):
-        self.given, self.rivals = squares, dict(rivals)
+        super().__init__(squares, math.nan, blocks=blocks, size=10)
+        self.rivals = dict(rivals)
         self.bench = SimpleNamespace(stated_Hz=stated, runs=[SimpleNamespace(noise_mm=0.1)])
         block = np.arange(10 * blocks) // 10
         self.folds = SimpleNamespace(
             block=block, run=np.zeros(block.size, int), blocks=blocks, by_run=False
         )
-
-    def held_out(self, names):
-        return np.full(self.folds.blocks, 10.0 * self.given[names])
-
-    def mean_square(self, names):
-        return self.given[names]
-
-    def gain(self, before, after):
-        return gain(self.held_out(before), self.held_out(after))
 
 
 @pytest.fixture

@@ -2,9 +2,9 @@ import dataclasses
 
 import pytest
 
+from tests.refusals import refusal
 from tsas_cli.drive.file import UNITS, IdentifiedDrive, checked_drive, read_drive, write_drive
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.support.errors import InputError
 
 
 def written(path, **values):
@@ -44,9 +44,9 @@ def test_what_does_not_fit_is_refused(tmp_path, old, new, said):
     text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new), encoding="utf-8")
-    with pytest.raises(InputError, match=r"drive\.toml") as error:
-        read_drive(path)
-    assert said in error.value.line()
+    line = refusal(read_drive, path)
+    assert "drive.toml" in line
+    assert said in line
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,6 @@ def test_what_does_not_fit_is_refused(tmp_path, old, new, said):
 def test_a_drive_in_memory_is_checked_like_its_file(name, value, said):
     drive = IdentifiedDrive(0.02, 50.0, gear_ratio=100.0)
     assert checked_drive(drive) is drive
-    with pytest.raises(InputError) as error:
-        checked_drive(dataclasses.replace(drive, **{name: value}))
-    assert name in error.value.line()
-    assert said in error.value.line()
+    line = refusal(checked_drive, dataclasses.replace(drive, **{name: value}))
+    assert name in line
+    assert said in line

@@ -11,14 +11,6 @@ from tsas_cli.drive.harmonic_drive import DriveValues, gear_response, linear_res
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
 
-
-def bench_of(runs=(), **parts):
-    """Return a bench, some of whose parts are made up."""
-    bench = d.DriveBench(runs, parts.get("seen"), parts.get("stated_Hz"))
-    bench.__dict__.update(parts)
-    return bench
-
-
 STEP_S = 1e-2
 TIME_S = STEP_S * np.arange(201)
 NOISE_MM = 2e-3
@@ -31,7 +23,7 @@ def run_of(values, speed, at=1.7):
 
 
 def error_of(run, values):
-    return bench_of([run])._error(0, values)
+    return d.DriveBench([run], None)._error(0, values)
 
 
 def test_errors_count_in_units_of_noise_but_for_where_a_run_begins():
@@ -116,6 +108,5 @@ def test_a_run_that_begins_in_motion_may_have_moved_already():
     basis = np.column_stack((np.ones(TIME_S.size), np.exp(-0.8 * TIME_S)))
     left = off - basis @ np.linalg.lstsq(basis, off, rcond=None)[0]
     np.testing.assert_allclose(error_of(run, values), left, atol=1e-8)
-    np.testing.assert_allclose(
-        bench_of([run]).simulated(0, values), x + NOISE_MM * left, atol=1e-10
-    )
+    simulated = d.DriveBench([run], None).simulated(0, values)
+    np.testing.assert_allclose(simulated, x + NOISE_MM * left, atol=1e-10)

@@ -52,13 +52,21 @@ def integrated(values):
         else:
             faster, turns = 0.0, asked(t)
         moves = values.gain_mm_per_s_rpm * turns - values.leak_per_s * motor
-        pull = w * w * (motor - x) - 2.0 * values.damping_ratio * w * v
-        return faster, moves, v, pull
+        return faster, moves, v, pull(values, motor, x, v)
 
-    found = solve_ivp(
-        rates, (0.0, TIME_S[-1]), np.zeros(4), t_eval=TIME_S, rtol=1e-7, atol=1e-9, max_step=2e-3
-    ).y
+    found = from_rest(rates, 4, rtol=1e-7, atol=1e-9)
     return found[1], found[2] if w else found[1]
+
+
+def pull(values, motor, x, v):
+    """Return the acceleration of the end by a spring of the drive's frequency, and its damping."""
+    w = 2.0 * math.pi * values.natural_frequency_Hz
+    return w * w * (motor - x) - 2.0 * values.damping_ratio * w * v
+
+
+def from_rest(rates, states, **tolerances):
+    span, begin = (0.0, TIME_S[-1]), np.zeros(states)
+    return solve_ivp(rates, span, begin, t_eval=TIME_S, max_step=2e-3, **tolerances).y
 
 
 @pytest.mark.parametrize("values", PARTS.values(), ids=PARTS.keys())
@@ -92,16 +100,11 @@ def test_the_gear_turns_unevenly_and_has_play(part, play_mm, start_mm):
         place = min(max(place, moved - play_mm / 2.0), moved + play_mm / 2.0)
         off.append(place - way)
     if values.natural_frequency_Hz:
-        w, z = 2.0 * math.pi * values.natural_frequency_Hz, values.damping_ratio
-        off = solve_ivp(
-            lambda t, y: (y[1], w * w * (np.interp(t, TIME_S, off) - y[0]) - 2.0 * z * w * y[1]),
-            (0.0, TIME_S[-1]),
-            np.zeros(2),
-            t_eval=TIME_S,
-            rtol=1e-8,
-            atol=1e-11,
-            max_step=2e-3,
-        ).y[0]
+
+        def rates(t, y):
+            return y[1], pull(values, np.interp(t, TIME_S, off), *y)
+
+        off = from_rest(rates, 2, rtol=1e-8, atol=1e-11)[0]
     answer = gear_response(sampled(STEP_S, SPEED, "first"), values, start_mm)
     np.testing.assert_allclose(answer, off, atol=2e-4 * np.ptp(off))
     assert np.ptp(off) > 0.02

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.drive.verdicts import terms
-from tsas_cli.diagnosis.evidence import gain
+from tests.drive.verdicts import MadeUpSquares, terms
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
 from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
@@ -15,24 +14,16 @@ from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING, drive_folds
 from tsas_cli.numerics.linear_response import sampled
 
-BLOCKS = 20
 
-
-class MadeUp:
-    """A search whose mean squares are given by set of terms; it notes what is fitted and folded."""
+class MadeUp(MadeUpSquares):
+    """Notes what is fitted and folded."""
 
     def __init__(self, squares, default=10.0, *, failed=()):
-        self.given, self.default, self.failed = squares, default, failed
-        self.fitted, self.folded = [], []
+        super().__init__(squares, default)
+        self.failed, self.fitted, self.folded = failed, [], []
 
     def fold(self, best):
         self.folded.append(best.terms)
-
-    def held_out(self, names):
-        return np.full(BLOCKS, float(self.given.get(names, self.default)))
-
-    def mean_square(self, names):
-        return float(self.held_out(names)[0])
 
     def trial(self, names):
         self.fitted.append(names)
@@ -43,9 +34,6 @@ class MadeUp:
 
     def trials_of(self, sets):
         return [self.trial(names) for names in sets]
-
-    def gain(self, before, after):
-        return gain(self.held_out(before), self.held_out(after))
 
 
 def test_all_sixteen_structures_are_there_the_simplest_first():

@@ -1,5 +1,8 @@
 """Verdicts on a drive and data sheets that are made up, as several tests need them."""
 
+import numpy as np
+
+from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive.file import UNITS
 from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME
 from tsas_cli.effects import EFFECTS
@@ -19,6 +22,22 @@ TOLD = {
 
 def terms(*names):
     return frozenset(names)
+
+
+class MadeUpSquares:
+    """A search whose mean squares are given by set of terms, alike in all blocks of some size."""
+
+    def __init__(self, squares, default=10.0, *, blocks=20, size=1):
+        self.given, self.default, self.blocks, self.size = squares, default, blocks, size
+
+    def mean_square(self, names):
+        return float(self.given.get(names, self.default))
+
+    def held_out(self, names):
+        return np.full(self.blocks, self.size * self.mean_square(names))
+
+    def gain(self, before, after):
+        return gain(self.held_out(before), self.held_out(after))
 
 
 def cause(effect, kind="", rivals=()):

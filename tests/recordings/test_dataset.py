@@ -8,6 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.recordings.rewritten import rewrite
+from tests.refusals import refusal as refused
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest
@@ -22,9 +23,7 @@ def only(folder):
 
 
 def refusal(folder):
-    with pytest.raises(InputError) as caught:
-        only(folder)
-    return caught.value.line().removeprefix(str(folder / "runs" / "a.parquet"))
+    return refused(only, folder).removeprefix(str(folder / "runs" / "a.parquet"))
 
 
 def test_what_is_written_is_read_to_the_last_bit(dataset, columns):
@@ -56,12 +55,6 @@ def test_unknown_columns_travel_along_untouched(tmp_path, manifest, columns):
     write_dataset(tmp_path, manifest, {"a": pa.table(columns | {"note": note})})
     assert pq.read_table(tmp_path / "runs" / "a.parquet")["note"].combine_chunks() == note
     assert "note" not in only(tmp_path).columns
-
-
-def test_a_gap_is_null_in_the_file_and_nan_in_memory(dataset, columns):
-    force = pa.array(columns["f_in_N"], mask=np.arange(500) == 7)
-    rewrite(dataset, pa.table(columns | {"f_in_N": force}))
-    assert np.flatnonzero(np.isnan(only(dataset).columns["f_in_N"])).tolist() == [7]
 
 
 @pytest.mark.parametrize("kind", ["float32", "int64", "uint8"])
@@ -100,7 +93,7 @@ def test_a_dataset_made_by_pandas_alone_works(tmp_path, columns):
     )
     recording = only(tmp_path)
     np.testing.assert_array_equal(recording.columns["x_in_mm"], columns["x_in_mm"])
-    assert np.isnan(recording.columns["f_out_N"]).sum() == 1
+    assert np.flatnonzero(np.isnan(recording.columns["f_out_N"])).tolist() == [3]
 
 
 def test_a_changed_file_is_found_by_its_checksum(dataset, columns):
@@ -123,19 +116,6 @@ def test_a_damaged_file_is_one_line(dataset, damage):
 def test_a_missing_file_is_one_line(dataset):
     (dataset / "runs" / "a.parquet").unlink()
     assert refusal(dataset).startswith(": the run's file is missing")
-
-
-def test_a_folder_in_the_place_of_a_file_is_one_line(dataset):
-    text = (dataset / "dataset.toml").read_text()
-    (dataset / "dataset.toml").write_text(text.replace("runs/a.parquet", "."))
-    assert "the run's file is missing" in refusal(dataset)
-
-
-def test_a_link_out_of_the_folder_is_refused(dataset, tmp_path):
-    path = dataset / "runs" / "a.parquet"
-    path.rename(tmp_path / "elsewhere.parquet")
-    path.symlink_to(tmp_path / "elsewhere.parquet")
-    assert refusal(dataset) == ": a link leads out of the dataset's folder"
 
 
 def changed(name, row, value):
@@ -177,14 +157,13 @@ def scaled(factor):
             changed("time_s", 0, [0.0, 5e-324]),
             ", row 1: time_s increases by 4.94066e-324 s; expected steps",
         ),
-        (changed("time_s", 499, np.nan), ", row 499: time_s is null or not finite"),
-        (changed("time_s", 499, np.inf), ", row 499: time_s is null or not finite"),
-        (
-            lambda c: c | {"time_s": [*c["time_s"][:499], None]},
-            ", row 499: time_s is null or not finite",
+        *(
+            (lambda c, end=end: c | {"time_s": [*c["time_s"][:499], end]},
+             ", row 499: time_s is null or not finite")
+            for end in (np.nan, np.inf, None)
         ),
     ],
-)
+)  # fmt: skip
 def test_what_is_no_recording_is_refused_with_its_place(dataset, columns, change, message):
     rewrite(dataset, pa.table(change(columns)))
     assert refusal(dataset).startswith(message)
@@ -215,22 +194,14 @@ def say(dataset, columns, **units):
 
 
 @pytest.mark.parametrize(
-    ("name", "unit", "expected"),
-    [
-        ("f_in_N", "mm", "N"),
-        ("f_in_N", "kN", "N"),
-        ("f_in_N", "kg", "N"),
-        ("x_in_mm", "µm", "mm"),
-        ("x_in_mm", "m", "mm"),
-        ("x_in_mm", "what", "mm"),
-        ("time_s", "ms", "s"),
-    ],
+    ("name", "units"),
+    [("f_in_N", ["mm", "kN", "kg"]), ("x_in_mm", ["µm", "m", "what"]), ("time_s", ["ms"])],
 )
-def test_a_column_whose_metadata_name_another_unit_is_refused(
-    dataset, columns, name, unit, expected
-):
-    say(dataset, columns, **{name: unit})
-    assert refusal(dataset) == f": column {name} has the unit {unit}; expected {expected}"
+def test_a_column_whose_metadata_name_another_unit_is_refused(dataset, columns, name, units):
+    for unit in units:
+        say(dataset, columns, **{name: unit})
+        expected = name.rsplit("_", 1)[1]
+        assert refusal(dataset) == f": column {name} has the unit {unit}; expected {expected}"
 
 
 def test_a_unit_may_be_spelled_in_other_ways(dataset, columns):

@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.refusals import refusal as refused
 from tsas_cli.recordings.manifest import (
     Manifest,
     check_run_name,
@@ -47,9 +48,7 @@ def read(folder, text):
 
 
 def refusal(folder, text):
-    with pytest.raises(InputError) as caught:
-        read(folder, text)
-    return caught.value.line().removeprefix(f"{folder / 'dataset.toml'}: ")
+    return refused(read, folder, text).removeprefix(f"{folder / 'dataset.toml'}: ")
 
 
 def test_a_manifest_says_what_was_written_by_hand(tmp_path):

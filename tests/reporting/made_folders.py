@@ -36,10 +36,8 @@ def make_dataset(folder: Path, ids=("a", "b"), *, name="bench", samples=4000) ->
     """Write a dataset of sines through a play operator; return its folder."""
     folder.mkdir(parents=True)
     told = {"sheath_length_mm": 785.0, "total_bend_rad": math.pi, "preload_N": 25.0}
-    runs = [
-        Run(id=run_id, file=f"runs/{number}.parquet", sha256="0" * 64, **told)
-        for number, run_id in enumerate(ids)
-    ]
+    files = {run_id: f"runs/{number}.parquet" for number, run_id in enumerate(ids)}
+    runs = [Run(id=i, file=file, sha256="0" * 64, **told) for i, file in files.items()]
     manifest = Manifest(format=1, name=name, kind="simulated", run=tuple(runs))
     tables = {run_id: pa.table(columns(samples, seed=n)) for n, run_id in enumerate(ids)}
     write_dataset(folder, manifest, tables)
@@ -51,12 +49,8 @@ def columns(samples, *, seed=0):
     noise = np.random.default_rng(seed).normal(scale=NOISE, size=(2, samples))
     time_s = np.linspace(0.0, 4 * math.pi, samples)
     x_in, f_in, f_out, _ = play(time_s)
-    return {
-        "time_s": time_s,
-        "x_in_mm": x_in,
-        "f_in_N": f_in + noise[0],
-        "f_out_N": f_out + noise[1],
-    }
+    forces = {"f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
+    return {"time_s": time_s, "x_in_mm": x_in, **forces}
 
 
 def play(time_s):
@@ -84,12 +78,8 @@ def segments(time_s):
 
 
 def source(dataset: Path, stage: Path) -> dict:
-    read = read_dataset(dataset)
-    return {
-        "name": read.manifest.name,
-        "folder": os.path.relpath(dataset, stage),
-        "hashes": read.hashes(),
-    }
+    read, folder = read_dataset(dataset), os.path.relpath(dataset, stage)
+    return {"name": read.manifest.name, "folder": folder, "hashes": read.hashes()}
 
 
 def parameter(name, value, half_width=None, unit="", **more):

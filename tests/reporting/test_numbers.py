@@ -26,15 +26,12 @@ def test_value_and_interval_end_at_the_same_digit(value, low, high, shown):
     assert with_interval(value, low, high) == shown
 
 
-@pytest.mark.parametrize("bad", [None, math.nan, math.inf])
-def test_an_interval_that_is_not_known_is_a_dash(bad):
-    assert with_interval(1.579, 1.5, bad) == ("1.579", ABSENT)
-    assert plain(bad) == ABSENT
-
-
-def test_plain_numbers_have_significant_digits():
+def test_plain_numbers_have_significant_digits_and_what_is_not_known_is_a_dash():
     shown = {0.125: "0.1250", 1591.4: "1591", 67858.4: "67860", 0.0: "0.000", -2.0: "−2.000"}
     assert {value: plain(value) for value in shown} == shown
+    for bad in (None, math.nan, math.inf):
+        assert with_interval(1.579, 1.5, bad) == ("1.579", ABSENT)
+        assert plain(bad) == ABSENT
 
 
 @pytest.mark.parametrize(

@@ -21,11 +21,11 @@ def folder(tmp_path_factory):
     """What two models predict of two runs."""
     root = tmp_path_factory.mktemp("prediction")
     dataset = make_dataset(root / "new", ("a", HOSTILE), name="bench & <b>", samples=1000)
-    for name, friction in (("smooth", 0.125), ("rough", 0.2)):
-        estimates = (Estimate("friction_coefficient", friction, "1", "given"),)
-        write_model(root / f"{name}.toml", Model(estimates), version="0", dataset={})
-    models = [root / "smooth.toml", root / "rough.toml"]
-    return tsas.predict(models, dataset, out=root / "predicted", fit_own=False).out
+    models = {root / "smooth.toml": 0.125, root / "rough.toml": 0.2}
+    for path, friction in models.items():
+        one = Model((Estimate("friction_coefficient", friction, "1", "given"),))
+        write_model(path, one, version="0", dataset={})
+    return tsas.predict([*models], dataset, out=root / "predicted", fit_own=False).out
 
 
 @pytest.fixture(scope="module")
@@ -37,8 +37,7 @@ def test_the_loops_are_drawn_under_the_tables(folder, text):
     said = [label for label in Outline(text).labels if "measured and predicted" in label]
     assert len(said) == 4  # f_in and f_out of two runs
     assert any(re.search(r"RMSE: A [\d.]+ N, B [\d.]+ N", label) for label in said)
-    made = section(read_inputs([folder]))
-    captions = [table.caption for table in made.tables]
+    captions = [table.caption for table in section(read_inputs([folder])).tables]
     assert captions == ["Models", "Predictions", "Ranges that the models were fitted to"]
 
 
@@ -75,7 +74,4 @@ def test_a_file_that_says_less_makes_a_page_all_the_same(tmp_path):
         content |= {key: [] for key in ("channels", "ranges", "findings", "notes", "models")}
     assert section(read_inputs([folder])).groups == ()
     assert "Predicted, not fitted" in page(read_inputs([folder]))
-
-
-def test_without_predictions_there_is_no_section(folder):
-    assert section(read_inputs([folder.parent / "new"])) is None
+    assert section(read_inputs([dataset])) is None  # without predictions

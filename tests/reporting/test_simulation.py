@@ -19,9 +19,8 @@ from tsas_cli.support.files import sha256_of
 @pytest.fixture
 def diagnosed(dataset, tmp_path):
     folder = made_diagnoses.make_diagnosis(dataset, tmp_path / "diagnose", "named")
-    length = Estimate(
-        "free_tendon.proximal_length_mm", 152.0, "mm", "fitted", None, 3.1, 145.9, 158.1
-    )
+    name = "free_tendon.proximal_length_mm"
+    length = Estimate(name, 152.0, "mm", "fitted", None, 3.1, 145.9, 158.1)
     fixed = Estimate("x_out_zero_mm", 0.0, "mm", "given", "a")
     write_model(folder / EXTENDED_MODEL, Model((length, fixed)), version="0.1.0", dataset={})
     return made_diagnoses.write_predictions(dataset, folder, made_diagnoses.off_at_the_end)
@@ -56,14 +55,10 @@ def test_a_simulation_of_the_extended_model_is_not_shown_twice(dataset, diagnose
 def test_the_parameters_of_the_extended_model_stand_with_interval_unit_and_bound(
     dataset, diagnosed, tmp_path
 ):
-    inputs = read_inputs(
-        [diagnosed, by_hand.make_calibration(dataset, tmp_path / "cal", ["Mind."])]
-    )
-    made = parameters_section(inputs)
-    assert [table.caption for table in made.tables] == [
-        "The extended model",
-        "The calibrated model",
-    ]
+    calibrated = by_hand.make_calibration(dataset, tmp_path / "cal", ["Mind."])
+    made = parameters_section(read_inputs([diagnosed, calibrated]))
+    captions = [table.caption for table in made.tables]
+    assert captions == ["The extended model", "The calibrated model"]
     length = ("free_tendon.proximal_length_mm", "all", "152.0", "145.9 to 158.1", "mm", "fitted")
     assert made.tables[0].rows == ((*length, "no"),)  # x_out was not recorded
     assert made.points == ("Mind.",)

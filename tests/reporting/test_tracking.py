@@ -1,6 +1,7 @@
 import re
 import shlex
 from html import unescape
+from itertools import product
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -8,6 +9,7 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+from tests.refusals import refusal
 from tests.reporting.made_folders import edited
 from tests.reporting.made_loops import make_tracking
 from tests.reporting.test_page import Outline, cells, commands_of, headings
@@ -16,7 +18,6 @@ from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.reporting.tracking.runs import TimeCurve, draw_panels
-from tsas_cli.support.errors import InputError
 
 PICTURES = ("force", "error", "phase", "adaptation", "effort")
 
@@ -109,10 +110,10 @@ def test_one_controller_under_one_condition_is_a_page_too(spoiled):
     assert "over 5 seeds" not in text
 
 
-@pytest.mark.parametrize("what", ["force", "error", "phase", "effort"])
-def test_each_controller_is_drawn_in_its_own_colour(whole, what):
-    for start in (f'"tracking-{what}-0-', f'"tracking-{what}-1-'):
-        (shown,) = (s for s in re.findall(r"<svg.*?</svg>", whole, re.DOTALL) if start in s)
+def test_each_controller_is_drawn_in_its_own_colour(whole):
+    pictures = re.findall(r"<svg.*?</svg>", whole, re.DOTALL)
+    for what, condition in product(("force", "error", "phase", "effort"), "01"):
+        (shown,) = (s for s in pictures if f'"tracking-{what}-{condition}-' in s)
         assert "stroke: var(--first)" in shown
         assert "stroke: var(--third)" in shown
 
@@ -160,18 +161,16 @@ def test_a_run_that_lacks_a_column_is_refused(tmp_path, column):
     folder = make_tracking(tmp_path / "tracked")
     path = folder / "runs" / "adaptive-sliding-mode-disturbed.parquet"
     pq.write_table(pq.read_table(path).drop_columns([column]), path)
-    with pytest.raises(InputError, match=r"adaptive-sliding-mode-disturbed\.parquet"):
-        page(read_inputs([folder]))
+    assert path.name in refusal(lambda: page(read_inputs([folder])))
 
 
 def test_runs_that_are_not_beside_the_file_are_refused(tmp_path):
     folder = make_tracking(tmp_path / "tracked")
     (tmp_path / "elsewhere").mkdir()
     (folder / "dataset.toml").rename(tmp_path / "elsewhere" / "dataset.toml")
-    with pytest.raises(InputError, match=r"no dataset.toml here"):
-        read_inputs([folder])
-    with pytest.raises(InputError, match="its runs are not in the dataset"):
-        read_inputs([folder, tmp_path / "elsewhere"])
+    assert "no dataset.toml here" in refusal(read_inputs, [folder])
+    line = refusal(read_inputs, [folder, tmp_path / "elsewhere"])
+    assert "its runs are not in the dataset" in line
 
 
 @pytest.mark.usefixtures("undrawn")

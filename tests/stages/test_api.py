@@ -12,6 +12,7 @@ from tests.commands.test_ingest import CSV, MAP
 from tests.counted import Counted
 from tests.rigs import dataset_of, recorded
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import read_model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording
@@ -97,8 +98,6 @@ def test_chosen_runs_are_those_that_count(folder):
     assert [run.id for run in tsas.read(folder, runs=["a"]).runs] == ["a"]
     with pytest.raises(tsas.InputError, match="known are a"):
         tsas.read(folder, runs="A")
-    with pytest.raises(tsas.InputError, match="there is no run 'b'"):
-        tsas.read(folder)["b"]
 
 
 @pytest.mark.parametrize(
@@ -120,11 +119,9 @@ def test_the_summary_is_what_is_written(request, folder, result, file):
     [("calibrated", "calibrate/model.toml"), ("diagnosed", "diagnose/model-extended.toml")],
 )
 def test_the_model_is_what_is_written(request, folder, result, file):
-    model = request.getfixturevalue(result).model
+    model, again = request.getfixturevalue(result).model, read_model(folder.parent / file)
     order = {"key": lambda e: (e.name, e.run or "")}
-    assert sorted(read_model(folder.parent / file).estimates, **order) == sorted(
-        model.estimates, **order
-    )
+    assert sorted(again.estimates, **order) == sorted(model.estimates, **order)
 
 
 @pytest.mark.parametrize(("result", "run"), [("simulated", "a"), ("tracked", "pid-undisturbed")])
@@ -219,12 +216,10 @@ def test_files_become_a_dataset(tmp_path):
 
 def test_two_models_in_memory_are_compared(calibrated):
     """Half the friction: a half less, and nothing else differs."""
-    model = calibrated.model
-    halved = tuple(
-        Estimate(e.name, 0.5 * e.value, e.unit, "given") if e.name == "friction_coefficient" else e
-        for e in model.estimates
-    )
-    pairs = tsas.compare(model, replace(model, estimates=halved)).record.parameters
+    friction = calibrated.model.estimate("friction_coefficient")
+    half = Estimate(friction.name, 0.5 * friction.value, friction.unit, "given")
+    halved = Model((half,)).over(calibrated.model)
+    pairs = tsas.compare(calibrated.model, halved).record.parameters
     ratios = {pair.name: pair.b.value / pair.a.value for pair in pairs if pair.a and pair.b}
     assert ratios.pop("friction_coefficient") == 0.5
     assert set(ratios.values()) == {1.0}

@@ -1,14 +1,19 @@
-"""Errors in the recordings stop `calibrate` and `diagnose`, unless they are accepted."""
+"""Errors in the recordings stop `calibrate` and `diagnose`, unless they are accepted.
+
+What cannot be judged without a channel is said once, with the runs that lack it.
+"""
 
 import numpy as np
 import pytest
 
 import tsas_cli as tsas
+from tests.counted import Counted
 from tests.rigs import dataset_of, recorded
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import DatasetSource, OfDataset
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
+from tsas_cli.stages.check import unrecorded
 from tsas_studies.challenge.rig.tendon import Rig
 
 RIG = Rig(cells=60)
@@ -42,14 +47,13 @@ def test_an_accepted_error_stands_in_the_result_and_on_top_of_the_page(pounds, t
     assert "--despite unit" in made[made.index('id="repeat"') :]
 
 
-def test_accepting_one_error_accepts_no_other(pounds):
-    with pytest.raises(tsas.InputError, match=r"--despite unit$"):
-        tsas.calibrate(pounds, despite=["sign", "clipped"])
-
-
-def test_a_code_that_no_check_has_is_refused(pounds):
-    with pytest.raises(tsas.InputError, match=r"did you mean unit\?"):
-        tsas.calibrate(pounds, despite="unti")
+@pytest.mark.parametrize(
+    ("despite", "message"),
+    [(["sign", "clipped"], "--despite unit$"), ("unti", r"did you mean unit\?")],
+)
+def test_only_an_error_that_is_accepted_and_known_is(pounds, despite, message):
+    with pytest.raises(tsas.InputError, match=message):
+        tsas.calibrate(pounds, despite=despite)
 
 
 def held(columns, rows):
@@ -114,3 +118,27 @@ def test_of_many_runs_the_number_is_said(values, said):
     ]
     source = DatasetSource(name="bench", hashes={})
     assert OfDataset(stage="check", dataset=source, warnings=found).warned() == [said]
+
+
+ALL = ("time_s", "x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+
+
+def test_a_missing_channel_and_one_that_some_runs_lack():
+    assert list(unrecorded([ALL, ALL])) == []
+    proximal, distal = unrecorded([ALL[:3] + ALL[4:], ALL[:3]])
+    assert proximal.startswith("f_in is not recorded: without it, the level of friction rests on")
+    assert distal.startswith("f_out is not recorded in 1 of 2 runs: without it, the tension at")
+
+
+def test_a_stage_says_it_before_it_is_done(dataset):
+    class Heard(Counted):
+        said = ()
+
+        def say(self, sentence):
+            self.said += ((sentence, self.done),)
+
+    heard = Heard()
+    tsas.calibrate(dataset, step=heard)
+    assert any(
+        s.startswith("f_out is not recorded") and done < heard.done for s, done in heard.said
+    )

@@ -132,9 +132,9 @@ def test_what_is_wrong_is_reported_before_anything_is_done(rigs, more, message):
 
 def test_names_of_the_closed_loop_are_not_those_of_recordings(rigs):
     assert {"total_bend_rad", "sheath_length_mm"} <= set(CONDITIONS)
+    conditions = ("total_bend_rad", "sheath_length_mm")
     for name, message in (
-        ("total_bend_rad", "unknown name total_bend_rad; did you mean settings.rig"),
-        ("sheath_length_mm", "unknown name sheath_length_mm; did you mean settings.rig"),
+        *((name, f"unknown name {name}; did you mean settings.rig") for name in conditions),
         ("zzz", "known are model, .*, and the parameters of a model: see `tsas"),
         ("settings.reference.mean", "settings: unknown key reference.mean .*mean_N"),
     ):

@@ -44,6 +44,16 @@ def write_csv(path: Path, columns: list[tuple[str, np.ndarray]], *, delimiter=",
     return path
 
 
+def write_run(path: Path, **names: str):
+    """Write some channels of the run under other names."""
+    return write_csv(path, [(name, run()[channel]) for channel, name in names.items()])
+
+
+def sources(path: Path) -> dict[str, object]:
+    """Return the source that is guessed for each channel."""
+    return {c.name: c.entry.get("source") for c in propose([path]).channels}
+
+
 def verdicts(path: Path, truth: dict[str, str | int]) -> dict[str, str]:
     """Return for each channel of the truth or of the guess: right, open, missing or wrong.
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tests.recordings.guess.rig_files import judged, run, write_csv
+from tests.recordings.guess.rig_files import judged, run, sources, write_csv, write_run
 from tsas_cli.recordings.guess.proposal import propose
 
 
@@ -49,10 +49,8 @@ def test_the_unit_of_a_clock_follows_from_its_steps_and_its_date(path, step, fir
 
 @pytest.mark.parametrize(("every_s", "unit"), [(0.01, "s"), (1.001, "?")])
 def test_a_clock_of_a_slow_logger_is_asked_about(path, every_s, unit):
-    columns = run(step=40)
-    columns["time_s"] = np.arange(columns["x_in_mm"].size) * every_s
-    named = [("t", columns["time_s"]), ("x_in [mm]", columns["x_in_mm"])]
-    write_csv(path, [*named, ("f_in [N]", columns["f_in_N"])])
+    named = [(f"{n} [{n[5:]}]", run(step=40)[n]) for n in ("x_in_mm", "f_in_N")]
+    write_csv(path, [("t", np.arange(named[0][1].size) * every_s), *named])
     assert propose([path]).channels[0].entry["unit"] == unit
 
 
@@ -74,8 +72,6 @@ def test_a_number_of_the_stroke_is_no_clock(path):
 
 @pytest.mark.parametrize("name", ["tout", "Tout", "T out"])
 def test_a_tension_by_its_name_that_rises_evenly_is_a_clock(path, name):
-    columns = [(n, v) for n, v in run().items() if n in ("x_in_mm", "f_in_N")]
-    write_csv(path, [(name, run()["time_s"]), *columns])
-    proposal = propose([path])
-    assert proposal.channels[0].entry["source"] == name
-    assert "f_out_N" not in {c.name for c in proposal.channels}
+    write_run(path, time_s=name, x_in_mm="x_in_mm", f_in_N="f_in_N")
+    assert sources(path)["time_s"] == name
+    assert "f_out_N" not in sources(path)

@@ -7,7 +7,7 @@ import pytest
 from asammdf import MDF, Signal
 from scipy.io import savemat
 
-from tests.recordings.guess.rig_files import CHANNELS, run
+from tests.recordings.guess.rig_files import CHANNELS, run, sources
 from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.writing import write_parquet
@@ -72,17 +72,13 @@ def save_mdf(path):
 def test_every_format_is_opened(tmp_path, suffix, save, source):
     path = tmp_path / f"a{suffix}"
     save(path)
-    proposal = propose([path])
-    assert {c.name: c.entry["source"] for c in proposal.channels} == {
-        name: source(name) for name in CHANNELS
-    }
-    assert proposal.questions == {}
+    assert sources(path) == {name: source(name) for name in CHANNELS}
+    assert propose([path]).questions == {}
 
 
 def test_channels_of_two_clocks_are_resampled(tmp_path):
     save_mdf(tmp_path / "a.mf4")
-    proposal = propose([tmp_path / "a.mf4"])
-    sources = {c.name: c.entry["source"] for c in proposal.channels}
-    assert (sources["f_out_N"], sources["time_s"]) == ("f_out", "time")
+    proposal, found = propose([tmp_path / "a.mf4"]), sources(tmp_path / "a.mf4")
+    assert (found["f_out_N"], found["time_s"]) == ("f_out", "time")
     assert proposal.read["resample"][0] is True
     assert len(proposal.questions) == 2

@@ -8,7 +8,16 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.recordings.guess.rig_files import CHANNELS, in_unit, judged, run, verdicts, write_csv
+from tests.recordings.guess.rig_files import (
+    CHANNELS,
+    in_unit,
+    judged,
+    run,
+    sources,
+    verdicts,
+    write_csv,
+    write_run,
+)
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest_map import read_map
@@ -75,7 +84,7 @@ def test_a_row_of_units_a_decimal_comma_a_preamble_and_an_old_encoding(tmp_path)
     proposal = propose([path])
     assert proposal.read["encoding"][0] == "cp1252"
     assert proposal.read["skip_lines"][0] in (1, 2, 3)
-    assert {c.name: c.entry["source"] for c in proposal.channels} == truth
+    assert sources(path) == truth
     assert proposal.questions == {}
 
 
@@ -85,33 +94,32 @@ def test_chinese_names_in_the_encoding_of_windows_are_understood(path):
     proposal = propose([path])
     assert proposal.read["encoding"][0] == "gb18030"
     assert proposal.questions == {}
-    assert {c.name for c in proposal.channels} == set(CHANNELS)
+    assert set(sources(path)) == set(CHANNELS)
 
 
 @pytest.mark.parametrize(
-    ("channels", "names", "asked"),
+    ("names", "asked"),
     [
-        (("time_s", "x_in_mm", "f_out_N"), ("t [s]", "drive [mm]", "cell out [N]"), "f_in_N"),
-        (("time_s", "x_out_mm", "f_in_N"), ("t [s]", "tip [mm]", "cell in [N]"), "x_in_mm"),
-        (("time_s", "x_in_mm", "x_out_mm"), ("t [s]", "motor [rpm]", "drive [mm]"), None),
+        ({"x_in_mm": "drive [mm]", "f_out_N": "cell out [N]"}, "f_in_N"),
+        ({"x_out_mm": "tip [mm]", "f_in_N": "cell in [N]"}, "x_in_mm"),
     ],
 )
-def test_x_in_or_f_in_that_no_column_is_left_for_is_asked(path, channels, names, asked):
-    write_csv(path, [(name, run()[c]) for c, name in zip(channels, names, strict=True)])
-    proposal = propose([path])
-    if asked is None:  # a drive alone was recorded
-        assert "f_in_N" not in {channel.name for channel in proposal.channels}
-        return
+def test_x_in_or_f_in_that_no_column_is_left_for_is_asked(path, names, asked):
+    proposal = propose([write_run(path, time_s="t [s]", **names)])
     question = proposal.questions[f"columns.{asked}.source"]
     assert "delete this table" in question
     assert "is it in another file" in question
     assert proposal.is_a_recording
 
 
+def test_of_a_drive_alone_no_force_is_asked_for(path):
+    write_run(path, time_s="t [s]", x_in_mm="motor [rpm]", x_out_mm="drive [mm]")
+    assert "f_in_N" not in sources(path)
+
+
 def test_a_force_that_one_cell_spoils_is_asked_for_by_its_name(path):
-    channels = {"t [s]": "time_s", "drive [mm]": "x_in_mm", "tip [mm]": "x_out_mm"}
-    names = [*channels, "force in [N]"]
-    write_csv(path, [(name, run()[channels.get(name, "f_in_N")]) for name in names])
+    names = {"time_s": "t [s]", "x_in_mm": "drive [mm]", "x_out_mm": "tip [mm]"}
+    write_run(path, **names, f_in_N="force in [N]")
     rows = [f"{row},a" for row in path.read_text().splitlines()]
     rows[0] = rows[0].replace(",a", ",note")
     rows[-1] = ",".join([*rows[-1].split(",")[:3], "ERR", "a"])
@@ -123,9 +131,8 @@ def test_a_force_that_one_cell_spoils_is_asked_for_by_its_name(path):
 
 
 def test_a_reference_may_stand_for_a_drive_that_was_not_recorded(path):
-    channels = ("time_s", "x_in_mm", "x_out_mm", "f_in_N")
-    names = ("t [s]", "desired [mm]", "tip [mm]", "cell in [N]")
-    write_csv(path, [(name, run()[c]) for c, name in zip(channels, names, strict=True)])
+    names = {"time_s": "t [s]", "x_in_mm": "desired [mm]", "x_out_mm": "tip [mm]"}
+    write_run(path, **names, f_in_N="cell in [N]")
     (x_in,) = (c for c in propose([path]).channels if c.name == "x_in_mm")
     assert x_in.certainty == "open"
     assert x_in.candidates == ("desired [mm]",)
@@ -235,15 +242,10 @@ def test_of_public_recordings_nothing_is_guessed_wrong(name, at_least):
 
 
 def test_a_motor_position_without_a_unit_is_that_of_the_drive(path):
-    r = run()
-    named = [("Time [s]", r["time_s"]), ("Motor position", r["x_in_mm"])]
-    others = [("Spool position", r["x_in_mm"]), ("Knob position", r["x_out_mm"])]
-    write_csv(path, [*named, others[1]])
-    found = {c.name: c.entry["source"] for c in propose([path]).channels}
-    assert found["x_in_mm"] == "Motor position"
-    assert found["x_out_mm"] == "Knob position"
-    assert "motor_angle_rad" not in found
-    write_csv(path, [*named, *others])
-    found = {c.name: c.entry["source"] for c in propose([path]).channels}
-    assert found["motor_angle_rad"] == "Motor position"
-    assert found["x_in_mm"] == "Spool position"
+    names = {"time_s": "Time [s]", "x_in_mm": "Motor position", "x_out_mm": "Knob position"}
+    assert sources(write_run(path, **names)).items() >= names.items()
+    assert "motor_angle_rad" not in sources(path)
+    columns = [(name, run()[channel]) for channel, name in names.items()]
+    write_csv(path, [*columns, ("Spool position", run()["x_in_mm"])])
+    angle = {"motor_angle_rad": "Motor position", "x_in_mm": "Spool position"}
+    assert sources(path).items() >= angle.items()

@@ -25,5 +25,11 @@ def of(check, *given, **named):
     return [f for f in check(fine(*given, **named)) if isinstance(f, Finding)]
 
 
+def are(told, found, *said):
+    """Hold that there are so many findings, of which each says all that."""
+    assert len(told) == found
+    assert all(part in f.sentence for f in told for part in said)
+
+
 X = np.interp(np.arange(N), [0, 100, 200, 300, 399], [0.0, 10.0, 0.0, 10.0, 0.0])
 WAY = np.sign(np.gradient(X))

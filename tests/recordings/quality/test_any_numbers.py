@@ -1,14 +1,12 @@
 """Whatever numbers a recording holds, the checks end with sentences."""
 
 import numpy as np
-import pyarrow as pa
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality import check_dataset
-from tsas_cli.recordings.writing import write_dataset
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 NAMES = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "motor_speed_rpm")
 RAW = {
@@ -40,10 +38,8 @@ def test_the_checks_never_fail(tmp_path_factory, shapes, rows, load, ordered, se
     rng = np.random.default_rng(seed)
     time = np.arange(rows) * 0.01 if ordered else rng.standard_normal(rows)
     data = {name: RAW[shape](rng, rows) for name, shape in zip(NAMES, shapes, strict=True)}
-    entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, "load": load}
-    manifest = Manifest(format=1, name="n", kind="measured", run=[entry])
-    folder = tmp_path_factory.mktemp("any")
-    write_dataset(folder, manifest, {"a": pa.table({"time_s": time} | data)})
+    run = Run("a", {"time_s": time} | data, {"load": load})
+    folder = write_dataset(tmp_path_factory.mktemp("any"), [run], data_sheet={})
     report = check_dataset(read_dataset(folder))
     assert all(np.isfinite(f.first_s) for f in report.findings if f.first_s is not None)
     assert not any(word in f.sentence for f in report.findings for word in ("nan", " inf"))

@@ -120,29 +120,25 @@ def with_load_friction():
 
 
 @pytest.mark.parametrize(
-    "measured",
+    ("measured", "load"),
     [
-        GOOD,
-        ENCODER,
+        (GOOD, "spring"),
+        (ENCODER, "spring"),
         *(
-            changed(f_in_N=gain * GOOD["f_in_N"] + offset)
+            (changed(f_in_N=gain * GOOD["f_in_N"] + offset), "spring")
             for gain in (0.95, 1.05)
             for offset in (-5.0, 5.0)
         ),
-        with_load_friction(),
-        changed(f_out_N=GOOD["f_out_N"] + 0.01 * GOOD["x_out_mm"] ** 2),  # a curved spring
-        columns(Bench(amplitude_mm=1.0, noise_mm=0.001, noise_N=0.02)),
+        (with_load_friction(), "spring"),
+        (changed(f_out_N=GOOD["f_out_N"] + 0.01 * GOOD["x_out_mm"] ** 2), "spring"),  # a curved one
+        (columns(Bench(amplitude_mm=1.0, noise_mm=0.001, noise_N=0.02)), "spring"),
         # A spring that is a little off its data sheet:
-        GOOD | {name: 1.2 * GOOD[name] for name in ("f_in_N", "f_out_N")},
+        (changed(**{name: 1.2 * GOOD[name] for name in ("f_in_N", "f_out_N")}), "spring"),
+        (columns(Bench(load="displacement", noise_mm=0.0)), "displacement"),  # held, and not stuck
     ],
 )
-def test_what_is_no_fault_is_left_in_peace(measured):
-    assert remarks(measured) == []
-
-
-def test_a_load_that_holds_the_distal_end_is_not_stuck():
-    clamped = columns(Bench(load="displacement", noise_mm=0.0))
-    assert remarks(clamped, load="displacement") == []
+def test_what_is_no_fault_is_left_in_peace(measured, load):
+    assert remarks(measured, load=load) == []
 
 
 def test_jitter_tells_its_size():

@@ -135,9 +135,8 @@ def test_a_spring_that_pulls_beside_the_tendon_is_no_other_unit_of_f_out():
     measured["f_in_N"] += wanted / np.median(measured["x_in_mm"]) * measured["x_in_mm"]
     assert "unit" not in complaints(measured)
     # Where no stiffness of the load is stated it cannot be told apart.
-    subject = trial(measured)
     unit = next(check for check in RUN_CHECKS if check.code == "unit")
-    assert any("pound-force" in remark.sentence for remark in unit.find(subject))
+    assert any("pound-force" in remark.sentence for remark in unit.find(trial(measured)))
 
 
 def by_steps(rate_Hz, hold_s, levels, natural=20.0, damping=0.8):
@@ -189,15 +188,19 @@ def test_a_load_that_swings_between_rests_is_behind_no_median_filter():
     assert "repeated-values" not in complaints(measured)
 
 
+def of_a_spring(time, x, step):
+    """Return what the sensors say of a drive that pulls a spring, x_in counted in steps."""
+    x_out, f_in, f_out = spring(x, time)
+    noise = 0.1 * np.random.default_rng(2).standard_normal((2, x.size))
+    positions = {"x_in_mm": counted(x, step), "x_out_mm": counted(x_out, 0.005, 0.3)}
+    return {"time_s": time, **positions, "f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
+
+
 @pytest.mark.parametrize("amplitude_mm", [2.5, 5.0])
 def test_a_smooth_motion_is_not_filtered_where_it_is_alike_in_all_parts_of_a_run(amplitude_mm):
     time = np.arange(650) / 50.0
     x = amplitude_mm * (2.0 - np.cos(np.pi * time) - np.cos(2.3 * np.pi * time))
-    x_out, f_in, f_out = spring(x, time)
-    noise = 0.1 * np.random.default_rng(2).standard_normal((2, x.size))
-    positions = {"x_in_mm": counted(x, 0.002), "x_out_mm": counted(x_out, 0.005, 0.3)}
-    forces = {"f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
-    assert "filtered" not in complaints({"time_s": time, **positions, **forces})
+    assert "filtered" not in complaints(of_a_spring(time, x, 0.002))
 
 
 @pytest.mark.parametrize("first", [0.3, 1.0])
@@ -207,11 +210,7 @@ def test_harmonics_of_a_stroke_that_repeats_are_no_noise_behind_a_filter(first):
     angle = 2.0 * np.pi * 0.97 * time
     wave = sum(0.004 * np.sin(n * angle + n * n) for n in range(2, 15))
     x = 5.0 - 5.0 * np.cos(angle + first) + wave
-    x_out, f_in, f_out = spring(x, time)
-    noise = 0.1 * np.random.default_rng(2).standard_normal((2, x.size))
-    positions = {"x_in_mm": counted(x, 5e-4), "x_out_mm": counted(x_out, 0.005, 0.3)}
-    forces = {"f_in_N": f_in + noise[0], "f_out_N": f_out + noise[1]}
-    assert "filtered" not in complaints({"time_s": time, **positions, **forces})
+    assert "filtered" not in complaints(of_a_spring(time, x, 5e-4))
 
 
 @pytest.mark.parametrize("felt", [True, False])
@@ -250,13 +249,8 @@ def test_the_load_of_a_slack_tendon_is_not_clipped(noise):
     x_out = np.maximum(x, -6.0)
     f_out = 12.0 + 2.0 * x_out + 0.05 * random[1]
     f_in = (12.0 + 2.0 * x_out) * np.where(np.gradient(x) > 0.0, 1.2, 1.0 / 1.2)
-    measured = {
-        "time_s": time,
-        "x_in_mm": x,
-        "f_in_N": f_in + 0.05 * random[0],
-        "x_out_mm": x_out + 0.005 * random[2],
-        "f_out_N": f_out,
-    }
+    measured = {"time_s": time, "x_in_mm": x, "x_out_mm": x_out + 0.005 * random[2]}
+    measured |= {"f_in_N": f_in + 0.05 * random[0], "f_out_N": f_out}
     assert "clipped" not in complaints(measured)
     stopped = measured | {"f_out_N": f_out + 5.0, "f_in_N": measured["f_in_N"] + 5.0}
     assert "clipped" in complaints(stopped)  # taut: the load is at a stop, or its sensor at an end

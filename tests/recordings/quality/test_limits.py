@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import trial
-from tests.recordings.quality.even_runs import FINE, WAY, WHITE, N, X, fine, of
-from tsas_cli.recordings.quality.checks import (
-    extremes,
-    motion,
-    pairs,
-)
+from tests.recordings.quality.even_runs import FINE, WAY, WHITE, N, X, are, fine, of
+from tsas_cli.recordings.quality.checks import extremes, motion, pairs
 from tsas_cli.recordings.quality.finding import Finding
 
 
@@ -27,8 +23,7 @@ def test_steps_are_coarse_from_a_500th_of_the_span_on(step, said):
         assert bool(of(extremes.quantised, sizes=sizes, f_out_N=WHITE)) == found
     forced = of(extremes.quantised, sizes={"f_out_N": size}, load="force", f_out_N=WHITE)
     assert [f.severity for f in forced] == ["note"] * bool(said)
-    if told:
-        assert f"steps of {step:.4g} N, {10 * step:.2g} % of its range of 10 N" in told[0].sentence
+    are(told, bool(said), f"steps of {step:.4g} N, {10 * step:.2g} % of its range of 10 N")
 
 
 @pytest.mark.parametrize(
@@ -44,12 +39,9 @@ def test_steps_are_coarse_from_a_500th_of_the_span_on(step, said):
 )
 def test_a_tension_is_negative_beyond_what_a_slack_tendon_reads(low, high, noise_N, found):
     values = np.where(np.arange(N) < 100, low, high)
-    told = of(
-        motion.negative_tension, sizes={"f_in_N": replace(FINE, noise=noise_N)}, f_in_N=values
-    )
-    assert len(told) == found
-    if found and high > 0.0:
-        assert "negative in 25 % of the samples" in told[0].sentence
+    sizes = {"f_in_N": replace(FINE, noise=noise_N)}
+    told = of(motion.negative_tension, sizes=sizes, f_in_N=values)
+    are(told, found, *(["negative in 25 % of the samples"] if high > 0.0 else []))
 
 
 @pytest.mark.parametrize(("rig", "found"), [({}, 1), ({"antagonist_preload_N": 20.0}, 0)])
@@ -66,21 +58,16 @@ def test_tensions_are_exchanged_where_friction_is_negative_by_a_thirtieth(fricti
     f_out = 20.0 + X + 0.3 * np.sin(0.7 * np.arange(N))
     f_in = 3.0 + 1.5 * f_out + 0.5 * friction * WAY
     told = of(motion.exchanged, x_in_mm=X, f_in_N=f_in, f_out_N=f_out)
-    assert len(told) == found
-    assert all(f"f_in_N is {-friction:.3g} N lower in contraction" in f.sentence for f in told)
+    are(told, found, f"f_in_N is {-friction:.3g} N lower in contraction")
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.77, 0), (0.79, 2)])
 def test_motion_is_steady_where_the_load_moves_in_a_fifth_of_a_stroke(part, found):
     """It rests over a part of each stroke."""
-    x_out = np.where(
-        WAY > 0.0, np.maximum(X - 10.0 * part, 0.0), np.minimum(X, 10.0 * (1.0 - part))
-    )
-    told = of(motion.no_steady_motion, x_in_mm=X, x_out_mm=x_out)
-    assert len(told) == found
-    assert [f.sentence.split(":")[0] for f in told] == [
-        f"no steady {way}" for way in ("contraction", "loosening")
-    ][:found]
+    up, down = np.maximum(X - 10.0 * part, 0.0), np.minimum(X, 10.0 * (1.0 - part))
+    told = of(motion.no_steady_motion, x_in_mm=X, x_out_mm=np.where(WAY > 0.0, up, down))
+    both = ["no steady contraction", "no steady loosening"]
+    assert [f.sentence.split(":")[0] for f in told] == both[:found]
 
 
 def test_the_share_of_a_stroke_in_which_the_load_moves():
@@ -89,13 +76,18 @@ def test_the_share_of_a_stroke_in_which_the_load_moves():
         assert motion._moving(one, "x_out_mm", one.strokes[0]) == pytest.approx(share, abs=0.011)
 
 
+def turning(samples):
+    """Return time, x_in, its direction, and a load that rests while the drive turns."""
+    t = 0.002 * np.arange(samples)
+    x = 5.0 + 5.0 * np.interp(np.mod(t, 2.0), [0.0, 1.0, 2.0], [-1.0, 1.0, -1.0])
+    way = np.where(np.mod(t, 2.0) < 1.0, 1.0, -1.0)
+    return t, x, way, np.where(way > 0.0, np.maximum(x - 2.0, 0.0), np.minimum(x, 8.0))
+
+
 @pytest.mark.parametrize("size", [0.5, -0.5])
 def test_an_interference_is_the_jump_at_each_reversal_with_the_drive(size):
     """The load rests while the drive turns, on a straight line before."""
-    t = 0.002 * np.arange(3001)
-    x = 5.0 + 5.0 * np.interp(np.mod(t, 2.0), [0.0, 1.0, 2.0], [-1.0, 1.0, -1.0])
-    way = np.where(np.mod(t, 2.0) < 1.0, 1.0, -1.0)
-    load = np.where(way > 0.0, np.maximum(x - 2.0, 0.0), np.minimum(x, 8.0))
+    t, x, way, load = turning(3001)
     found = fine(t, x_in_mm=x, f_out_N=load + 0.5 * size * way)
     jumps = motion._jumps(found, found.channels["f_out_N"], 0.0)
     assert jumps == pytest.approx(np.full(5, size), abs=1e-9)
@@ -104,13 +96,9 @@ def test_an_interference_is_the_jump_at_each_reversal_with_the_drive(size):
 @pytest.mark.parametrize(("rests", "said"), [(4, True), (3, False)])
 def test_an_interference_shows_at_half_of_the_reversals(rests, said):
     """Of seven; from some time on the load follows the drive at once, so that no jump is seen."""
-    rng = np.random.default_rng(3)
-    t = 0.002 * np.arange(4001)
-    x = 5.0 + 5.0 * np.interp(np.mod(t, 2.0), [0.0, 1.0, 2.0], [-1.0, 1.0, -1.0])
-    way = np.where(np.mod(t, 2.0) < 1.0, 1.0, -1.0)
-    load = np.where(way > 0.0, np.maximum(x - 2.0, 0.0), np.minimum(x, 8.0))
+    t, x, way, load = turning(4001)
     jumping = np.where(t < rests + 0.7, load + 0.5 * way, x)
-    read = jumping + 0.01 * rng.standard_normal(t.size)
+    read = jumping + 0.01 * np.random.default_rng(3).standard_normal(t.size)
     found = replace(fine(t, x_in_mm=x, f_out_N=read), overall={})  # sizes of its own
     assert (list(motion.interference(found)) != []) == said
 
@@ -150,8 +138,7 @@ def test_a_tension_is_coupled_to_ac_where_its_mean_falls_to_a_seventh_of_its_spa
     swing = 3.0 * (-1.0) ** np.arange(N)
     f_in = np.where(np.arange(N) < 150, 6.0, 10.0 * late) + swing
     told = of(extremes.ac_coupled, x_in_mm=X, f_in_N=f_in, preload_N=25.0)
-    assert len(told) == found
-    assert all(f"a mean of {10.0 * late:.2g} N" in f.sentence for f in told)
+    are(told, found, f"a mean of {10.0 * late:.2g} N")
 
 
 @pytest.mark.parametrize("gain", [1.5, -0.5])
@@ -189,12 +176,8 @@ def test_a_delay_is_what_follows_the_speed_beside_a_bent_spring_and_friction(del
 def test_a_noisy_channel_is_stuck_that_misses_twenty_updates(held, found):
     f_in = 2.0 * X + 0.1 * WHITE
     f_in[40 : 40 + held] = f_in[40]
-    told = of(
-        extremes.stuck,
-        sizes={"f_in_N": replace(FINE, highest=30.0, lowest=-9.0)},
-        x_in_mm=X,
-        f_in_N=f_in,
-    )
+    sizes = {"f_in_N": replace(FINE, highest=30.0, lowest=-9.0)}
+    told = of(extremes.stuck, sizes=sizes, x_in_mm=X, f_in_N=f_in)
     assert [f.column for f in told] == ["f_in_N"] * found
     assert [f.first_s for f in told] == pytest.approx([0.4] * found)
 

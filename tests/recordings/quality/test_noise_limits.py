@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.recordings.quality.even_runs import FINE, N, of
+from tests.recordings.quality.even_runs import FINE, N, are, of
 from tsas_cli.recordings.quality.checks import noise
 from tsas_cli.recordings.quality.samples import NoiseSpectrum
 
@@ -37,9 +37,7 @@ def test_a_line_is_twenty_times_what_is_on_both_of_its_sides(line, beside, stead
 
 @pytest.mark.parametrize(("at", "found"), [(0, None), (39, None), (2, 3.0)])
 def test_a_line_without_anything_beside_it_is_none(at, found):
-    power = np.ones(40)
-    power[at] = 99.0
-    assert noise._line(spectrum(power, (at,))) == found
+    assert noise._line(spectrum(np.where(np.arange(40) == at, 99.0, 1.0), (at,))) == found
 
 
 @pytest.mark.parametrize(
@@ -79,7 +77,4 @@ def test_noise_bursts_by_four_times_in_two_blocks_and_few_of_all(times, blocks, 
     size[160 : 160 + 16 * blocks + 3] = times
     loud = (-1.0) ** np.arange(N) * size
     told = of(noise.bursts, sizes={"f_in_N": replace(FINE, noise=1.0)}, f_in_N=loud)
-    assert len(told) == found
-    assert all(
-        "rises to 4.1 times its level in 1 burst, the first at 1.6 s" in f.sentence for f in told
-    )
+    are(told, found, "rises to 4.1 times its level in 1 burst, the first at 1.6 s")

@@ -32,6 +32,12 @@ def rows_of(rows):
     return {n: v[: rows.size] if n == "time_s" else v[rows] for n, v in GOOD.items()}
 
 
+def jumping(column, size, driver="x_in_mm"):
+    """Return the recording with a channel that jumps with the direction of another one."""
+    speed = np.gradient(columns(Bench(noise_mm=0.0, noise_N=0.0))[driver], TIME)
+    return GOOD | {column: GOOD[column] + size * np.clip(speed / 0.3, -1.0, 1.0)}
+
+
 def test_the_recording_without_a_fault_is_sound():
     assert remarks(GOOD) == []
 
@@ -161,9 +167,7 @@ def test_noise_behind_the_end_of_a_range(column, level):
 )
 def test_an_interference_that_follows_the_motor(column, size, severity):
     """A mass of the load, or a delay, makes a channel jump too, against the direction."""
-    speed = np.gradient(columns(Bench(noise_mm=0.0))["x_in_mm"], TIME)
-    taken = GOOD[column] + size * np.clip(speed / 0.3, -1.0, 1.0)
-    remark = told(GOOD | {column: taken}, "interference")
+    remark = told(jumping(column, size), "interference")
     jump = number(remark, "by ", f" {column.rsplit('_', 1)[1]}")
     assert jump == pytest.approx(2.0 * abs(size), rel=0.15)
     assert remark.severity == severity
@@ -173,10 +177,7 @@ def test_an_interference_that_follows_the_motor(column, size, severity):
 
 def test_a_damped_load_jumps_by_half_of_what_an_interference_does():
     """It stops with the drive, and its force jumps again where it moves on."""
-    clean = columns(Bench(noise_mm=0.0, noise_N=0.0))
-    speed = np.gradient(clean["x_out_mm"], TIME)
-    damped = GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)
-    remark = told(GOOD | {"f_out_N": damped}, "interference")
+    remark = told(jumping("f_out_N", 0.8, driver="x_out_mm"), "interference")
     assert remark.severity == "warning"
     assert "damping of the load, or interference" in remark.sentence
 
@@ -184,11 +185,10 @@ def test_a_damped_load_jumps_by_half_of_what_an_interference_does():
 @pytest.mark.parametrize("x_out", [None, 5.0])
 def test_without_the_travel_of_the_load_a_jump_may_be_its_damping(x_out):
     """It was not recorded, or its sensor is dead."""
-    speed = np.gradient(columns(Bench(noise_mm=0.0))["x_in_mm"], TIME)
-    taken = GOOD | {"f_out_N": GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)}
-    noise = 0.01 * np.random.default_rng(5).standard_normal(N)
-    taken = {n: v for n, v in taken.items() if n != "x_out_mm"}
-    taken |= {} if x_out is None else {"x_out_mm": x_out + noise}
+    taken = jumping("f_out_N", 0.8)
+    del taken["x_out_mm"]
+    if x_out is not None:
+        taken["x_out_mm"] = x_out + 0.01 * np.random.default_rng(5).standard_normal(N)
     remark = told(taken, "interference")
     assert (remark.column, remark.severity) == ("f_out_N", "warning")
 
@@ -198,8 +198,8 @@ def test_three_jumps_that_are_alike_are_an_interference(turns, said):
     """The drive turns so often, and the load rests at three or less of these times."""
     speed = np.gradient(columns(Bench(noise_mm=0.0))["x_in_mm"], TIME)
     stop = np.flatnonzero(np.diff(np.sign(speed)) != 0.0)[turns] - 40
-    taken = GOOD | {"f_out_N": GOOD["f_out_N"] + 0.8 * np.clip(speed / 0.3, -1.0, 1.0)}
-    codes = {code for code, _ in remarks({n: v[:stop] for n, v in taken.items()})}
+    cut = {n: v[:stop] for n, v in jumping("f_out_N", 0.8).items()}
+    codes = {code for code, _ in remarks(cut)}
     assert ("interference" in codes) == said
 
 

@@ -6,23 +6,16 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import trial
-from tests.recordings.quality.even_runs import FINE, WHITE, N, fine, of
-from tsas_cli.recordings.quality.checks import (
-    clipping,
-    clock,
-    repeats,
-    rows,
-)
+from tests.recordings.quality.even_runs import FINE, WHITE, N, are, fine, of
+from tsas_cli.recordings.quality.checks import clipping, clock, repeats, rows
 
 
 @pytest.mark.parametrize(("scatter", "found"), [(0.049, False), (0.051, True)])
 def test_intervals_scatter_by_a_twentieth(scatter, found):
     interval = 0.01 * (1.0 + scatter * (-1.0) ** np.arange(N - 1))
     time_s = np.concatenate(([0.0], np.cumsum(interval)))
-    told = of(clock.time_jitter, time_s)
-    assert bool(told) == found
-    if found:
-        assert "scatters by 5.1 % about 10 ms (from 9.49 to 10.51 ms)" in told[0].sentence
+    said = "scatters by 5.1 % about 10 ms (from 9.49 to 10.51 ms)"
+    are(of(clock.time_jitter, time_s), found, said)
 
 
 @pytest.mark.parametrize(
@@ -33,19 +26,15 @@ def test_rows_are_missing_beyond_one_and_a_half_intervals_at_a_few_places(longes
     interval[np.arange(1, count + 1) * 15] *= longest
     interval[30] *= 1.0 + 0.01 * (count > 1)
     told = [*clock._missing_rows(trial({"time_s": np.append(0.0, np.cumsum(interval))}))]
-    assert len(told) == found
-    if told:
-        assert f"at {count} place" in told[0].sentence
-        assert told[0].first_s == pytest.approx(0.15)
+    are(told, found, f"at {count} place")
+    assert [f.first_s for f in told] == pytest.approx([0.15] * found)
 
 
 @pytest.mark.parametrize(("copied", "found"), [(3, 0), (4, 1), (40, 1)])
 def test_a_buffer_of_four_rows_is_written_twice(copied, found):
     again = np.concatenate((WHITE[:100], WHITE[100 - copied : 400 - copied]))
-    told = of(repeats.repeated_buffer, f_in_N=again)
-    assert len(told) == found
-    if told:
-        assert f"the first has {copied} rows and begins at 1 s, row 100" in told[0].sentence
+    said = f"the first has {copied} rows and begins at 1 s, row 100"
+    are(of(repeats.repeated_buffer, f_in_N=again), found, said)
 
 
 @pytest.mark.parametrize(("repeats", "found"), [(10, 0), (11, 1)])
@@ -55,10 +44,8 @@ def test_ten_rows_may_repeat_beyond_three_times_their_chance(repeats, found):
     at = 20 * np.arange(1, repeats + 1)
     values[at] = values[at - 1]
     told = of(rows.repeated_rows, f_in_N=values)
-    assert len(told) == found
-    if told:
-        assert told[0].sentence.startswith("11 of 400 rows (2.8 %) repeat")
-        assert told[0].first_s == pytest.approx(0.2)
+    are(told, found, "11 of 400 rows (2.8 %) repeat")
+    assert [f.first_s for f in told] == pytest.approx([0.2] * found)
 
 
 @pytest.mark.parametrize(
@@ -84,8 +71,8 @@ def test_a_position_jumps_ten_times_as_far_as_elsewhere(by, other, noise_mm, ste
         x_in_mm=even + (by - 0.1) * far,
         f_in_N=(even + (0.1 * other - 0.1) * far) * (other > 0.0),
     )
-    assert len(told) == found
-    assert all(f.first_s == pytest.approx(1.5) and "row 150" in f.sentence for f in told)
+    are(told, found, "row 150")
+    assert [f.first_s for f in told] == pytest.approx([1.5] * found)
 
 
 def test_the_scatter_of_times_is_what_a_fast_motion_has_more_noise_by():
@@ -125,12 +112,9 @@ def test_five_rows_at_an_end_are_clipped_if_the_drive_moves_on_by_a_twentieth(he
     x = 5.0 + per_row * (np.abs(np.mod(np.arange(N), 80) - 40.0) - 20.0)
     f_in = x.copy()
     f_in[50 : 50 + held] = 20.0
-    told = of(
-        clipping.clipped, x_in_mm=x, f_in_N=f_in, sizes={"f_in_N": replace(FINE, highest=20.0)}
-    )
-    assert len(told) == found
-    if told:
-        assert f"highest value 20 for {0.01 * (held - 1):.3g} s in 1 plateau" in told[0].sentence
+    sizes = {"f_in_N": replace(FINE, highest=20.0)}
+    told = of(clipping.clipped, x_in_mm=x, f_in_N=f_in, sizes=sizes)
+    are(told, found, f"highest value 20 for {0.01 * (held - 1):.3g} s in 1 plateau")
 
 
 @pytest.mark.parametrize(

@@ -3,16 +3,14 @@
 from itertools import product
 
 import numpy as np
-import pyarrow as pa
 import pytest
 
 from tests.recordings.quality.bench import LOAD, Bench, columns
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
 from tsas_cli.recordings.quality import OVERLAP, RUN_CHECKS, check_dataset
-from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 PARTS = 4
 NOISY = {"rate_Hz": 200.0, "noise_mm": 0.02, "noise_N": 0.3}
@@ -23,13 +21,9 @@ def check(tmp_path, monkeypatch):
     """Return a function that checks a run in stretches of a quarter of its rows."""
 
     def checked(measured, load="spring", parts=PARTS):
-        run = Run(id="a", file="runs/a.parquet", sha256="0" * 64, load=load)
-        rig = RigSheet(load_stiffness_N_per_mm=LOAD)
-        manifest = Manifest(format=1, name="long", kind="measured", rig=rig, run=(run,))
-        folder = tmp_path / "dataset"
-        folder.mkdir(exist_ok=True)
-        table = pa.table({n: pa.array(v, from_pandas=True) for n, v in measured.items()})
-        write_dataset(folder, manifest, {"a": table})
+        sheet = {"load_stiffness_N_per_mm": LOAD}
+        runs = [Run("a", measured, {"load": load})]
+        folder = write_dataset(tmp_path / "dataset", runs, data_sheet=sheet)
         rows = measured["time_s"].size
         monkeypatch.setattr(pieces, "MOST_ROWS", rows if parts == 1 else rows // parts)
         return check_dataset(read_dataset(folder))
@@ -101,8 +95,7 @@ def test_what_is_found_in_the_whole_is_found_in_its_stretches(check, measured, h
 
 def test_rows_are_counted_from_the_beginning_of_the_run(check, measured):
     backwards(measured)
-    sentence = check(measured).findings[0].sentence
-    assert "first at row 700 " in sentence
+    assert "first at row 700 " in check(measured).findings[0].sentence
 
 
 def test_a_fault_in_one_stretch_is_reported_with_its_rows(check, measured):

@@ -7,9 +7,9 @@ import lzma
 import zipfile
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+from tests.refusals import refusal
 from tsas_cli.recordings.ingest import find_files
 from tsas_cli.recordings.readers import is_known, names, read, stem, tables
 from tsas_cli.recordings.readers.converted import _made
@@ -43,17 +43,16 @@ def write(tmp_path):
 
 @pytest.mark.parametrize("name", ["a.csv.gz", "a.CSV.bz2", "a.csv.xz", "a.csv.zip", "a.zip"])
 def test_packed_files_are_read(write, name):
-    table = read(write(name), ReadOptions(), ["t", "f"])
-    np.testing.assert_array_equal(table.columns["f"], [1, 2])
+    assert read(write(name), ReadOptions(), ["t", "f"]).columns["f"].tolist() == [1, 2]
 
 
 @pytest.mark.parametrize("name", ["a.jsonl", "a.ndjson", "a.jsonl.gz"])
 def test_lines_of_json_are_read(write, name):
     records = [{"t": i, "force": {"x": i / 2, "all": [i, 2]}} for i in range(3)]
     path = write(name, "\n\n".join(map(json.dumps, records)).encode())
-    table = read(path, ReadOptions(), ["t", "force.x", "force.all[0]"])
-    np.testing.assert_array_equal(table.columns["force.x"], [0, 0.5, 1])
-    np.testing.assert_array_equal(table.columns["force.all[0]"], [0, 1, 2])
+    columns = read(path, ReadOptions(), ["t", "force.x", "force.all[0]"]).columns
+    assert columns["force.x"].tolist() == [0, 0.5, 1]
+    assert columns["force.all[0]"].tolist() == [0, 1, 2]
 
 
 def test_an_archive_may_hold_lines_of_json(tmp_path):
@@ -127,6 +126,4 @@ def test_the_run_is_named_after_what_is_packed(tmp_path):
 def test_what_stays_unread_says_how_to_convert_it(tmp_path, monkeypatch, name, command):
     monkeypatch.chdir(tmp_path)
     (tmp_path / name).write_bytes(b"x")
-    with pytest.raises(InputError) as raised:
-        names(Path(name), ReadOptions())
-    assert command in raised.value.line()
+    assert command in refusal(names, Path(name), ReadOptions())

@@ -6,9 +6,9 @@ import lzma
 import numpy as np
 import pytest
 
+from tests.refusals import refusal
 from tsas_cli.recordings.readers import names
 from tsas_cli.recordings.readers.table import ReadOptions
-from tsas_cli.support.errors import InputError
 
 NOTHING = b"nothing that a reader knows"
 TEXT = b"t,f\n0,1\n0.5,2\n"
@@ -27,25 +27,22 @@ TEXT = b"t,f\n0,1\n0.5,2\n"
         ),
         ("a.tdms", NOTHING, "holds no channel of numbers"),
         ("a.lvm", TEXT, "has no"),
-        ("a.csv.gz", NOTHING, r"cannot be read as a \.gz file"),
-        ("a.csv.xz", lzma.compress(TEXT)[:-20], r"cannot be read as a \.xz file"),
-        ("a.zip", b"PK nothing", r"cannot be read as a \.zip file"),
-        ("a.gz", gzip.compress(TEXT, mtime=0), r"unknown file format \(no suffix\) inside"),
+        ("a.csv.gz", NOTHING, "cannot be read as a .gz file"),
+        ("a.csv.xz", lzma.compress(TEXT)[:-20], "cannot be read as a .xz file"),
+        ("a.zip", b"PK nothing", "cannot be read as a .zip file"),
+        ("a.gz", gzip.compress(TEXT, mtime=0), "unknown file format (no suffix) inside"),
         ("a.csv.gz", gzip.compress(b"", mtime=0), "is empty"),
     ],
 )
 def test_damage_is_one_line(tmp_path, name, content, message):
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(InputError, match=message) as raised:
-        names(tmp_path / name, ReadOptions())
-    assert str(tmp_path / name) in raised.value.line()
-    assert "\n" not in raised.value.line()
+    line = refusal(names, tmp_path / name, ReadOptions())
+    assert str(tmp_path / name) in line
+    assert message in line
 
 
 def test_no_advice_to_unpickle_is_passed_on(tmp_path):
     np.save(tmp_path / "a.npy", np.array([{}, {}]), allow_pickle=True)
     (tmp_path / "a.npz").write_bytes(TEXT)
     for name in ("a.npy", "a.npz"):
-        with pytest.raises(InputError) as raised:
-            names(tmp_path / name, ReadOptions())
-        assert "allow_pickle" not in raised.value.line()
+        assert "allow_pickle" not in refusal(names, tmp_path / name, ReadOptions())

@@ -6,6 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 from pyarrow.parquet import encryption
 
+from tests.refusals import refusal
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import batches, parquet, read
 from tsas_cli.recordings.readers.table import ReadOptions
@@ -21,18 +22,14 @@ def path(tmp_path):
 
 
 def test_text_and_missing_columns_are_said(path):
-    with pytest.raises(InputError, match="row 1: column w holds 'a'"):
-        read(path, ReadOptions(), ["w"])
-    with pytest.raises(InputError, match="column x is missing; there are: t, f, w"):
-        read(path, ReadOptions(), ["x"])
+    assert "row 1: column w holds 'a'" in refusal(read, path, ReadOptions(), ["w"])
+    assert "column x is missing; there are: t, f, w" in refusal(read, path, ReadOptions(), ["x"])
 
 
 @pytest.mark.parametrize("kept", [0, 3, 100, -1])
 def test_a_file_that_is_cut_short_is_one_line(path, kept):
     path.write_bytes(path.read_bytes()[:kept])
-    with pytest.raises(InputError) as error:
-        read(path, ReadOptions(), ["t"])
-    assert str(path) in error.value.line()
+    assert str(path) in refusal(read, path, ReadOptions(), ["t"])
 
 
 @pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
@@ -110,12 +107,10 @@ def test_an_encrypted_column_is_told_and_not_left_out(tmp_path, column):
     with pytest.raises(InputError, match=r"a\.parquet: holds encrypted columns; .* decrypt them"):
         read(path, ReadOptions(), [column])
     assert read(path, ReadOptions(), ["x_in_mm"]).columns["x_in_mm"].size == 500
-    with pytest.raises(InputError, match="holds encrypted columns"):
-        read_columns(path)
+    assert "holds encrypted columns" in refusal(read_columns, path)
 
 
 def test_an_encrypted_footer_is_told(tmp_path):
     path = encrypted(tmp_path / "a.parquet", ["f_in_N"], plaintext_footer=False)
     for opened in (open_file, read_columns, lambda at: read(at, ReadOptions(), ["x_in_mm"])):
-        with pytest.raises(InputError, match="holds encrypted columns"):
-            opened(path)
+        assert "holds encrypted columns" in refusal(opened, path)
