@@ -27,11 +27,11 @@ def folder(made, tmp_path):
 
 
 @pytest.fixture
-def refused(refused_here):
+def refused(refused_here, folder):
     """Call the command, which refuses in one line that holds some words."""
 
-    def call(*arguments, says):
-        line = refused_here("report", *arguments)
+    def call(*arguments, says, out="r.html"):
+        line = refused_here("report", *arguments, "--out", folder / out)
         assert [word for word in says if word not in line] == []
 
     return call
@@ -45,29 +45,25 @@ def test_one_folder_of_a_stage_is_enough_and_leads_to_the_dataset(folder, here):
 
 
 def test_an_existing_page_stays_without_force(folder, here, refused):
-    page, call = folder / "r.html", [folder / "check", "--out", folder / "r.html"]
-    assert here("report", *call)[0] == 0
+    page, check = folder / "r.html", folder / "check"
+    assert here("report", check, "--out", page)[0] == 0
     whole = page.read_text()
-    refused(*call, says=["r.html", "--force"])
-    page.write_text(whole + "edited")
-    refused(*call, "--force", says=["r.html", "has changed since it was written"])
-    assert page.read_text().endswith("edited")
+    refused(check, says=["r.html", "--force"])
+    for edited, why in ((f"{whole}edited", "has changed since"), ("mine", "not an earlier output")):
+        page.write_text(edited)
+        refused(check, "--force", says=["r.html", why])
+        assert page.read_text() == edited
     page.write_text(whole)
-    assert here("report", *call, "--force")[0] == 0
+    assert here("report", check, "--out", page, "--force")[0] == 0
     assert page.read_text() == whole
-    page.write_text("mine")
-    refused(*call, "--force", says=["r.html", "not an earlier output"])
-    assert page.read_text() == "mine"
 
 
 def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, refused):
     (folder / "other").mkdir()
     kinds = ["dataset.toml", "calibration.json", "simulation.json", "check.json"]
-    refused(folder / "other", "--out", folder / "r.html", says=["other", *kinds])
+    refused(folder / "other", says=["other", *kinds])
     assert [p.name for p in folder.iterdir() if "r.html" in p.name] == []
-    refused(
-        folder / "nowhere", "--out", folder / "r.html", says=["nowhere: does not exist", *kinds]
-    )
+    refused(folder / "nowhere", says=["nowhere: does not exist", *kinds])
 
 
 @pytest.mark.parametrize(
@@ -82,30 +78,26 @@ def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, refu
 def test_what_has_changed_is_refused(folder, refused, shown, file, content, says):
     path = folder / file
     path.write_bytes(path.read_bytes() + b"\n# changed\n" if content is None else content)
-    refused(folder / shown, "--out", folder / "r.html", says=says)
+    refused(folder / shown, says=says)
 
 
 def test_a_simulation_of_another_length_is_refused(folder, refused):
     other = by_hand.make_dataset(folder / "longer", ("a",), samples=500)
     simulated = by_hand.make_simulation(other, folder / "other")
     shutil.copy(simulated / "runs" / "a.parquet", folder / "simulated" / "runs")
-    out = ("--out", folder / "r.html")
-    refused(folder / "simulated", *out, says=["a.parquet", "500 rows", "400"])
+    refused(folder / "simulated", says=["a.parquet", "500 rows", "400"])
 
 
 def test_a_dataset_may_lie_elsewhere_where_it_is_named(folder, here, refused):
     moved = folder / "calibrated", (folder / "dataset").rename(folder / "elsewhere")
-    refused(moved[0], "--out", folder / "r.html", says=["calibration.json", "dataset"])
+    refused(moved[0], says=["calibration.json", "dataset"])
     assert here("report", *moved, "--out", folder / "r.html")[0] == 0
 
 
 def test_two_folders_of_one_kind_are_refused(folder, refused):
     shutil.copytree(folder / "calibrated", folder / "second")
-    out = ("--out", folder / "r.html")
-    pair = folder / "calibrated", folder / "second"
-    refused(*pair, *out, says=["second", "calibration.json"])
-    again = [folder / "simulated"] * 2
-    refused(*again, *out, says=["a second folder", "simulated"])
+    refused(folder / "calibrated", folder / "second", says=["second", "calibration.json"])
+    refused(*[folder / "simulated"] * 2, says=["a second folder", "simulated"])
 
 
 def test_several_simulations_stand_beside_each_other_by_their_names(folder, here, refused):
@@ -124,7 +116,7 @@ def test_several_simulations_stand_beside_each_other_by_their_names(folder, here
     *_, last = claims_of(folder / "r.html")
     assert last.path == folder / "rough" / "simulation.json"
     (folder / "rough" / "simulation.json").write_text("{}")
-    refused(*pair, "--out", folder / "s.html", says=["rough"])
+    refused(*pair, out="s.html", says=["rough"])
 
 
 @pytest.mark.parametrize(
@@ -139,7 +131,7 @@ def test_a_stage_file_that_is_not_whole_is_refused(folder, refused, spoil, messa
     path = folder / "calibrated" / "calibration.json"
     with by_hand.edited(path) as content:
         spoil(content)
-    refused(folder / "calibrated", "--out", folder / "r.html", says=[str(path), message])
+    refused(folder / "calibrated", says=[str(path), message])
 
 
 @pytest.fixture
@@ -167,24 +159,23 @@ def test_the_pdf_stands_beside_the_page(folder, here):
 @pytest.mark.usefixtures("printer")
 def test_an_existing_pdf_stays_without_force_and_no_page_is_written(folder, here, refused):
     (folder / "r.pdf").write_text("mine")
-    words = [folder / "check", "--out", folder / "r.html", "--pdf"]
+    words = [folder / "check", "--pdf"]
     refused(*words, says=["r.pdf", "--force"])
     refused(*words, "--force", says=["r.pdf", "not an earlier output"])
     assert (folder / "r.pdf").read_text() == "mine"
     assert not (folder / "r.html").exists()
     (folder / "r.pdf").unlink()
     for more in ((), ("--force",)):
-        assert here("report", *words, *more)[0] == 0
+        assert here("report", *words, "--out", folder / "r.html", *more)[0] == 0
         assert (folder / "r.pdf").read_bytes().startswith(b"%PDF")
 
 
 @pytest.mark.usefixtures("printer")
 def test_the_page_may_not_have_the_name_of_the_pdf(folder, refused):
-    refused(folder / "check", "--out", folder / "r.pdf", "--pdf", says=["r.pdf", ".html"])
+    refused(folder / "check", "--pdf", out="r.pdf", says=["r.pdf", ".html"])
 
 
 def test_without_a_browser_neither_page_nor_pdf_is_written(folder, refused, monkeypatch):
     monkeypatch.setattr("shutil.which", lambda name: None)
-    says = ["no Chromium", "apt install chromium"]
-    refused(folder / "check", "--out", folder / "r.html", "--pdf", says=says)
+    refused(folder / "check", "--pdf", says=["no Chromium", "apt install chromium"])
     assert [p.name for p in folder.iterdir() if "r." in p.name] == []

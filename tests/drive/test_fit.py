@@ -5,18 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.drive.fit import (
-    GAIN,
-    DriveBench,
-    quantities_of,
-    replace_defaults,
-    response_at,
-)
-from tsas_cli.drive.harmonic_drive import (
-    DriveValues,
-    gear_response,
-    linear_response,
-)
+from tsas_cli.drive.fit import GAIN, DriveBench, quantities_of, replace_defaults, response_at
+from tsas_cli.drive.harmonic_drive import DriveValues, gear_response, linear_response
 from tsas_cli.drive.json import bode_curve, poles
 from tsas_cli.drive.runs import DriveRun, FrequencyResponse, frequency_response
 from tsas_cli.numerics.linear_response import sampled

@@ -41,11 +41,7 @@ def after_a_byte(change: Change) -> Change:
 
 
 def _changed(
-    data: bytes,
-    most: int,
-    seed: int,
-    read: Callable[[str], Any],
-    write: Callable[[Any], str],
+    data: bytes, most: int, seed: int, read: Callable[[str], Any], write: Callable[[Any], str]
 ) -> bytes:
     from atheris import Mutate
 

@@ -48,10 +48,7 @@ def test_every_kept_input_is_taken_or_refused(
 
 
 def test_a_changed_input_is_taken_or_refused(
-    target: ModuleType,
-    inputs: list[bytes],
-    watch: Watch,
-    monkeypatch: pytest.MonkeyPatch,
+    target: ModuleType, inputs: list[bytes], watch: Watch, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     atheris = pytest.importorskip("atheris")
     chance = random.Random(1)  # noqa: S311 # not a secret

@@ -111,10 +111,7 @@ FACTOR = {"source": "x", "unit": "V", "factor": 1e15, "factor_unit": "m"}
 
 @pytest.mark.parametrize(
     ("values", "place", "name"),
-    [
-        ({"t": [0, 1, np.inf]}, PLACE, "time_s"),
-        ({"x": [1, 2, 1e300]}, FACTOR, "x_in_mm"),
-    ],
+    [({"t": [0, 1, np.inf]}, PLACE, "time_s"), ({"x": [1, 2, 1e300]}, FACTOR, "x_in_mm")],
 )
 def test_what_grows_infinite_is_refused_without_another_word(values, place, name):
     with pytest.raises(InputError, match=f"{name} is infinite"):  # warnings are errors in tests

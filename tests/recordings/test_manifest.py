@@ -144,11 +144,7 @@ def test_a_path_written_on_windows_works(tmp_path):
         ("preload_N = 25.0", 'preload_N = "25"', "run.a.preload_N: text is no number, got '25'"),
         ("= 1.2\n", '= "1.2"\n', "rig.tendon_diameter_mm: text is no number, .* without quotes"),
         ('name = "bench-42"', 'name = ""', "name: .*at least 1 character"),
-        (
-            "[rig]\n",
-            "[rig]\nantagonist_f_in_share = 7\n",
-            "f_in_share: expected -0.5 to 1.5",
-        ),
+        ("[rig]\n", "[rig]\nantagonist_f_in_share = 7\n", "f_in_share: expected -0.5 to 1.5"),
         ("format = 1", "format = true", "format: true and false are no numbers"),
         ("preload_N = 25.0", "total_bend_rad = true", "run.a.total_bend_rad: true and false are"),
         ("1.579", "true", "rig.load_stiffness_N_per_mm: true and false are no numbers"),

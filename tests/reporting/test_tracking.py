@@ -82,7 +82,7 @@ def test_the_phase_portrait_has_the_error_and_its_rate(whole):
 def test_adapted_parameters_stand_between_their_bounds(whole):
     _, *rows = cells(whole, "Adapted parameters")
     assert rows[0] == [
-        *("φ̂1", "undisturbed", "0.00500", "0.100", "0.001", "0.1", "rpm s³/mm", "50"),
+        *("φ̂1", "undisturbed", "0.00500", "0.100", "0.001", "0.1", "rpm s³/mm", "50")
     ]
     assert rows[1][2:] == ["18.0", "30.6", "2", "200", "rpm s/mm", "0"]
     assert rows[5][:2] == ["φ̂3", "disturbed"]

@@ -66,18 +66,21 @@ def _edited(place):
         content["results"]["errors"] = 77
 
 
+def _says(name, content):
+    """Return a damage: another content of one file, or none."""
+    if content is None:
+        return lambda place: (place / name).unlink()
+    return lambda place: (place / name).write_bytes(content)
+
+
+CONTENTS = {
+    "task.json": (b'{"format": 1, ', b"", b"\xff\x00\x1f", b"{}", b"[]", None),
+    "SHA256SUMS": (b"\xff", None),
+    "check.json": (b"{}", None),
+}
 DAMAGES = {
     "edited numbers": _edited,
-    "truncated": lambda place: (place / "task.json").write_bytes(b'{"format": 1, '),
-    "empty": lambda place: (place / "task.json").write_bytes(b""),
-    "bytes": lambda place: (place / "task.json").write_bytes(b"\xff\x00\x1f"),
-    "no keys": lambda place: (place / "task.json").write_text("{}"),
-    "a list": lambda place: (place / "task.json").write_text("[]"),
-    "no task.json": lambda place: (place / "task.json").unlink(),
-    "no checksums": lambda place: (place / "SHA256SUMS").unlink(),
-    "damaged checksums": lambda place: (place / "SHA256SUMS").write_bytes(b"\xff"),
-    "a changed result": lambda place: (place / "check.json").write_text("{}"),
-    "a missing result": lambda place: (place / "check.json").unlink(),
+    **{f"{n}: {c!r}": _says(n, c) for n, contents in CONTENTS.items() for c in contents},
     "another task": _other_task,
     "a file": _file,
     "other files": _foreign,

@@ -41,10 +41,7 @@ from tsas_cli.records.result import Result
         (lambda data: tsas.identify_harmonic_drive(data, speed=5), "speed is 5"),
         (lambda data: tsas.track(seeds=[1]), "is of type list; expected int"),
         (lambda data: tsas.track(first_seed=b"x"), "is of type bytes; expected int"),
-        (
-            lambda data: tsas.compare("a", "b", out=5),
-            "out: 5 is of type int; expected str",
-        ),
+        (lambda data: tsas.compare("a", "b", out=5), "out: 5 is of type int; expected str"),
         (lambda data: tsas.guess([]), "no folder or file is named"),
         (lambda data: tsas.report([], out="x.html"), "no folder or file is named"),
         (lambda data: tsas.plan([data, data]), "is of type list; expected Dataset or str"),

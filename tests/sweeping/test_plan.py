@@ -77,10 +77,7 @@ def test_a_set_that_says_nan_is_no_set_without_the_value(tmp_path):
             {"vary": {"nodes": {"from": 0, "to": 1, "steps": 1}}},
             r"[^;]*vary.nodes.steps: input should be greater than or equal to 2, got 1$",
         ),
-        (
-            {"vary": {"nodes": "x"}},
-            r"[^;]*vary.nodes: input should be a list, got",
-        ),
+        ({"vary": {"nodes": "x"}}, r"[^;]*vary.nodes: input should be a list, got"),
         ({"vary": {"nodes": {"from": 0, "to": 1, "steps": 3, "scale": "log"}}}, "positive ends"),
         ({"vary": {"a": [1], "b": [1, 2]}, "combine": "zip"}, "differ in length: a 1, b 2"),
         ({"vary": {"nodes": [1]}, "options": {"nodes": 2}}, "nodes is in options and in vary"),

@@ -8,7 +8,7 @@ from asammdf import MDF, Signal
 from scipy.io import savemat
 
 from tests.recordings.guess.rig_files import CHANNELS, run, sources
-from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
+from tests.recordings.readers.matlab_files import controldesk, save_struct_73
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.writing import write_parquet
 
@@ -35,12 +35,7 @@ def save_mat(path):
 
 
 def save_mat_73(path):
-    def build(file):
-        group = struct(file, "log")
-        for name, values in run().items():
-            numbers(group, name, values)
-
-    save_73(path, build)
+    save_struct_73(path, "log", run())
 
 
 def save_capture(path):

@@ -150,8 +150,7 @@ EACH_TIME = {*TWO, (1, 2, 3, 0), (3, 2, 1, 0)}
 
 
 @pytest.mark.parametrize(
-    "order",
-    [pytest.param(o, marks=() if o in EACH_TIME else pytest.mark.large) for o in ORDERS],
+    "order", [pytest.param(o, marks=() if o in EACH_TIME else pytest.mark.large) for o in ORDERS]
 )
 @pytest.mark.parametrize("units", [["[mm]", "[mm]", "[N]", "[N]"], [""] * 4])
 def test_no_exchange_of_names_is_believed(path, order, units):

@@ -92,8 +92,7 @@ def test_the_scatter_of_times_is_what_a_fast_motion_has_more_noise_by():
 
 
 @pytest.mark.parametrize(
-    ("by", "other", "found"),
-    [(10.1, 3.1, [150]), (9.9, 3.1, []), (10.1, 2.9, [])],
+    ("by", "other", "found"), [(10.1, 3.1, [150]), (9.9, 3.1, []), (10.1, 2.9, [])]
 )
 def test_a_run_is_torn_where_the_drive_goes_ten_times_and_another_three_times_as_far(
     by, other, found

@@ -62,8 +62,7 @@ def test_changes_and_what_lies_between_them():
 
 
 @pytest.mark.parametrize(
-    ("held", "changes", "expected"),
-    [(2, 21, True), (2, 20, False), (1, 99, False), (3, 40, True)],
+    ("held", "changes", "expected"), [(2, 21, True), (2, 20, False), (1, 99, False), (3, 40, True)]
 )
 def test_a_channel_is_held_that_changes_in_every_second_row_at_most(held, changes, expected):
     values = np.repeat(np.arange(changes + 1.0), held)

@@ -14,7 +14,7 @@ from asammdf import MDF, Signal
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
+from tests.recordings.readers.matlab_files import controldesk, save_struct_73
 from tsas_cli.recordings.readers import names, read
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.readers.table import ReadOptions
@@ -204,7 +204,7 @@ def foreign_tables(draw: st.DrawFn, folder: Path) -> Known:
             file.save(path, overwrite=True, compression=draw(st.sampled_from([0, 2])))
         known["time"] = time_s.tolist()
     elif kind == "7.3":
-        save_73(path, lambda file: _write_73(file, data))
+        save_struct_73(path, "s", data)
         known = {f"s.{name}": values for name, values in data.items()}
     else:
         content: Any = dict(data)
@@ -219,9 +219,3 @@ def foreign_tables(draw: st.DrawFn, folder: Path) -> Known:
             known["time"] = time_s.tolist()
         savemat(path, content, do_compression=draw(st.booleans()))
     return Known(path.suffix, path.read_bytes(), known)
-
-
-def _write_73(file: Any, data: dict[str, list[float]]) -> None:
-    group = struct(file, "s")
-    for name, values in data.items():
-        numbers(group, name, values)

@@ -38,6 +38,17 @@ def numbers(group, name, values):
     return item
 
 
+def save_struct_73(path, name, columns):
+    """Write columns as the members of a struct."""
+
+    def build(file):
+        group = struct(file, name)
+        for member, values in columns.items():
+            numbers(group, member, values)
+
+    save_73(path, build)
+
+
 def text(group, name, words):
     item = group.create_dataset(name, data=np.array([[ord(c)] for c in words], dtype=np.uint16))
     item.attrs["MATLAB_class"] = np.bytes_("char")

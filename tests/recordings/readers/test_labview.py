@@ -37,8 +37,7 @@ def lvm(path, *, point=".", x="One", segments=1, encoding="utf-8"):
 
 
 @pytest.mark.parametrize(
-    "how",
-    [{}, {"point": ","}, {"x": "No"}, {"x": "No", "point": ","}, {"encoding": "cp1252"}],
+    "how", [{}, {"point": ","}, {"x": "No"}, {"x": "No", "point": ","}, {"encoding": "cp1252"}]
 )
 def test_lvm(tmp_path, how):
     table = read(lvm(tmp_path / "a.lvm", **how), ReadOptions(), ["X_Value", "Force µ", 3])

@@ -26,12 +26,6 @@ def test_text_and_missing_columns_are_said(path):
     assert "column x is missing; there are: t, f, w" in refusal(read, path, ReadOptions(), ["x"])
 
 
-@pytest.mark.parametrize("kept", [0, 3, 100, -1])
-def test_a_file_that_is_cut_short_is_one_line(path, kept):
-    path.write_bytes(path.read_bytes()[:kept])
-    assert str(path) in refusal(read, path, ReadOptions(), ["t"])
-
-
 @pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
 @pytest.mark.parametrize("kind", [pa.timestamp, pa.duration])
 def test_times_become_seconds_by_their_type_and_nulls_are_gaps(tmp_path, kind, unit):
