@@ -140,18 +140,13 @@ def test_the_numbers_of_a_set_are_in_a_fixed_order_the_gain_first():
     assert usual.motor_lag_s == 0.0
 
 
-def response_of(values, frequency_Hz, wrong=()):
-    response = response_by_hand(values, 2j * math.pi * frequency_Hz)
-    for k in wrong:
-        response[k] *= -6.0
-    told = np.ones(frequency_Hz.size, dtype=bool)
-    return FrequencyResponse(frequency_Hz, response, np.ones(frequency_Hz.size), told)
-
-
-@pytest.mark.parametrize("wrong", [(), (5,), (5, 30)])
+@pytest.mark.parametrize("wrong", [[], [5], [5, 30]])
 def test_a_few_wrong_points_of_the_response_do_not_lead_the_start_astray(wrong):
     truth = DriveValues(0.0236, delay_s=0.02, natural_frequency_Hz=9.0, damping_ratio=0.15)
-    seen = response_of(truth, np.linspace(0.5, 20.0, 40), wrong)
+    frequency_Hz = np.linspace(0.5, 20.0, 40)
+    response = response_by_hand(truth, 2j * math.pi * frequency_Hz)
+    response[wrong] *= -6.0
+    seen = FrequencyResponse(frequency_Hz, response, np.ones(40), np.ones(40, dtype=bool))
     start = DriveBench([driven(truth)], seen)._from_response(frozenset(("delay", "spring")))
     for name in ("gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "delay_s"):
         assert getattr(start, name) == pytest.approx(getattr(truth, name), rel=0.1), name

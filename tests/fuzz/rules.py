@@ -101,13 +101,7 @@ class Watch:
 
     @contextmanager
     def during(self) -> Iterator[None]:
-        """Watch while the block runs.
-
-        Raises
-        ------
-        Broken
-            Something was changed or started.
-        """
+        """Watch while the block runs; it is `Broken` where something was changed or started."""
         self.on, self.seen = True, []
         try:
             yield

@@ -19,23 +19,30 @@ def conditions(header=(), path=PATH, **content):
     return run_conditions(path, header, RunMap.model_validate(content))
 
 
-def test_without_a_word_the_id_is_the_name_and_the_load_a_spring():
-    assert conditions() == {"id": "bend180_0,5Hz", "load": "spring"}
+BEND = {"total_bend_rad": {"from": "bend", "unit": "deg"}}
+STARTED = {"pattern": "run_(?P<started>.*)[.]"}
 
 
-def test_groups_of_the_file_name_become_conditions_in_the_wanted_unit():
-    found = conditions(
-        from_file_name=NAME, conditions={"total_bend_rad": {"from": "bend", "unit": "deg"}}
-    )
-    assert found["total_bend_rad"] == pytest.approx(math.pi)
-    assert found["frequency_Hz"] == 0.5
-    assert "bend" not in found
-
-
-@pytest.mark.parametrize(("name", "text"), [("run_1_2", "1_2"), ("run_20240101", "20240101")])
-def test_underscores_between_digits_and_dates_are_no_numbers(name, text):
-    pattern = {"pattern": "run_(?P<started>.*)[.]"}
-    assert conditions(path=Path(f"/rig/{name}.csv"), from_file_name=pattern)["started"] == text
+@pytest.mark.parametrize(
+    ("name", "said", "expected"),
+    [
+        (PATH.name, {}, {}),
+        (
+            PATH.name,
+            {"from_file_name": NAME, "conditions": BEND},
+            {"total_bend_rad": pytest.approx(math.pi), "frequency_Hz": 0.5},
+        ),
+        # Underscores between digits, and dates, are no numbers.
+        *((f"run_{text}.csv", {"from_file_name": STARTED}, {"started": text})
+          for text in ("1_2", "20240101")),
+        (PATH.name, {"id": "{folder}-{stage}-{stem}", "from_file_name": {
+            "pattern": r"^L_(?P<stage>\d)/bend"}}, {"id": "L_4-4-bend180_0,5Hz", "stage": 4}),
+    ],
+)  # fmt: skip
+def test_groups_of_the_file_name_become_conditions(name, said, expected):
+    """Else the id is the name, and the load is a spring."""
+    path = PATH.with_name(name)
+    assert conditions(path=path, **said) == {"id": path.stem, "load": "spring"} | expected
 
 
 def test_a_comma_before_three_digits_is_a_decimal_mark_where_the_map_says_so():
@@ -44,13 +51,6 @@ def test_a_comma_before_three_digits_is_a_decimal_mark_where_the_map_says_so():
     assert run_conditions(PATH, ["1,250 N"], rules, ",")["preload_N"] == 1.25
     with pytest.raises(InputError, match=r"preload_N is 1,250: .* set decimal = \",\""):
         run_conditions(PATH, ["1,250 N"], rules)
-
-
-def test_the_folder_is_part_of_the_name_and_of_the_id():
-    found = conditions(
-        id="{folder}-{stage}-{stem}", from_file_name={"pattern": r"^L_(?P<stage>\d)/bend"}
-    )
-    assert found["id"] == "L_4-4-bend180_0,5Hz"
 
 
 def test_the_header_wins_over_the_name_and_the_table_over_both():

@@ -7,31 +7,42 @@ from tsas_cli.recordings.guards import Expanded
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support import limits
 
+PULLEY = {"pulley_radius_mm": 5}
+
 
 @pytest.mark.parametrize(
-    ("units", "to", "one"),  # what one of the units is, from its definition
+    ("units", "to", "one", "said"),  # what one of the units is, from its definition
     [
-        (["ms"], "s", 0.001),
-        (["min"], "s", 60),
-        (["in", "inch", "Inches", '"', "in."], "mm", 25.4),
-        (["µm", "um"], "mm", 0.001),
-        (["Å"], "mm", 1e-7),
-        (["mm\u00a0"], "mm", 1),
-        (["lbf", "lb"], "N", 4.4482216152605),
-        (["kip"], "N", 4448.2216152605),
-        (["kg"], "N", 9.80665),
-        (["Newton", "MPa mm²"], "N", 1),
-        (["deg", "°"], "rad", math.pi / 180),
-        (["rev"], "rad", 2 * math.pi),
-        (["1/min", "U/min"], "rpm", 1),
-        (["rev/s"], "rpm", 60),
-        (["rad/s", "rad·s⁻¹"], "rpm", 30 / math.pi),
-        (["deg/s"], "rpm", 1 / 6),
+        (["ms"], "s", 0.001, {}),
+        (["min"], "s", 60, {}),
+        (["in", "inch", "Inches", '"', "in."], "mm", 25.4, {}),
+        (["µm", "um"], "mm", 0.001, {}),
+        (["Å"], "mm", 1e-7, {}),
+        (["mm\u00a0"], "mm", 1, {}),
+        (["lbf", "lb"], "N", 4.4482216152605, {}),
+        (["kip"], "N", 4448.2216152605, {}),
+        (["kg"], "N", 9.80665, {}),
+        (["Newton", "MPa mm²"], "N", 1, {}),
+        (["deg", "°"], "rad", math.pi / 180, {}),
+        (["rev"], "rad", 2 * math.pi, {}),
+        (["1/min", "U/min"], "rpm", 1, {}),
+        (["rev/s"], "rpm", 60, {}),
+        (["rad/s", "rad·s⁻¹"], "rpm", 30 / math.pi, {}),
+        (["deg/s"], "rpm", 1 / 6, {}),
+        (["Nm", "N m", "N·m", "N×m", "N\u00a0m"], "N", 200, PULLEY),
+        (["Ncm"], "N", 2, PULLEY),
+        (["mNm", "Nmm"], "N", 0.2, PULLEY),
+        (["in-lb"], "N", 4.4482216152605 * 25.4 / 5, PULLEY),
+        (["deg"], "mm", math.pi / 36, PULLEY),
+        (["counts"], "mm", math.pi / 36 / 8, PULLEY | {"factor": 1 / 8, "factor_unit": "deg"}),
+        (["V"], "N", 50, {"factor": 50, "factor_unit": "N"}),
+        (["counts"], "N", 8.896443230521, {"factor": 2, "factor_unit": "lbf"}),
     ],
 )
-def test_lab_spellings_mean_what_people_mean(units, to, one):
+def test_lab_spellings_mean_what_people_mean(units, to, one, said):
+    """On a pulley, a torque is a force, and an angle a length; a factor says what volts are."""
     for unit in units:
-        assert conversion(unit, to) == (pytest.approx(one, rel=1e-12), 0)
+        assert conversion(unit, to, **said) == (pytest.approx(one, rel=1e-12), 0)
 
 
 @pytest.mark.parametrize(
@@ -41,33 +52,6 @@ def test_lab_spellings_mean_what_people_mean(units, to, one):
 def test_temperatures_have_their_zero(unit, celsius_at_100):
     slope, zero = conversion(unit, "°C")
     assert slope * 100 + zero == pytest.approx(celsius_at_100)
-
-
-@pytest.mark.parametrize(
-    ("units", "newton_on_5_mm"),
-    [
-        (["Nm", "N m", "N·m", "N×m", "N\u00a0m"], 200),
-        (["Ncm"], 2),
-        (["mNm", "Nmm"], 0.2),
-        (["in-lb"], 4.4482216152605 * 25.4 / 5),
-    ],
-)
-def test_a_torque_becomes_a_force_on_a_pulley(units, newton_on_5_mm):
-    for unit in units:
-        slope, _ = conversion(unit, "N", pulley_radius_mm=5)
-        assert slope == pytest.approx(newton_on_5_mm, rel=1e-12)
-
-
-def test_an_angle_becomes_a_length_on_a_pulley():
-    assert conversion("deg", "mm", pulley_radius_mm=10)[0] == pytest.approx(math.pi / 18)
-    turn = conversion("counts", "mm", factor=1 / 4096, factor_unit="turn", pulley_radius_mm=5)
-    assert turn[0] * 4096 == pytest.approx(10 * math.pi)
-
-
-def test_a_factor_says_what_counts_and_volts_are():
-    assert conversion("V", "N", factor=50, factor_unit="N") == (50, 0)
-    pounds, _ = conversion("counts", "N", factor=2, factor_unit="lbf")
-    assert pounds == pytest.approx(8.896443230521)
 
 
 @pytest.mark.parametrize(

@@ -33,11 +33,6 @@ def points(text):
     return [unescape(re.sub("<.*?>", "", one)) for one in re.findall("<li>(.*?)</li>", text)]
 
 
-def page_of(folder, case):
-    """Return a page with one case of `made_loops.CASES`."""
-    return page(read_inputs([made_loops.make_closing(folder, {case: made_loops.CASES[case]})]))
-
-
 def test_the_page_is_well_formed_says_its_numbers_and_holds_nothing_of_a_dataset(whole):
     (label,) = Outline(whole).labels
     assert "pid: backlash 0.40, 0.30, 0.10, 0.080, bend 0.20, 0.30, 0.25, 0.24," in label
@@ -85,7 +80,8 @@ def test_it_says_for_whom_the_better_model_matters_and_where_it_falls_short(whol
 
 
 def test_a_model_that_makes_it_worse_is_said_to_do_harm(tmp_path):
-    text = page_of(tmp_path / "loop", "bend")
+    bend = {"bend": made_loops.CASES["bend"]}
+    text = page(read_inputs([made_loops.make_closing(tmp_path / "loop", bend)]))
     (pid, _) = (p for p in points(text) if "the better model" in p)
     assert pid.startswith("pid: the better model does harm. RMSE data sheet / extended is 0.80. ")
     assert "median" not in text

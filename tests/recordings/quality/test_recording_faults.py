@@ -24,10 +24,6 @@ def number(remark, begin, end):
     return float(remark.sentence.split(begin)[1].split(end)[0])
 
 
-def rounded(values, column):
-    return np.round(values / STEPS[column]) * STEPS[column]
-
-
 def rows_of(rows):
     return {n: v[: rows.size] if n == "time_s" else v[rows] for n, v in GOOD.items()}
 
@@ -47,8 +43,8 @@ def test_the_recording_without_a_fault_is_sound():
 )
 def test_a_channel_behind_a_low_pass_filter(column, cut_Hz):
     sections = butter(2, cut_Hz, fs=200.0, output="sos")
-    smooth = rounded(sosfiltfilt(sections, GOOD[column]), column)
-    remark = told(GOOD | {column: smooth}, "filtered")
+    step, smooth = STEPS[column], sosfiltfilt(sections, GOOD[column])
+    remark = told(GOOD | {column: np.round(smooth / step) * step}, "filtered")
     assert remark.column == column
     said_Hz = number(remark, "about ", " Hz")
     assert 0.5 * cut_Hz < said_Hz < 2.5 * cut_Hz

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.recordings.readers.workbooks import DATE, TIME, save_xlsx
+from tests.refusals import refusal
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.table import ReadOptions
@@ -24,12 +25,11 @@ def test_numbers_gaps_and_faults_of_formulas(write):
     assert table.units == {"Zeit [s]": "s", "Kraft [N]": "N"}
 
 
-@pytest.mark.parametrize("cell", ["25,3", "25,300"])
-def test_a_text_with_a_comma_among_numbers_is_what_is_wrong(write, cell):
+@pytest.mark.parametrize("cell", ["25,3", "25,300", "broken"])
+def test_a_text_among_numbers_is_what_is_wrong(write, cell):
     rows = [[0.01 * i, 20.0 + 0.125 * i] for i in range(5)]
-    path = write(Log=[LOG[0], *rows, [0.05, cell]])
-    with pytest.raises(InputError, match=rf"row 7: column Kraft \[N\] holds '{cell}'"):
-        read(path, ReadOptions(), LOG[0])
+    line = refusal(read, write(Log=[LOG[0], *rows, [0.05, cell]]), ReadOptions(), LOG[0])
+    assert f"a.xlsx, row 7: column Kraft [N] holds '{cell}'" in line
 
 
 def test_numbers_that_are_text_have_their_own_mark(write):
@@ -67,12 +67,6 @@ def test_title_lines_and_units_below_the_names(write):
     assert list(opened.left_out) == ["w"]
 
 
-def test_rows_keep_their_numbers_in_errors(write):
-    path = write(Log=[*LOG, [0.4, "broken"]])
-    with pytest.raises(InputError, match=r"a\.xlsx, row 6: column Kraft \[N\] holds 'broken'"):
-        read(path, ReadOptions(), ["Kraft [N]"])
-
-
 @pytest.mark.parametrize("style", [DATE, TIME])
 def test_dates_and_times_of_day_become_seconds(write, style):
     day = 45000.5 if style == DATE else 0.5
@@ -84,5 +78,4 @@ def test_dates_and_times_of_day_become_seconds(write, style):
 
 
 def test_a_book_without_numbers_is_told(write):
-    with pytest.raises(InputError, match="no sheet holds numbers"):
-        names(write(Words=[["a", "b"]]), ReadOptions())
+    assert "no sheet holds numbers" in refusal(names, write(Words=[["a", "b"]]), ReadOptions())

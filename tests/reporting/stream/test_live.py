@@ -3,10 +3,10 @@
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from rerun.chunk import RrdReader
 
 from tests.reporting.made_folders import make_dataset, make_simulation
 from tests.reporting.made_loops import make_tracking
+from tests.reporting.stream.streams import read
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording
@@ -37,11 +37,8 @@ def seen(tmp_path):
 
 def rows_by_run(path):
     """Return by entity below a run how many rows it has over time."""
-    rows = {}
-    for chunk in RrdReader(path).stream():
-        if chunk.entity_path.startswith("/run/") and not chunk.is_static:
-            rows[chunk.entity_path] = rows.get(chunk.entity_path, 0) + chunk.num_rows
-    return rows
+    found = {name: sum(entity.chunks) for name, entity in read(path).items()}
+    return {name: rows for name, rows in found.items() if name.startswith("/run/") and rows}
 
 
 @pytest.fixture

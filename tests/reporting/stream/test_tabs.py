@@ -11,15 +11,6 @@ def root_of(inputs):
     return stream_of(inputs).layout.root_container
 
 
-def tabs(folder):
-    root = root_of(read_inputs([folder]))
-    return {part.name: part for part in root.contents}, root.contents[root.active_tab].name
-
-
-def of_kind(part, *kinds):
-    return [view for view in views(part) if view.class_identifier in kinds]
-
-
 def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
     made = {
         dataset: ["Overview"],
@@ -30,8 +21,9 @@ def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
         made_loops.make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
     }
     for folder, names in made.items():
-        found, opens = tabs(folder)
-        assert list(found) == names
+        root = root_of(read_inputs([folder]))
+        assert [part.name for part in root.contents] == names
+        opens = root.contents[root.active_tab].name
         assert opens == ("Tracking" if "Tracking" in names else "Overview")
 
 
@@ -61,10 +53,8 @@ def test_phases_and_faults_stand_with_the_run_that_they_are_of(dataset, tmp_path
     overview = root_of(read_inputs(folders)).contents[0]
     runs = overview.contents[0].contents[1].contents
     assert [run.name for run in runs] == ["run a", "run b", "all runs"]
-    beside = [of_kind(run, "StateTimeline", "TextLog") for run in runs[:2]]
-    assert [[view.class_identifier for view in views] for views in beside] == [
-        ["StateTimeline"],
-        ["StateTimeline", "TextLog"],
-    ]
-    for name, found in zip("ab", beside, strict=True):
+    kinds = {"a": ["StateTimeline"], "b": ["StateTimeline", "TextLog"]}
+    for run, (name, wanted) in zip(runs, kinds.items(), strict=False):
+        found = [view for view in views(run) if view.class_identifier in kinds["b"]]
+        assert [view.class_identifier for view in found] == wanted
         assert all(path.split("/")[2] == name for view in found for path in shown(view))
