@@ -74,11 +74,8 @@ def test_a_run_that_a_shell_would_read_as_more_than_a_word_is_not_offered(offere
     assert offered_runs(runs, r"\$") == []
 
 
-def test_what_is_named_already_is_not_offered_again():
+def test_the_lists_are_those_of_the_program_but_for_what_is_named_already():
     assert completion.controllers("pid,") == [f"pid,{name}" for name in ("all", *CONTROLLERS[1:])]
-
-
-def test_the_lists_are_those_of_the_program():
     assert completion.effect_names("") == sorted(effect.name for effect in EFFECTS)
     assert tuple(SHAPES) == SHAPE_NAMES
 

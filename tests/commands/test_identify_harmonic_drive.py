@@ -62,8 +62,7 @@ def test_the_worked_case(done, tmp_path):
 
 
 def test_what_does_not_serve_is_refused_in_one_line(refused, recorded, tmp_path):
-    made = dict(recorded)
-    made["f_in_N"] = made.pop("motor_speed_rpm")
+    made = {n.replace("motor_speed_rpm", "f_in_N"): v for n, v in recorded.items()}
     folder = write_dataset(tmp_path / "dataset", [Run("a", made)], data_sheet=DATA_SHEET)
     said = refused("identify-harmonic-drive", folder, "--out", tmp_path / "out")
     assert "column motor_speed_rpm is missing" in said

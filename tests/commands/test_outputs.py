@@ -11,7 +11,6 @@ from tests.test_app import CALLS as COMMANDS
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.model_file import write_model
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of, write_json, write_sums
 from tsas_studies.commands import app
 
@@ -147,6 +146,6 @@ def test_what_is_read_stays(inputs, tmp_path, call):
         if place.is_dir():
             made_by(call, place)
         before = state(home)
-        with pytest.raises(InputError, match=REFUSED):
+        with pytest.raises(tsas.InputError, match=REFUSED):
             app(called(call, place, home), standalone_mode=False)
         assert state(home) == before, (call, out)

@@ -134,16 +134,12 @@ def test_intervals_end_at_the_bounds():
         assert ends == pytest.approx(bounds, rel=1e-12)
 
 
-def test_the_error_of_a_reciprocal_is_in_proportion():
+def test_the_error_of_what_two_unknowns_move_is_that_of_both():
+    """B = 2 m ζω, of independent ζ and ω: relative errors add by their squares; 1/g has one."""
     found = told()
     gain, kV = found["gain_mm_per_s_rpm"], found["kV_rpm_s_per_mm"]
     assert kV.stderr / kV.value == pytest.approx(gain.stderr / gain.value, rel=1e-4)
     assert 0.5 * (kV.interval_low + kV.interval_high) == pytest.approx(kV.value)
-
-
-def test_the_error_of_what_two_unknowns_move_is_that_of_both():
-    """B = 2 m ζω, of independent ζ and ω: relative errors add by their squares."""
-    found = told()
     parts = [found[n].stderr / found[n].value for n in ("natural_frequency_Hz", "damping_ratio")]
     B = found["damping_N_s_per_mm"]
     assert B.stderr / B.value == pytest.approx(math.hypot(*parts), rel=0.35)

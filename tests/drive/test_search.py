@@ -46,18 +46,20 @@ def test_all_sixteen_structures_are_there_the_simplest_first():
     assert set(found[1:4]) == {terms(t, "play") for t in ("lag", "delay", "leak")}  # one number
 
 
-def test_the_simplest_structure_that_is_not_surely_beaten_is_taken():
-    near = MadeUp({terms("lag"): 1.02, terms("lag", "spring"): 1.0})
-    assert ds.chosen(near, NOTHING) == terms("lag")
-    far = MadeUp({terms("lag"): 1.04, terms("lag", "spring"): 1.0})
-    assert ds.chosen(far, NOTHING) == terms("lag", "spring")
+LAG, DELAY, BOTH = terms("lag"), terms("delay"), terms("lag", "spring")
 
 
-def test_a_fit_that_did_not_converge_is_not_taken_where_another_did():
-    search = MadeUp({terms("lag"): 1.0, terms("delay"): 2.0}, failed=(terms("lag"),))
-    assert ds.chosen(search, NOTHING) == terms("delay")
-    none = MadeUp({terms("lag"): 1.0}, failed=ds.structures())
-    assert ds.chosen(none, NOTHING) == terms("lag")
+@pytest.mark.parametrize(
+    ("squares", "failed", "taken"),
+    [
+        ({LAG: 1.02, BOTH: 1.0}, (), LAG),  # the simplest that is not surely beaten
+        ({LAG: 1.04, BOTH: 1.0}, (), BOTH),
+        ({LAG: 1.0, DELAY: 2.0}, (LAG,), DELAY),  # none that did not converge, where another did
+        ({LAG: 1.0}, ds.structures(), LAG),
+    ],
+)
+def test_the_structure_that_is_taken(squares, failed, taken):
+    assert ds.chosen(MadeUp(squares, failed=failed), NOTHING) == taken
 
 
 def test_with_the_gear_the_structure_is_chosen_again():

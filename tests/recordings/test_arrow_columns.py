@@ -1,14 +1,12 @@
 """Columns between Arrow and NumPy, as pyarrow itself takes them over."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from tests.recordings.rewritten import rewrite
+from tests.test_app import loaded_by
 from tsas_cli.recordings.parquet_files import column_of, floats_from
 from tsas_cli.recordings.run_files import open_run
 from tsas_cli.recordings.writing import columns_of
@@ -50,14 +48,9 @@ def test_columns_are_those_that_pyarrow_makes(size, gaps):
 
 
 def test_pandas_is_not_loaded_for_it():
-    call = (
-        "import sys, numpy as np, pyarrow as pa\n"
-        "from tsas_cli.recordings.parquet_files import *\n"
-        "column = column_of(np.array([1.0, np.nan]))\n"
-        "floats_from(pa.chunked_array([column]))\n"
-        "assert 'pandas' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", call], check=True)
+    program = "import numpy as np, pyarrow as pa; from tsas_cli.recordings.parquet_files import *; "
+    program += "floats_from(pa.chunked_array([column_of(np.array([1.0, np.nan]))]))"
+    assert "pandas" not in loaded_by(program)
 
 
 def rewritten(folder, table):

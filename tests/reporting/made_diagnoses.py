@@ -77,13 +77,13 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
     return write_stage(folder, DiagnosisFile, dataset, **content | more)
 
 
-def write_predictions(dataset: Path, folder: Path, wrong) -> Path:
+def write_predictions(dataset: Path, folder: Path, wrong, channels=("f_in", "f_out")) -> Path:
     """Write what the diagnosis's models say: the nominal is off by `wrong(run, channel, x_in)`."""
     (folder / "runs").mkdir()
     for recording in read_dataset(dataset):
-        x_in, f_in, f_out, _ = play(recording.time_s)
+        x_in, *forces, _ = play(recording.time_s)
         columns = {"time_s": recording.time_s, "x_in_mm": x_in}
-        for name, true in (("f_in", f_in), ("f_out", f_out)):
+        for name, true in zip(channels, forces, strict=False):
             columns[f"{name}_N"] = true
             columns[f"{name}_nominal_N"] = true + wrong(recording.run.id, name, x_in)
         write_parquet(folder / "runs" / f"{recording.run.id}.parquet", pa.table(columns))

@@ -19,9 +19,16 @@ from tsas_cli.recordings.writing import write_dataset, write_parquet
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
 
 A = 0.125 * math.pi
 NOISE = 0.1
+
+
+def page_from(*folders: Path) -> str:
+    """Return the page of what some folders hold."""
+    return page(read_inputs(list(folders)))
 
 
 @contextmanager

@@ -11,8 +11,6 @@ from tests.drives import SPRUNG, drive_dataset
 from tests.reporting import made_diagnoses, made_loops
 from tests.reporting import made_folders as by_hand
 from tests.studies.reproduction import test_page as test_reproduction
-from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 from tsas_cli.reporting.pdf import browser
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.support.errors import InputError
@@ -60,7 +58,7 @@ def page_of(kind: str, root: Path) -> str:
     """Return a page of a kind, made in a folder."""
     if kind == "reproduction":
         return reproduction_page(test_reproduction.PAPER, test_reproduction.GROUPS)
-    return page(read_inputs(FOLDERS[kind](root)))
+    return by_hand.page_from(*FOLDERS[kind](root))
 
 
 @contextmanager

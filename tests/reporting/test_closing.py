@@ -26,7 +26,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(folder):
-    return page(read_inputs([folder]))
+    return by_hand.page_from(folder)
 
 
 def points(text):
@@ -81,7 +81,7 @@ def test_it_says_for_whom_the_better_model_matters_and_where_it_falls_short(whol
 
 def test_a_model_that_makes_it_worse_is_said_to_do_harm(tmp_path):
     bend = {"bend": made_loops.CASES["bend"]}
-    text = page(read_inputs([made_loops.make_closing(tmp_path / "loop", bend)]))
+    text = by_hand.page_from(made_loops.make_closing(tmp_path / "loop", bend))
     (pid, _) = (p for p in points(text) if "the better model" in p)
     assert pid.startswith("pid: the better model does harm. RMSE data sheet / extended is 0.80. ")
     assert "median" not in text
@@ -136,7 +136,7 @@ def test_settings_that_are_not_the_defaults_are_said(tmp_path, whole):
     changed = made_loops.make_closing(tmp_path / "loop")
     with by_hand.edited(changed / "closing.json") as content:
         content["settings"]["sensor"]["noise_mm"] = 0.5
-    text = page(read_inputs([changed]))
+    text = by_hand.page_from(changed)
     assert "--settings settings.toml" in text
     assert "they are not the defaults" in text
 
@@ -146,11 +146,11 @@ def test_beside_recordings_and_tracked_runs_the_page_shows_all(folder, tmp_path)
     first = "Does a better model track better?"
     dataset = by_hand.make_dataset(tmp_path / "dataset", ("a",), samples=400)
     calibrated = by_hand.make_calibration(dataset, tmp_path / "cal")
-    text = page(read_inputs([folder, calibrated]))
+    text = by_hand.page_from(folder, calibrated)
     Outline(text)
     assert headings(text, 2)[:2] == [first, "Recordings"]
     assert "No diagnosis was given" not in text
     assert f"tsas report {dataset} {folder} {calibrated} --out" in text
     tracked = made_loops.make_tracking(tmp_path / "tracked", ("pid",))
-    titles = headings(page(read_inputs([tracked, folder])), 2)
+    titles = headings(by_hand.page_from(tracked, folder), 2)
     assert titles[:3] == [first, "Tracking", "Recordings"]

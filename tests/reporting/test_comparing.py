@@ -85,10 +85,12 @@ def test_a_difference_beyond_the_uncertainty_comes_first_and_is_marked(changed):
     assert changed.count('<td class="short">yes</td>') == 1
 
 
-def test_the_same_recordings_make_no_claim(extended):
+def test_the_same_recordings_make_no_claim_and_others_are_shown_each_on_its_own(extended, changed):
     assert "their errors are not independent" in extended
     assert '<td class="short">yes</td>' not in extended
     assert "friction_coefficient *" not in extended
+    assert "No recording is in both" in changed
+    assert 'id="residuals"' not in changed
 
 
 def test_effects_and_their_rivals_stand_beside_each_other(extended, folders):
@@ -104,11 +106,6 @@ def test_errors_on_held_out_data_stand_beside_each_other(folders):
     (f_in, *_) = record_of(compare(folders[0], folders[2])).held_out
     assert f_in.channel == "f_in_N"
     assert (f_in.rmse_a, f_in.rmse_b) == pytest.approx((0.1, 0.62))
-
-
-def test_other_recordings_are_shown_each_on_its_own(changed):
-    assert "No recording is in both" in changed
-    assert 'id="residuals"' not in changed
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -5,12 +5,11 @@ import pytest
 
 from tests.reporting.conftest import no_curves
 from tests.reporting.made_diagnoses import REASONS, make_diagnosis
-from tests.reporting.made_folders import edited, make_dataset
+from tests.reporting.made_folders import edited, make_dataset, page_from
 from tests.reporting.test_page import Outline, headings, rows
 from tsas_cli.effects import EFFECTS
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.page import page
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +25,7 @@ def sections(dataset):
 
 
 def written(folder):
-    whole = page(read_inputs([folder]))
+    whole = page_from(folder)
     Outline(whole)
     return whole[whole.index('<section id="diagnosis"') : whole.index('<section id="recordings"')]
 
@@ -128,7 +127,9 @@ def test_where_no_less_is_attainable_that_is_said_once(of):
 
 
 def test_a_long_verdict_is_a_paragraph_and_a_list(of):
-    text = of("unexplained", reason="First of 1.5 N. Second. Third of f_in_N. Fourth.")
+    said = "First of 1.5 N. Second. Third of f_in_N. Fourth."
+    text = of("unexplained", reason=said, candidates=[])
+    assert "Screening left no effect" in text
     assert "<p>First of 1.5 N. Second.</p>" in text
     assert re.findall("<li>([TF][^<]*)</li>", text)[:2] == ["Third of f_in_N.", "Fourth."]
 
@@ -142,14 +143,11 @@ def test_what_a_stand_in_fails_to_prove_is_said_once(of):
     assert "It is not constant." in words(text)
 
 
-def test_what_is_left_is_said_with_its_size(sections):
+def test_what_is_left_is_said_with_its_size_and_nothing_of_too_little_data(sections):
     text = words(sections["unexplained"])
     assert "remaining residual is 38.4; 1" in text
     assert "after what is named" not in text
     assert "residual, 12 % is left after what is named" in words(sections["named"])
-
-
-def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):
     assert headings(sections["undecided"], 3) == ["Next experiment"]
     assert "<svg" not in sections["undecided"]
 
@@ -208,10 +206,6 @@ def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(of):
     assert ">backlash + e10<" not in text
 
 
-def test_where_screening_left_nothing_the_page_says_so(of):
-    assert "Screening left no effect" in of("unexplained", candidates=[])
-
-
 def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
     text = words(sections["named"])
     group = "drive_compliance, free_tendon and sheath_compression (similarity at least 0.97)"
@@ -225,10 +219,10 @@ def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
 @pytest.mark.usefixtures("undrawn")
 def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided")
-    assert f"tsas diagnose {dataset} --out {folder}" in page(read_inputs([folder]))
+    assert f"tsas diagnose {dataset} --out {folder}" in page_from(folder)
     model = {"file": "my model.toml", "sha256": "ab" * 32}
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided", model=model)
-    text = unescape(page(read_inputs([folder])))
+    text = unescape(page_from(folder))
     assert f"tsas diagnose {dataset} --model 'my model.toml' --out {folder}" in text
     assert "ab" * 32 in text
 

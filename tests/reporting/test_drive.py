@@ -5,8 +5,7 @@ import re
 import pytest
 
 from tests.drives import SPRUNG, drive_dataset
-from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
+from tests.reporting.made_folders import page_from
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 
 
@@ -15,7 +14,7 @@ def made(tmp_path_factory):
     root = tmp_path_factory.mktemp("drive")
     data = drive_dataset(root / "dataset", SPRUNG, duration_s=6.0, to_Hz=120.0)
     summary = identify_harmonic_drive(data, out=root / "out").summary
-    return summary, page(read_inputs([root / "out"]))
+    return summary, page_from(root / "out")
 
 
 def test_the_verdict_its_numbers_and_plots_stand_on_the_page_and_nothing_of_a_tendon(made):

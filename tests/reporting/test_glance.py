@@ -10,7 +10,6 @@ from tests.reporting import made_folders as by_hand
 from tests.studies.reproduction.test_page import GROUPS, PAPER
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 from tsas_studies.reproduction.page import reproduction_page
 
 
@@ -50,23 +49,28 @@ def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp
     }
 
 
-def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
-    cause = {"effect": "backlash", "gain_percent": 7.25, "parameters": {}}
-    named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
-    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "named", named=named))
+@pytest.fixture
+def diagnosed(dataset, tmp_path):
+    """Return a function that gives what stands on top of a diagnosis."""
+    make = made_diagnoses.make_diagnosis
+    return lambda verdict, **more: of(make(dataset, tmp_path / "d", verdict, **more))
+
+
+CAUSE = {"effect": "backlash", "title": "Backlash", "parameters": {}}
+
+
+def test_two_causes_are_one_sentence_and_each_has_its_gain(diagnosed):
+    gained = CAUSE | {"gain_percent": 7.25}
+    it = diagnosed("named", named=[gained, gained | {"effect": "mine", "title": "Own thing"}])
     assert it.verdict == "Backlash and own thing"
     assert facts(it)["normalised residual by mine"] == ("", "7.25 % lower", "")
 
 
-def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
-    named = [{"effect": "backlash", "title": "Backlash", "parameters": {}}]
-    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "partly", named=named))
+def test_what_is_unknown_beside_a_cause_and_a_rival_are_not_kept_back(diagnosed):
+    it = diagnosed("partly", named=[CAUSE])
     assert it.kind == "Cause found, and something unknown beside it"
     assert it.verdict == "Backlash"
-
-
-def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
-    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
+    it = diagnosed("ambiguous")
     assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")
     assert it.verdict == "Tendon outside the sheath (or compliance of the drive)"
 
@@ -79,8 +83,8 @@ def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
         ("undecided", "These recordings lead to no verdict"),
     ],
 )
-def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdict, said):
-    it = of(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", verdict))
+def test_without_a_cause_there_is_no_before_and_no_gain(diagnosed, verdict, said):
+    it = diagnosed(verdict)
     assert it.verdict == said
     assert "after" not in it.numbers
     assert not any(fact.before or fact.label == "normalised residual" for fact in it.facts)
@@ -114,12 +118,12 @@ def test_a_simulation_alone_says_how_near_it_is(dataset, tmp_path):
 @pytest.mark.usefixtures("undrawn")
 def test_recordings_alone_have_no_verdict(dataset):
     assert of(dataset) is None
-    assert 'class="glance"' not in page(read_inputs([dataset]))
+    assert 'class="glance"' not in by_hand.page_from(dataset)
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_it_stands_above_everything_else(dataset, tmp_path):
-    text = page(read_inputs([made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "named")]))
+    text = by_hand.page_from(made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "named"))
     assert text.index('class="verdict">Tendon outside') < text.index("<nav")
     shown = unescape(re.sub("<[^>]*>", "", text[text.index("<dl>") : text.index("</dl>")]))
     assert "0.910 → 0.110 N" in shown
@@ -145,6 +149,6 @@ def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
     assert it.verdict == "A law of unnamed origin describes what the model misses"
     assert it.numbers.endswith("nominal → extended model")
     assert facts(it)["tension at the drive"][0] == "0.620"
-    text = page(read_inputs([folder]))
+    text = by_hand.page_from(folder)
     assert "<code>size_N</code> 1.00 N, 95 % interval 0.90 to 1.10" in text
     assert "x_out_size_mm" not in text

@@ -17,8 +17,6 @@ from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, anchor, rendered
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 
 RUN = "\"><img src=x onerror=hit()> '`$(touch x)`;&amp; $x$"  # a run's id cannot hold a slash
 EVIL = (
@@ -100,7 +98,7 @@ def hostile(tmp_path_factory):
             signals = {EVIL: maps[when]["f_in_N"]["phase"], **maps[when]["f_in_N"]}
             maps[when] = {EVIL: signals}
         content["signatures"]["effects"][0] = EVIL
-    return page(read_inputs([dataset, check, calibrate, simulate, diagnose]))
+    return by_hand.page_from(dataset, check, calibrate, simulate, diagnose)
 
 
 def test_no_element_attribute_or_address_comes_of_a_name(hostile):
@@ -142,13 +140,13 @@ def test_a_page_of_tracking_and_of_closing_is_harmless_too(tmp_path):
             result["controller"] += EVIL
             result["condition"] += EVIL
         content["conditions"] = {k + EVIL: v for k, v in content["conditions"].items()}
-    assert SHOWN in harmless(page(read_inputs([tracked])))
+    assert SHOWN in harmless(by_hand.page_from(tracked))
     title, hidden, _, rows = made_loops.CASES["bend"]
     cases = {EVIL: (EVIL + title, {EVIL: 1.0} | hidden, [{"effect": EVIL, "rivals": [EVIL]}], {
         name + EVIL: rmse for name, rmse in rows.items()
     })}  # fmt: skip
     loop = made_loops.make_closing(tmp_path / "loop", cases, version=EVIL)
-    assert SHOWN in harmless(page(read_inputs([loop])))
+    assert SHOWN in harmless(by_hand.page_from(loop))
 
 
 def test_every_field_of_a_section_is_escaped():

@@ -12,7 +12,7 @@ import pytest
 
 from tests.reporting import made_folders as by_hand
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import SECTIONS, page
+from tsas_cli.reporting.page import SECTIONS
 from tsas_cli.support.errors import InputError
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
@@ -112,7 +112,7 @@ def folders(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(folders):
-    return page(read_inputs(list(folders.values())))
+    return by_hand.page_from(*folders.values())
 
 
 def test_the_contents_lead_to_every_section(whole):
@@ -150,7 +150,7 @@ def test_each_phase_is_drawn_in_its_own_colour(whole):
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_dataset_alone_makes_a_page_that_says_what_is_missing(folders):
-    alone = page(read_inputs([folders["dataset"]]))
+    alone = by_hand.page_from(folders["dataset"])
     Outline(alone)
     assert "No calibration was given" in alone
     assert "No simulation was given" in alone
@@ -162,7 +162,7 @@ def test_of_many_findings_of_one_kind_the_first_are_shown_and_the_others_named(f
     findings = [FINDING | {"run": f"r{n}", "sentence": f"`x` in r{n}"} for n in range(9)]
     alone = FINDING | {"severity": "error", "sentence": "broken"}
     check = by_hand.make_check(folders["dataset"], tmp_path / "check", [*findings, alone])
-    text = page(read_inputs([check]))
+    text = by_hand.page_from(check)
     assert "<code>x</code> in r3<" in text
     assert "in r4<" not in text
     assert ">r4, r5, r6, r7, r8<" in text
@@ -183,7 +183,7 @@ def test_a_note_says_for_which_rows_it_holds_and_missing_values_are_dashes(folde
     with by_hand.edited(calibrated / "calibration.json") as content:
         content["stiffness"][0] |= {"note": "few samples", "expected_N_per_mm": None}
         content["stiffness"][0]["km"] |= missing
-    text = page(read_inputs([calibrated]))
+    text = by_hand.page_from(calibrated)
     Outline(text)
     assert "<li>few samples: a contraction</li>" in text
     assert ["a", "contraction", "–", "2.338", "2"] in [row[:2] + row[-3:] for row in rows(text)]
@@ -191,7 +191,7 @@ def test_a_note_says_for_which_rows_it_holds_and_missing_values_are_dashes(folde
         for row in content["stiffness"]:
             row["expected_N_per_mm"] = None
             row["km"] |= missing
-    text = page(read_inputs([calibrated]))
+    text = by_hand.page_from(calibrated)
     Outline(text)
     assert ["run", "phase", "theory", "strokes"] in rows(text)
 
@@ -207,7 +207,7 @@ def test_the_commands_name_the_calibrated_model_only_where_it_was_simulated(
     digest = hashlib.sha256(b"mine").hexdigest()
     with by_hand.edited(simulated / "simulation.json") as content:
         content["model"] = {"file": "model.toml", "sha256": digest}
-    text = page(read_inputs([folders["dataset"], calibrated, simulated]))
+    text = by_hand.page_from(folders["dataset"], calibrated, simulated)
     assert (f"--model {calibrated}/model.toml" in text) is same
     assert digest in text
 
@@ -228,6 +228,6 @@ def test_conditions_that_were_told_are_those_of_the_page_and_no_command_repeats_
         content["conditions"] = {"total_bend_rad": 1.5}
     given = [folders["dataset"], told]
     assert {run.total_bend_rad for run in read_inputs(given).dataset.runs} == {1.5}
-    assert "They lack what was handed over" in page(read_inputs(given))
+    assert "They lack what was handed over" in by_hand.page_from(*given)
     with pytest.raises(InputError, match="was given other conditions of the runs than"):
         read_inputs([*given, folders["calibration"]])

@@ -5,10 +5,9 @@ import pytest
 
 from tests.processes import alive
 from tests.refusals import refusal
+from tests.reporting.made_folders import page_from
 from tests.reporting.pages import pipeline
 from tsas_cli.reporting import pdf
-from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 from tsas_cli.support.errors import InputError
 
 
@@ -71,7 +70,7 @@ def printed(tmp_path_factory):
     except InputError as error:
         pytest.skip(f"nothing to print with: {error}")
     root = tmp_path_factory.mktemp("pdf")
-    pdf.print_page(page(read_inputs(pipeline(root, samples=400))), root / "page.pdf")
+    pdf.print_page(page_from(*pipeline(root, samples=400)), root / "page.pdf")
     return (root / "page.pdf").read_bytes()
 
 

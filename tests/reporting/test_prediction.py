@@ -4,13 +4,12 @@ import shutil
 import pytest
 
 import tsas_cli as tsas
-from tests.reporting.made_folders import edited, make_dataset, make_prediction
+from tests.reporting.made_folders import edited, make_dataset, make_prediction, page_from
 from tests.reporting.test_page import Outline, without_script
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import write_model
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 from tsas_cli.reporting.prediction import section
 
 HOSTILE = "<script>$x$"
@@ -30,7 +29,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def text(folder):
-    return page(read_inputs([folder]))
+    return page_from(folder)
 
 
 def test_the_loops_are_drawn_under_the_tables(folder, text):
@@ -73,5 +72,5 @@ def test_a_file_that_says_less_makes_a_page_all_the_same(tmp_path):
     with edited(folder / "predict.json") as content:
         content |= {key: [] for key in ("channels", "ranges", "findings", "notes", "models")}
     assert section(read_inputs([folder])).groups == ()
-    assert "Predicted, not fitted" in page(read_inputs([folder]))
+    assert "Predicted, not fitted" in page_from(folder)
     assert section(read_inputs([dataset])) is None  # without predictions

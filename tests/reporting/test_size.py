@@ -6,8 +6,6 @@ import pytest
 
 from tests.reporting import made_folders
 from tests.reporting.pages import pipeline
-from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 
 MOST = 2_000_000  # bytes
 
@@ -31,6 +29,6 @@ def test_long_runs_of_four_channels_make_less_than_two_megabytes(tmp_path, monke
             path = simulate / "runs" / f"{run}.parquet"
             table = pq.read_table(path)
             pq.write_table(table.append_column("x_out_mm", table["f_out_N"]), path)
-    text = page(read_inputs(folders))
+    text = made_folders.page_from(*folders)
     assert text.count('id="simulation-') > 3 * count
     assert 0.02 * MOST * count < len(text.encode()) < MOST

@@ -10,13 +10,12 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.refusals import refusal
-from tests.reporting.made_folders import edited
+from tests.reporting.made_folders import edited, page_from
 from tests.reporting.made_loops import make_tracking
 from tests.reporting.test_page import Outline, cells, commands_of, headings
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 from tsas_cli.reporting.tracking.runs import TimeCurve, draw_panels
 
 PICTURES = ("force", "error", "phase", "adaptation", "effort")
@@ -29,7 +28,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(folder):
-    return page(read_inputs([folder]))
+    return page_from(folder)
 
 
 @pytest.fixture
@@ -90,7 +89,7 @@ def test_adapted_parameters_stand_between_their_bounds(whole):
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_controller_that_does_not_adapt_has_no_such_part(tmp_path):
-    text = page(read_inputs([make_tracking(tmp_path / "tracked", ("pid", "sliding-mode"))]))
+    text = page_from(make_tracking(tmp_path / "tracked", ("pid", "sliding-mode")))
     Outline(text)
     assert "Adapted parameters" not in text
     assert len(labels(text)) == 2 * (len(PICTURES) - 1)
@@ -102,7 +101,7 @@ def test_one_controller_under_one_condition_is_a_page_too(spoiled):
         content.update(results=content["results"][:1], seeds=[1, 1], notes=[])
         content["conditions"] = {"undisturbed": []}
 
-    text = page(read_inputs([spoiled(one)]))  # never at its limit
+    text = page_from(spoiled(one))  # never at its limit
     Outline(text)
     assert "at its limit" not in cells(text, "Scores")[0]
     assert "Followed by pid" in text
@@ -161,7 +160,7 @@ def test_a_run_that_lacks_a_column_is_refused(tmp_path, column):
     folder = make_tracking(tmp_path / "tracked")
     path = folder / "runs" / "adaptive-sliding-mode-disturbed.parquet"
     pq.write_table(pq.read_table(path).drop_columns([column]), path)
-    assert path.name in refusal(lambda: page(read_inputs([folder])))
+    assert path.name in refusal(lambda: page_from(folder))
 
 
 def test_runs_that_are_not_beside_the_file_are_refused(tmp_path):

@@ -8,11 +8,10 @@ import pytest
 
 import tsas_cli as tsas
 from tests.counted import Counted
+from tests.reporting.made_folders import page_from
 from tests.rigs import dataset_of, recorded
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import DatasetSource, OfDataset
-from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.page import page
 from tsas_cli.stages.check import unrecorded
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -41,7 +40,7 @@ def test_an_accepted_error_stands_in_the_result_and_on_top_of_the_page(pounds, t
     assert (error.code, error.run) == ("unit", "a")
     said = "Despite an error in run a: f_out_N is 4.4"
     assert any(said in sentence for sentence in result.sentences())
-    made = page(read_inputs([pounds, tmp_path / "out"]))
+    made = page_from(pounds, tmp_path / "out")
     assert said in made[: made.index("<nav")]
     assert f"{stage} {pounds}" in made
     assert "--despite unit" in made[made.index('id="repeat"') :]

@@ -13,7 +13,6 @@ from tsas_cli.recordings import parquet_files, storage
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.storage_failures import TIMEOUT
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.support.errors import InputError
 
 FAULTS = ["drop", "stall", "trickle", "truncate", "503 Slow Down", "500 Internal Error"]
 RUN = "runs/a.parquet"
@@ -87,7 +86,7 @@ def test_an_object_that_is_gone_meanwhile_is_one_line(broken, bucket, dataset, o
         tsas.upload(dataset, f"{bucket}/bench")
         data = tsas.read(f"{bucket}/bench")
     broken.faulty("404 Not Found", 1000, of)
-    with pytest.raises(InputError, match=r"is not on the storage|file is missing"):
+    with pytest.raises(tsas.InputError, match=r"is not on the storage|file is missing"):
         tsas.upload(dataset, f"{bucket}/bench") if of == "PUT" else data["a"]
     broken.faulty("404 Not Found", 1000, "GET")
     refusal(tsas.check, f"{bucket}/bench")

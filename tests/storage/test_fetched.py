@@ -18,7 +18,6 @@ from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.support.errors import InputError
 
 ROWS = 60_000
 NAMES = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "temperature_C")
@@ -65,28 +64,32 @@ class Object:
         return b"content"[start:end]
 
 
+def asked(wire, of=OBJECT):
+    """Return what was asked of an object."""
+    return [verb for verb, path in wire.requests if of in path]
+
+
 def test_a_recording_is_fetched_once_and_whole(large, wire):
     folder, address = large
     here, there = (open_run(place, read_dataset(place).runs[0]) for place in large)
     for name in NAMES:
         np.testing.assert_array_equal(there.read(name), here.read(name))
     read_dataset(address)["a"]
-    assert [verb for verb, path in wire.requests if path.endswith(OBJECT)] == ["HEAD", "GET"]
+    assert asked(wire) == ["HEAD", "GET"]
     assert wire.received > (folder / "runs/a.parquet").stat().st_size
 
 
 def test_of_what_was_fetched_the_latest_is_kept(large, tmp_path, bucket, wire, monkeypatch):
     folder, address = large
-    monkeypatch.setattr(
-        parquet_files, "CACHE_BYTES", 1.5 * (folder / "runs/a.parquet").stat().st_size
-    )
+    size = (folder / "runs/a.parquet").stat().st_size
+    monkeypatch.setattr(parquet_files, "CACHE_BYTES", 1.5 * size)
     tsas.upload(folder, f"{bucket}/other")
     for _ in range(2):
         wire.reset()
         for place in (address, location_of(f"{bucket}/other")):
             read_dataset(place)["a"]
             read_dataset(place)["a"]
-        assert [verb for verb, path in wire.requests if "parquet" in path] == 2 * ["HEAD", "GET"]
+        assert asked(wire, "parquet") == 2 * ["HEAD", "GET"]
 
 
 def test_a_recording_larger_than_one_request_is_whole(large, wire, monkeypatch):
@@ -95,9 +98,8 @@ def test_a_recording_larger_than_one_request_is_whole(large, wire, monkeypatch):
     there, here = (read_dataset(place)["a"].columns for place in (address, folder))
     np.testing.assert_array_equal(there["f_out_N"], here["f_out_N"])
     size = (folder / "runs/a.parquet").stat().st_size
-    verbs = [verb for verb, path in wire.requests if path.endswith(OBJECT)]
-    assert verbs == ["HEAD", *["GET"] * -(-size // 1_000_000)]
-    assert len(verbs) > 3
+    assert asked(wire) == ["HEAD", *["GET"] * -(-size // 1_000_000)]
+    assert len(asked(wire)) > 3
 
 
 def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
@@ -118,7 +120,7 @@ def test_where_there_is_no_room_it_is_said(monkeypatch):
     """Of a small recording it was said when the file was flushed: that the output has no room."""
     assert parquet_files._fetch(Object(), sha256(b"content").hexdigest())[:] == b"content"
     monkeypatch.setattr(parquet_files.tempfile, "TemporaryFile", Full)
-    with pytest.raises(InputError, match="cannot be stored while it is read") as caught:
+    with pytest.raises(tsas.InputError, match="cannot be stored while it is read") as caught:
         parquet_files._fetch(Object(), sha256(b"content").hexdigest())
     assert caught.value.where == tempfile.gettempdir()
 

@@ -5,7 +5,6 @@ import tsas_cli as tsas
 from tests.storage.conftest import free_port
 from tests.storage.wire import HOST
 from tsas_cli.recordings import storage
-from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture
@@ -30,5 +29,5 @@ def test_a_dataset_on_google_storage_is_read_as_a_folder_is(dataset, google):
     assert there.hashes() == here.hashes()
     for name, values in here["a"].columns.items():
         np.testing.assert_array_equal(there["a"].columns[name], values)
-    with pytest.raises(InputError, match=r"no dataset\.toml here"):
+    with pytest.raises(tsas.InputError, match=r"no dataset\.toml here"):
         tsas.read(f"{google}/none")

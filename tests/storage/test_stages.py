@@ -7,7 +7,6 @@ import tsas_cli as tsas
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.stream.stream import shown_stream
-from tsas_cli.support.errors import InputError
 from tsas_cli.support.replacing import SUMS
 
 
@@ -76,7 +75,7 @@ def test_a_report_of_a_dataset_that_has_changed_since_is_refused(both, tmp_path)
     manifest = local / "dataset.toml"
     manifest.write_text(manifest.read_text() + "# changed\n")
     tsas.upload(local, address, force=True)
-    with pytest.raises(InputError, match="has changed since this stage read it"):
+    with pytest.raises(tsas.InputError, match="has changed since this stage read it"):
         tsas.report(tmp_path / "check", out=tmp_path / "report.html")
 
 

@@ -85,11 +85,8 @@ def test_a_package_that_is_not_installed(monkeypatch):
     assert line_of("s3://a/b").endswith("need the package s3fs; install tsas[s3]")
 
 
-def test_a_file_address_is_a_local_folder(dataset):
+def test_a_file_address_is_a_local_folder_and_so_is_an_output(dataset):
     assert tsas.read(dataset.as_uri())["a"].time_s.size == 500
-
-
-def test_an_output_is_a_local_folder(dataset):
     line = refusal(tsas.check, dataset, out="s3://bucket/x")
     assert "s3://bucket/x: is an address; expected a local folder" in line
 

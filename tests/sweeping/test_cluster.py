@@ -146,22 +146,18 @@ def refused(address, shared, why):
         dict(on_cluster(f"{WORKS}:squared", texts([1]), address, shared))
 
 
-def test_no_scheduler_is_one_line(monkeypatch, shared):
-    monkeypatch.setattr("tsas_cli.sweeping.cluster.CONNECT_TIMEOUT_S", 0.5)
-    refused(f"tcp://{HERE}:9", shared, "no scheduler responds; expected a running")
-
-
 NO_HOST = ("", "tcp://", "http://x:1", "tcp://ä:1", "tcp://a:1;touch ran")
 NO_PORT = ("tcp://x", "tcp://x:y", "tcp://x:1/", "tcp://x:65536")
+WRONG = dict.fromkeys((*NO_HOST, *NO_PORT), "is no scheduler address; expected tcp://HOST:PO") | {
+    "tls://x:1": "Dask has no TLS certificates; name them",
+    f"tcp://{HERE}:9": "no scheduler responds; expected a running",
+}
 
 
-@pytest.mark.parametrize("address", [*NO_HOST, *NO_PORT])
-def test_what_is_no_address_is_refused_before_anybody_is_asked(address, shared):
-    refused(address, shared, "is no scheduler address; expected tcp://HOST:PO")
-
-
-def test_without_certificates_tls_is_refused_before_anybody_is_asked(shared):
-    refused("tls://x:1", shared, "Dask has no TLS certificates; name them")
+@pytest.mark.parametrize("address", WRONG)
+def test_a_wrong_address_is_one_line(monkeypatch, address, shared):
+    monkeypatch.setattr("tsas_cli.sweeping.cluster.CONNECT_TIMEOUT_S", 0.5)
+    refused(address, shared, WRONG[address])
 
 
 def test_without_dask_the_line_says_what_to_install(monkeypatch, shared):

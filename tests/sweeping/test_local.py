@@ -28,13 +28,11 @@ def test_every_task_is_answered_by_its_number_on_as_many_processes_as_asked_for(
     assert len({outcome["where"] for outcome in outcomes.values()}) == 2
 
 
-def test_no_more_processes_begin_than_there_are_tasks(tmp_path):
-    assert len(dict(in_processes(f"{WORKS}:squared", texts([7]), workers=50))) == 1
-
-
 def test_what_a_worker_prints_is_no_answer():
-    outcomes = dict(in_processes(f"{WORKS}:outcome_of", texts([3, 4]), workers=1))
+    """Where there are fewer tasks than workers might be, no more of them begin."""
+    outcomes = dict(in_processes(f"{WORKS}:outcome_of", texts([3, 4]), workers=50))
     assert [outcomes[n]["results"]["square"] for n in (0, 1)] == [9, 16]
+    assert len(outcomes) == 2
 
 
 def test_a_worker_that_is_killed_loses_nothing(tmp_path):
@@ -44,11 +42,15 @@ def test_a_worker_that_is_killed_loses_nothing(tmp_path):
     assert [outcomes[n]["results"]["square"] for n in range(5)] == [0, 1, 4, 9, 16]
 
 
-def test_a_task_that_kills_its_workers_is_reported_and_the_rest_completes():
-    outcomes = dict(in_processes(f"{WORKS}:one_always_kills", texts(range(5)), workers=2))
+@pytest.mark.parametrize(
+    ("work", "why"),
+    [("one_always_kills", "by SIGKILL"), ("one_raises", "with 1: ValueError: two")],
+)
+def test_a_task_that_ends_its_workers_is_reported_and_the_rest_completes(work, why):
+    outcomes = dict(in_processes(f"{WORKS}:{work}", texts(range(5)), workers=2))
     bad = outcomes.pop(2)
     assert (bad["state"], bad["defect"]) == ("failed", True)
-    assert bad["error"] == "the process died, 2 times: ended by SIGKILL"
+    assert bad["error"] == f"the process died, 2 times: ended {why}"
     assert [outcomes[n]["state"] for n in sorted(outcomes)] == ["done"] * 4
 
 
@@ -59,12 +61,6 @@ def test_a_machine_that_starts_no_more_processes_is_one_line(monkeypatch):
     monkeypatch.setattr("subprocess.Popen", refused)
     with pytest.raises(InputError, match=r"no process can be started \(Too many open files\); use"):
         dict(in_processes(f"{WORKS}:squared", texts([1, 2]), workers=2))
-
-
-def test_the_last_words_of_a_worker_say_why_it_ended():
-    outcomes = dict(in_processes(f"{WORKS}:one_raises", texts([1, 2]), workers=1))
-    assert outcomes[0]["state"] == "done"
-    assert outcomes[1]["error"] == "the process died, 2 times: ended with 1: ValueError: two"
 
 
 def test_who_stops_reading_answers_ends_the_workers_at_once(tmp_path):

@@ -46,11 +46,9 @@ def test_a_range_has_both_ends_and_equal_distances_or_ratios(tmp_path):
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
 def test_a_table_of_sets_is_taken_row_by_row(tmp_path, suffix):
+    (tmp_path / "sets.csv").write_text("preload_N,nodes\n20,10\n25,\n30,30\n")
     table = pa.table({"preload_N": [20.0, 25.0, 30.0], "nodes": [10, None, 30]})
-    if suffix == "csv":
-        (tmp_path / "sets.csv").write_text("preload_N,nodes\n20,10\n25,\n30,30\n")
-    else:
-        pq.write_table(table, tmp_path / "sets.parquet")
+    pq.write_table(table, tmp_path / "sets.parquet")
     found = points(tmp_path, sets=f"sets.{suffix}", vary={"fit_own": [True, False]})
     assert len(found) == 6
     assert found[0] == {"preload_N": 20, "nodes": 10, "fit_own": True}

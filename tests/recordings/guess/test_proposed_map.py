@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from tests.recordings.guess.rig_files import CHANNELS, run, sources, write_csv
 from tests.recordings.guess.test_guess import FEWER, REPOSITORY, write_lab
-from tsas_cli.commands.common import show
 from tsas_cli.recordings.guess.proposal import propose
-from tsas_cli.recordings.guess.text import map_text, tables
+from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.support.errors import InputError
 
@@ -28,18 +27,12 @@ def test_the_map_is_whole_or_says_what_it_asks(path, tmp_path, here):
     assert (code, messages) == (0, "")
 
 
-@pytest.mark.parametrize("page", ["docs/ingest.md", "README.md"])
-def test_the_pages_show_what_is_printed(tmp_path, capsys, page):
-    path = tmp_path / "bend180.csv"
+def test_the_page_shows_the_map_that_is_proposed(path):
+    """What the command prints there, `tests/docs/test_examples.py` holds."""
     write_lab(path, "readme")
-    proposal = propose([path])
-    show({}, tables(proposal, "bench.toml"), quiet=False, as_json=False)
-    shown = (REPOSITORY / page).read_text(encoding="utf-8")
-    assert capsys.readouterr().out.strip() in shown
-    if page == "docs/ingest.md":
-        text = map_text(proposal)
-        begin, end = text.index("[columns.x_in_mm]"), text.index('pulley_radius_mm = "?"')
-        assert text[begin:end] in shown
+    text = map_text(propose([path]))
+    begin, end = text.index("[columns.x_in_mm]"), text.index('pulley_radius_mm = "?"')
+    assert text[begin:end] in (REPOSITORY / "docs" / "ingest.md").read_text(encoding="utf-8")
 
 
 def test_every_key_of_a_map_has_a_comment_above_or_beside_it(path):

@@ -9,10 +9,7 @@ import pyarrow as pa
 from rerun.blueprint import View
 from rerun.chunk import RrdReader
 
-from tests.reporting.made_diagnoses import make_diagnosis
-from tests.reporting.made_folders import play
-from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.writing import write_parquet
+from tests.reporting.made_diagnoses import make_diagnosis, write_predictions
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
 
@@ -87,14 +84,4 @@ def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named") -> Path:
     """Write what `tsas diagnose` would: by 2 N the nominal model is off, the extended one not."""
     make_diagnosis(dataset, folder, verdict)
     (folder / "model-extended.toml").write_text(MODEL, encoding="utf-8")
-    (folder / "runs").mkdir()
-    for recording in read_dataset(dataset):
-        x_in, f_in, _, _ = play(recording.time_s)
-        columns = {
-            "time_s": recording.time_s,
-            "x_in_mm": x_in,
-            "f_in_N": f_in,
-            "f_in_nominal_N": f_in - 2.0,
-        }
-        write_parquet(folder / "runs" / f"{recording.run.id}.parquet", pa.table(columns))
-    return folder
+    return write_predictions(dataset, folder, lambda *_: -2.0, channels=("f_in",))

@@ -44,11 +44,6 @@ def test_times_are_rounded_to_the_nanosecond_and_a_known_start_is_the_session(tm
         assert line.at("session").tolist() == [start + ns for ns in NS]
 
 
-def test_a_gap_stays_a_gap(tmp_path):
-    line = written(tmp_path, times_of(TIME_S), np.array([1.0, np.nan, np.nan, 4.0]))
-    assert line.rows["Scalars:scalars"] == [[1.0], [], [], [4.0]]
-
-
 @pytest.mark.parametrize("values", [np.arange(3.0), np.arange(5.0)])
 def test_columns_of_different_lengths_are_refused_and_nothing_is_written(tmp_path, values):
     with pytest.raises(ValueError, match="values at 4 times"):
@@ -65,23 +60,19 @@ def test_names_from_files_are_one_part_of_a_path_each(tmp_path):
     odd = ["<script>", "a/b", "a b ", "__x", "é+*", "tab\there", "+ /**"]
     with to_file(tmp_path / "s.rrd", "x") as recorder:
         for name in odd:
-            recorder.series(
-                rr.new_entity_path(["run", name, "f"]),
-                times_of(TIME_S),
-                np.arange(4.0),
-                "f",
-                0x112233FF,
-            )
+            path = rr.new_entity_path(["run", name, "f"])
+            recorder.series(path, times_of(TIME_S), np.arange(4.0), "f", 0x112233FF)
     found = [path for path in read(tmp_path / "s.rrd") if path.startswith("/run/")]
     assert len(found) == len(odd)
     assert all(path.replace("\\/", "").count("/") == 3 for path in found)
     assert "/run/\\<script\\>/f" in found
 
 
-def test_a_series_is_drawn_by_its_extremes(tmp_path):
+def test_a_series_is_drawn_by_its_extremes_and_a_gap_stays_a_gap(tmp_path):
     """The usual average would draw a fast chirp as if it decayed."""
-    static = written(tmp_path, times_of(TIME_S)).static
-    assert static["SeriesLines:aggregation_policy"] == [5]  # MinMax
+    line = written(tmp_path, times_of(TIME_S), [1.0, np.nan, np.nan, 4.0])
+    assert line.static["SeriesLines:aggregation_policy"] == [5]  # MinMax
+    assert line.rows["Scalars:scalars"] == [[1.0], [], [], [4.0]]
 
 
 def test_every_layout_is_an_application_of_its_own(tmp_path):
