@@ -12,7 +12,7 @@ import pytest
 from tests.commands.viewing import ADDRESS, address_in, ended, started
 from tests.processes import SOON_S, alive, family, listening
 from tests.reporting.made_folders import make_dataset, make_simulation
-from tests.reporting.viewer.streams import make_stream
+from tests.reporting.stream.streams import make_stream
 from tsas_cli.reporting.viewer.child import free_ports
 from tsas_cli.reporting.viewer.open import SCREENS
 

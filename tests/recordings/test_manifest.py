@@ -1,11 +1,16 @@
 import datetime as dt
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from tests.commands.documented import DOCS, documented
 from tests.refusals import refusal as refused
+from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import (
     Manifest,
+    RigSheet,
+    Run,
     check_run_name,
     colliding_names,
     read_manifest,
@@ -194,3 +199,15 @@ def test_names_that_are_one_file_elsewhere():
     assert colliding_names(["a", "b", "A"]) == ("a", "A")
     assert colliding_names(["\u00e9", "e\u0301"]) == ("\u00e9", "e\u0301")
     assert colliding_names(["stra\u00dfe", "STRASSE"]) == ("stra\u00dfe", "STRASSE")
+
+
+def test_every_key_and_column_of_a_dataset_is_documented():
+    keys = {key for table in (Manifest, RigSheet, Run) for key in table.model_fields}
+    assert documented("dataset.toml") == keys | set(BY_NAME)
+
+
+def test_the_documented_manifest_is_one():
+    page = (DOCS / "formats.md").read_text(encoding="utf-8")
+    manifest = Manifest.model_validate(tomllib.loads(page.split("```toml\n")[1].split("```")[0]))
+    assert not manifest.unknown_keys()
+    assert not manifest.rig.unknown_keys() | manifest.run[0].unknown_keys()

@@ -181,3 +181,11 @@ def test_no_script_runs_in_a_browser_even_without_the_policy(hostile, tmp_path):
         assert tab.evaluate("window.hits") == 0
         assert asked == [path.as_uri()]
         context.close()
+
+
+def test_an_address_holds_no_letter_that_means_something_in_html_css_or_urls():
+    odd = ["a b", "a.20b", "a%20b", "a-b", "ä", '">', "a/b", ""]
+    assert anchor("diagnosis", "free_tendon") == "diagnosis-free_tendon"
+    addresses = {anchor("x", word) for word in odd}
+    assert len(addresses) == len(odd)
+    assert not set("".join(addresses)) & set(" %\"'<>&#()/?;:")

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-from rerun.blueprint import View
+from rerun.blueprint import Blueprint, Tabs, View
 from rerun.chunk import RrdReader
 
 from tests.reporting.made_diagnoses import make_diagnosis, write_predictions
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
+from tsas_cli.reporting.stream.layout import series
+from tsas_cli.reporting.stream.recorder import times_of, to_file
 
 MODEL = """format = 1
 [parameters.friction_coefficient]
@@ -85,3 +87,14 @@ def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named") -> Path:
     make_diagnosis(dataset, folder, verdict)
     (folder / "model-extended.toml").write_text(MODEL, encoding="utf-8")
     return write_predictions(dataset, folder, lambda *_: -2.0, channels=("f_in",))
+
+
+def make_stream(path: Path, samples: int = 2000) -> Path:
+    """Record a sine and a cosine, in a tab each."""
+    time_s = np.arange(samples) / 1000
+    with to_file(path, "waves") as recorder:
+        for name, wave in (("sine", np.sin), ("cosine", np.cos)):
+            recorder.series(name, times_of(time_s), wave(7 * time_s), name, 0x3366CCFF)
+        tabs = Tabs(*(series(name, [name]) for name in ("sine", "cosine")))
+        recorder.lay_out(Blueprint(tabs, collapse_panels=True))
+    return path

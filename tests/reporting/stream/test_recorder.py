@@ -1,5 +1,8 @@
 """What the recorder writes, read back."""
 
+import os
+import subprocess
+import sys
 from datetime import UTC, datetime, timedelta, timezone
 
 import numpy as np
@@ -8,9 +11,10 @@ import rerun as rr
 from rerun.blueprint import Blueprint, Tabs, Vertical
 from rerun.chunk import RrdReader
 
-from tests.reporting.stream.streams import read
+from tests.refusals import refusal
+from tests.reporting.stream.streams import make_stream, read
 from tsas_cli.reporting.stream.layout import series
-from tsas_cli.reporting.stream.recorder import times_of, to_file
+from tsas_cli.reporting.stream.recorder import is_finished, times_of, to_file
 from tsas_cli.support.errors import InputError
 
 TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912347])
@@ -110,3 +114,40 @@ def test_rerun_switched_off_is_said(tmp_path, monkeypatch):
     monkeypatch.setenv("RERUN", "off")
     with pytest.raises(InputError, match="switched off"), to_file(tmp_path / "s.rrd", "x"):
         pass
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    return make_stream(tmp_path_factory.mktemp("streams") / "waves.rrd")
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (lambda stream: b"", "file too small to be an RRD"),
+        (lambda stream: stream[:11], "file too small to be an RRD"),
+        (lambda stream: b"PAR1" + stream[4:], "Not an RRD file"),
+        (lambda stream: stream[: len(stream) // 2], "exceeds file size"),
+    ],
+)
+def test_what_is_no_whole_stream_is_refused(whole, tmp_path, content, told):
+    assert is_finished(whole)
+    path = tmp_path / "spoilt.rrd"
+    path.write_bytes(content(whole.read_bytes()))
+    line = refusal(is_finished, path)
+    assert line.startswith(f"{path}: cannot be shown (")
+    assert told in line
+
+
+def test_a_stream_whose_writer_was_killed_can_be_shown(tmp_path):
+    program = """
+import os, sys, rerun
+stream = rerun.RecordingStream("killed")
+stream.save(sys.argv[1])
+stream.log("note", rerun.TextDocument("all there is"))
+stream.flush()
+os._exit(0)
+"""
+    path = tmp_path / "killed.rrd"
+    subprocess.run([sys.executable, "-c", program, path], check=True, env=os.environ)
+    assert not is_finished(path)
