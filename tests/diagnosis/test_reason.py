@@ -55,7 +55,7 @@ def test_what_no_effect_explains_is_said_with_what_it_depends_on():
     ("found", "near"), [(Reduction(0.36, 2.5), True), (Reduction(0.09, 2.5), False)]
 )
 def test_where_nothing_is_named_the_nearest_effect_is_said(found, near):
-    nearest = f"{TITLE[PLAY].capitalize()} comes nearest: it takes 20 % off it, but not in enough"
+    nearest = f"{TITLE[PLAY].capitalize()} comes nearest: alone it takes 20 % off it, which is not"
     for stand_ins, said in (([], near), ([cause(MASS, failed=("is rare",))], False)):
         reason = reason_of("unexplained", [], stand_ins, START, left(9.0), None, (PLAY, found))
         assert (nearest in reason) == said

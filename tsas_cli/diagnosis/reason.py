@@ -38,7 +38,7 @@ def reason_of(
     if causes:
         sentences = [*_gain(causes, channels), *_of_each(causes)]
     else:
-        sentences = [_residual(channels), *([] if stand_ins else _nearest(nearest))]
+        sentences = [_residual(channels, stand_ins), *([] if stand_ins else _nearest(nearest))]
     sentences += _stand_ins(stand_ins)
     if not after.complete:
         if causes:
@@ -95,11 +95,12 @@ def _of_each(causes: Sequence[FoundCause]) -> Iterator[str]:
             yield f"These recordings do not distinguish {_title(cause.effect)} from {rivals}."
 
 
-def _residual(channels: Mapping[str, HeldOutErrors]) -> str:
+def _residual(channels: Mapping[str, HeldOutErrors], stand_ins: Sequence[FoundCause]) -> str:
     name, most = max(channels.items(), key=lambda it: it[1].rmse_before / it[1].noise_floor)
+    which = "is proven" if stand_ins else "explains it"
     return (
         f"The RMS of the residual of {name} on held-out data is {_digits(most.rmse_before, 3)} "
-        f"{BY_COLUMN[name].unit}, and no catalogued effect explains it."
+        f"{BY_COLUMN[name].unit}, and no catalogued effect {which}."
     )
 
 
@@ -109,8 +110,9 @@ def _nearest(nearest: tuple[str, Reduction] | None) -> list[str]:
         return []
     effect, found = nearest
     takes = 100.0 * (1.0 - math.sqrt(1.0 - found.part))
-    said = f"takes {takes:.0f} % off it, but not in enough stretches of the runs"
-    return [f"{_title(effect)} comes nearest: it {said}."]
+    return [
+        f"{_title(effect)} comes nearest: alone it takes {takes:.0f} % off it, which is not proven."
+    ]
 
 
 def _stand_ins(stand_ins: Sequence[FoundCause]) -> Iterator[str]:

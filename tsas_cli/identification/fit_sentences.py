@@ -8,24 +8,28 @@ from tsas_cli.identification.fit import Fitted
 from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.support.wording import listed
 
 FEW = 3  # runs that a sentence names
 
 
 def fixed_sentences(problem: FitProblem, confounded: Mapping[int, list[int]]) -> list[str]:
-    """Return a sentence for each fixed parameter and reason."""
-    reasons: dict[tuple[str, str], list[str]] = {}
+    """Return a sentence for each parameter that is fixed, alone or because of others."""
+    owners: dict[tuple[str, bool], list[str]] = {}
+    others: dict[str, set[str]] = {}
     for j, partners in confounded.items():
         unknown = problem.unknowns[j]
-        names = sorted({problem.unknowns[p].name for p in partners})
-        names = [f"{n} of other runs" if n == unknown.name else n for n in names]
-        together = f" together with {' and '.join(names)}" if names else ""
-        reasons.setdefault((unknown.name, together), []).append(problem.owner(unknown) or "")
+        owners.setdefault((unknown.name, bool(partners)), []).append(problem.owner(unknown) or "")
+        names = {problem.unknowns[p].name for p in partners}
+        others.setdefault(unknown.name, set()).update(
+            f"{n} of other runs" if n == unknown.name else n for n in names
+        )
     return [
-        f"{name} is not identifiable{together} from these recordings"
-        f"{_where(owners, len(problem.runs))}; "
-        f"it is fixed at {_fixed_value(problem.fixed, name, owners[0])}."
-        for (name, together), owners in reasons.items()
+        f"{name} is not identifiable"
+        f"{f' together with {listed(sorted(others[name]))}' if together else ''} "
+        f"from these recordings{_where(of, len(problem.runs))}; "
+        f"it is fixed at {_fixed_value(problem.fixed, name, of[0])}."
+        for (name, together), of in owners.items()
     ]
 
 
