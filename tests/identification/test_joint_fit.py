@@ -191,8 +191,10 @@ def test_what_is_fixed_is_said_once_for_each_reason():
         "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
     ]
     assert fs.fixed_sentences(problem, {1: [0], 2: [0, 3]}) == [
-        "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
-        "from these recordings; it is fixed at 0.25 mm."
+        (
+            "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
+            "from these recordings; it is fixed at 0.25 mm."
+        )
     ]
     assert problem.ids == ["a", "b"]
     of_b = fs.fixed_sentences(problem, {2: [1]})
