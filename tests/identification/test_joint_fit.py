@@ -249,3 +249,20 @@ def test_a_tendon_that_would_be_slack_between_two_drives_has_another_zero(lead_m
 def test_an_interval_holds_values_only_where_there_is_one(low, high, values, held):
     e = Estimate("friction", 0.2, "1", "fitted", interval_low=low, interval_high=high)
     assert e.holds(*values) == held
+
+
+@pytest.mark.parametrize(("left", "converged"), [(1e3, True), (1.0, False)])
+def test_far_from_the_noise_a_fit_ends_where_it_gains_little(monkeypatch, left, converged):
+    """Of two residuals one stays, the other falls by a factor e in each of few steps."""
+    monkeypatch.setattr("tsas_cli.identification.fit.MOST_EVALUATIONS", 4)
+    unknowns = [unknown(FRICTION)]
+    rig = GROUP_A._replace(friction_coefficient=1.0)
+    problem = replace(problem_of(unknowns, runs="a"), rigs=(rig,))
+    run = SimpleNamespace(
+        residuals=lambda rig: np.array([left, 300.0 * rig.friction_coefficient]),
+        blocks=lambda rig, longest: np.array([0, 1]),
+        length=2,
+    )
+    found = j._fit(problem, (run,), np.zeros(1), [0], tolerance=j.FINE)
+    assert found.converged is converged
+    assert found.values[0] < -2.9

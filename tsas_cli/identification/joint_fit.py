@@ -186,12 +186,23 @@ def _fit(
     *,
     tolerance: float,
 ) -> Fitted:
-    """Return the fit of the chosen unknowns from their values, the others fixed."""
+    """Return the fit of the chosen unknowns from their values, the others fixed.
+
+    Far from the noise the squares may fall by little for many steps. A fit that does not converge
+    goes on until a step takes less than the tolerance of the noise's squares, `ROUGH` of its own at
+    most.
+    """
     start = _finite(values, problem.unknowns)
     free = [replace(problem.unknowns[j], initial=float(start[j])) for j in chosen]
     blocks = blocks_of(errors, [problem.rig(k, values) for k in range(len(errors))])
     residuals = _of_free(_residuals(problem, errors), _fixed_values(problem), chosen)
-    return with_errors(free, solve(free, len(blocks), residuals, tolerance=tolerance), blocks)
+    found = solve(free, len(blocks), residuals, tolerance=tolerance)
+    if not found.converged:
+        mean_square = float(np.mean(found.residual**2))
+        free = [replace(u, initial=float(v)) for u, v in zip(free, found.values, strict=True)]
+        rougher = min(tolerance * max(mean_square, 1.0), ROUGH)
+        found = solve(free, len(blocks), residuals, tolerance=rougher)
+    return with_errors(free, found, blocks)
 
 
 def _fixed_values(problem: FitProblem) -> Floats:
