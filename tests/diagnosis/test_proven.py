@@ -1,6 +1,6 @@
 """Which effects are proven, and what gives way to what; the fits are made up."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,6 +26,7 @@ class Search:
 
     named: frozenset[str]
     rivals: dict[str, tuple[str, ...]]
+    squares: dict[tuple[frozenset[str], bool], np.ndarray] = field(default_factory=dict)
 
 
 ZERO = Estimate("backlash.play_mm", 0.01, "mm", "fitted", None, 0.01, 0.0, 0.03, False)

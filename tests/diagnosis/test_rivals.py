@@ -21,7 +21,7 @@ from tests.diagnosis.searched import (
     tolerances_take,
 )
 from tsas_cli.diagnosis import rivals as rivals_module
-from tsas_cli.diagnosis.rivals import exchanged, is_presliding, rivals_of
+from tsas_cli.diagnosis.rivals import exchanged, is_presliding, rivals_of, rivals_within
 
 
 @pytest.fixture
@@ -40,6 +40,24 @@ def test_rivals_convince_too_and_are_not_surely_worse(made, monkeypatch):
     worse = made({names(C): 1.02, names(A): 1.0, names(): 4.0})
     monkeypatch.setattr(rivals_module, "add", lambda *_: [(C, CONVINCES)])
     assert rivals_of(worse, names(A), A) == ()
+
+
+@pytest.mark.parametrize(("mesh", "rivals"), [(False, (C,)), (True, ())])
+def test_what_did_as_well_in_the_search_is_a_rival_when_others_are_left_out(mesh, rivals):
+    """Of twice the noise's squares, half are structure: a twentieth may be chance."""
+    squares = {names(A): 2.0, names(C): 2.09, names(D): 2.11, names(A, C): 1.0, names(): 1.5}
+    found = SimpleNamespace(
+        squares={
+            (of, mesh and of != names(A)): np.full(BLOCKS, value * SIZE / BLOCKS)
+            for of, value in squares.items()
+        },
+        folds=SimpleNamespace(block=np.zeros(SIZE)),
+    )
+    of = SimpleNamespace(solution=SimpleNamespace(converged=True))
+    found.trials = dict.fromkeys(found.squares, of)
+    assert rivals_within(found, names(A), A) == rivals
+    of.solution.converged = False
+    assert rivals_within(found, names(A), A) == ()
 
 
 @pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (C,))])

@@ -27,6 +27,7 @@ from tsas_cli.diagnosis.proof import (
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, gain_anywhere, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
+from tsas_cli.diagnosis.rivals import rivals_within
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
@@ -85,8 +86,13 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
             break
         if not weakest.negligible:
             stand_ins = (*stand_ins, weakest)
-        rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
-        search = replace(search, named=frozenset(rest), rivals=rest)
+        named = search.named - {weakest.effect}
+        rivals = {
+            name: tuple(dict.fromkeys((*search.rivals[name], *rivals_within(search, named, name))))
+            for name in search.rivals
+            if name in named
+        }
+        search = replace(search, named=named, rivals=rivals)
         proven = _judged(search, stand_ins, step)
     if proven.after.complete:
         stand_ins = tuple(

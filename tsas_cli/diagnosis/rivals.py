@@ -82,6 +82,26 @@ def rivals_of(
     return tuple(out)
 
 
+def rivals_within(found: Hypotheses, named: Names, name: str) -> tuple[str, ...]:
+    """Return the effects that do as well as one of a set, of the fits that a search has made.
+
+    For a set that is left when others are not proven: what does as well beside those is known.
+    """
+    out: dict[str, None] = {}
+    for mesh in (False, True):
+        if (named, mesh) not in found.squares:
+            continue
+        squares = float(found.squares[named, mesh].sum())
+        structure = max(1.0 - found.folds.block.size / squares, 0.0)
+        most = (1.0 + MODEL_ERROR * structure) * squares
+        for (others, on_mesh), of_others in found.squares.items():
+            instead = others - named
+            if on_mesh == mesh and len(instead) == 1 and others == named - {name} | instead:
+                converged = found.trials[others, mesh].solution.converged
+                out.update(dict.fromkeys(instead) if converged and of_others.sum() <= most else {})
+    return tuple(out)
+
+
 def is_presliding(fits: Fits, named: Names) -> bool:
     """Return whether a named hysteresis of the load may be friction of its guide.
 
