@@ -119,11 +119,13 @@ def third_differences(values: Floats, time_s: Floats | None = None, stride: int 
     a, b, c, d = (values[part] for part in four)
     if time_s is None:
         return np.asarray((a - 3.0 * b + 3.0 * c - d) / math.sqrt(20.0))
-    t = np.array([time_s[part] for part in four])
-    apart = t[:, None] - t
-    apart[range(4), range(4)] = 1.0
-    weights = 1.0 / np.prod(apart, axis=1)
-    return np.asarray((weights * [a, b, c, d]).sum(axis=0) / np.sqrt((weights**2).sum(axis=0)))
+    third, square = np.zeros(a.size), np.zeros(a.size)
+    for part in four:
+        others = [time_s[part] - time_s[other] for other in four if other is not part]
+        weight = 1.0 / (others[0] * others[1] * others[2])
+        third += weight * values[part]
+        square += weight**2
+    return np.asarray(third / np.sqrt(square))
 
 
 def _share(correlation: Floats) -> Floats:
