@@ -87,19 +87,18 @@ def rivals_within(found: Hypotheses, named: Names, name: str) -> tuple[str, ...]
 
     For a set that is left when others are not proven: what does as well beside those is known.
     """
-    out: dict[str, None] = {}
-    for mesh in (False, True):
-        if (named, mesh) not in found.squares:
+    out: list[str] = []
+    for (others, mesh), squares in found.squares.items():
+        instead = others - named
+        alike = len(instead) == 1 and others == named - {name} | instead
+        if not alike or (named, mesh) not in found.squares:
             continue
-        squares = float(found.squares[named, mesh].sum())
-        structure = max(1.0 - found.folds.block.size / squares, 0.0)
-        most = (1.0 + MODEL_ERROR * structure) * squares
-        for (others, on_mesh), of_others in found.squares.items():
-            instead = others - named
-            if on_mesh == mesh and len(instead) == 1 and others == named - {name} | instead:
-                converged = found.trials[others, mesh].solution.converged
-                out.update(dict.fromkeys(instead) if converged and of_others.sum() <= most else {})
-    return tuple(out)
+        least = float(found.squares[named, mesh].sum())
+        structure = max(1.0 - found.folds.block.size / least, 0.0)
+        as_good = float(squares.sum()) <= (1.0 + MODEL_ERROR * structure) * least
+        if as_good and found.trials[others, mesh].solution.converged:
+            out += instead
+    return tuple(dict.fromkeys(out))
 
 
 def is_presliding(fits: Fits, named: Names) -> bool:

@@ -24,13 +24,15 @@ def fixed_sentences(problem: FitProblem, confounded: Mapping[int, list[int]]) ->
         others.setdefault(unknown.name, set()).update(
             f"{n} of other runs" if n == unknown.name else n for n in names
         )
-    return [
-        f"{name} is not identifiable"
-        f"{f' together with {listed(sorted(others[name]))}' if together else ''} "
-        f"from these recordings{_where(of, len(problem.runs))}; "
-        f"it is fixed at {_fixed_value(problem.fixed, name, of[0])}."
-        for (name, together), of in owners.items()
-    ]
+    out = []
+    for (name, confounds), of in owners.items():
+        together = f" together with {listed(sorted(others[name]))}" if confounds else ""
+        out.append(
+            f"{name} is not identifiable{together} from these recordings"
+            f"{_where(of, len(problem.runs))}; "
+            f"it is fixed at {_fixed_value(problem.fixed, name, of[0])}."
+        )
+    return out
 
 
 def _where(owners: Sequence[str], runs: int) -> str:
