@@ -12,7 +12,7 @@ from tests.reporting.made_folders import page_from
 from tests.rigs import dataset_of, recorded
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import DatasetSource, OfDataset
-from tsas_cli.stages.check import unrecorded
+from tsas_cli.stages.before_fit import unrecorded
 from tsas_studies.challenge.rig.tendon import Rig
 
 RIG = Rig(cells=60)

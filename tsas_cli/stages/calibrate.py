@@ -7,11 +7,10 @@ from typing import Literal
 
 from tsas_cli.identification.calibration import Calibration, calibrate_runs
 from tsas_cli.identification.fitted_to import fitted_to
-from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment_records
-from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.transfer import Slope
 from tsas_cli.physics.closed_form.capstan import (
     dead_band_stiffness,
@@ -25,13 +24,12 @@ from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of, span_text
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.check import errors_and_warnings, unrecorded
-from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
+from tsas_cli.stages.before_fit import errors_and_warnings, prepared_runs
+from tsas_cli.stages.given import Named, dataset_of, path_of
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 FEW = 5  # runs whose own parameters are printed
-DYNAMICS: tuple[Literal["slip", "lugre"], ...] = ("slip", "lugre")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -147,29 +145,19 @@ def calibrate(
         A recording or the model is wrong, the checks find an error, or `out` exists and
         `force` is not set.
     """
-    taken = one_of(DYNAMICS, dynamics, "dynamics")
     data, given, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
         checked = errors_and_warnings(data, despite, step)
         counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
-        prepared, session_start = [], data.manifest.session_start
-        for run in counted.dataset.runs:
-            copied = counted.copied_of(run.id)
-            if (long := open_long(data, run, session_start, copied)) is not None:
-                prepared.append(long.prepared())  # of the samples that the fit takes
-            else:
-                prepared.append(prepare(data[run.id], session_start, copied))
-            step()
-        for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
-            step.say(sentence)
-        result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
+        prepared = prepared_runs(counted, step, thinned=True)
+        result = calibrate_runs(data.manifest, prepared, step, dynamics=dynamics, stated=stated)
         record = records.CalibrationFile(
             **counted.dataset.header(path),
             **checked,
             model=source_of(given, path),
-            dynamics=taken,
+            dynamics=dynamics,
             segments={
                 run.run.id: segment_records(run, segments)
                 for run, segments in zip(result.runs, result.segments, strict=True)

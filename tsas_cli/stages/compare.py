@@ -84,9 +84,8 @@ def compare(
         raise InputError("closed loops have recordings of their own", where="--on")
     if runs is not None and on is None:
         raise InputError("there is no dataset to take runs of", where="--runs", remedy="add --on")
-    data = None if on is None else dataset_of(on, runs)
-    inputs = [*paths, *([] if data is None else [data.folder])]
-    path = path_of(out)
+    data, path = None if on is None else dataset_of(on, runs), path_of(out)
+    inputs = paths if data is None else [*paths, data.folder]
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
         record = both.record if isinstance(both, Tracks) else stage.record_of(both)

@@ -18,7 +18,7 @@ from tsas_cli.identification.fitted_to import FittedTo, fitted_to
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segment_records
-from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.identification.prepared import Prepared
 from tsas_cli.recordings.columns import BY_NAME, nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
@@ -27,7 +27,7 @@ from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.check import errors_and_warnings, unrecorded
+from tsas_cli.stages.before_fit import errors_and_warnings, prepared_runs
 from tsas_cli.stages.given import Named, dataset_of, listed, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
@@ -184,13 +184,7 @@ def diagnose(
         counted = without_duplicates(data)
         step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)
-        prepared = []
-        for recording in counted.dataset:
-            copied = counted.copied_of(recording.run.id)
-            prepared.append(prepare(recording, data.manifest.session_start, copied))
-            step()
-        for sentence in unrecorded([{*run.conditioned, *run.measured} for run in prepared]):
-            step.say(sentence)
+        prepared = prepared_runs(counted, step)
         result = diagnose_runs(data.manifest, stated, prepared, step, accepted=listed(despite))
         record = records.DiagnosisFile(
             **counted.dataset.header(path),

@@ -114,7 +114,6 @@ def export(
     path = file_of(out)
     found = model_of(given)
     fitted = read_fitted_to(given) if isinstance(given, Path) else None
-    inputs = [given] if isinstance(given, Path) else []
     errors: Differences = {}
     lost: tuple[str, ...] = ()
     if kind == "mujoco":
@@ -129,7 +128,7 @@ def export(
         head = {"stage": "export", "version": __version__}
         content = head | {"parameters": [asdict(e) for e in found.estimates]}
         text = json_text(content) if kind == "json" else _csv(found)
-    with new_file(path, mark=MARKS[kind], inputs=inputs, force=force) as temporary:
+    with new_file(path, mark=MARKS[kind], inputs=[given], force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
     summary = heading("export") | {"format_of_model": kind, "errors": errors, "lost": lost}
     return ExportResult(summary, path, lost)

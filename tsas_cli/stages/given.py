@@ -7,7 +7,7 @@ from functools import wraps
 from inspect import signature
 from pathlib import Path
 from types import NoneType, UnionType
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -114,12 +114,14 @@ def of_kind(kinds: tuple[type, ...], given: Any, name: str = "") -> Any:
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that refuses an argument of another kind than it is annotated with.
+    """Return a function that refuses an argument of another kind, or another word, than annotated.
 
     Numbers, and what can be of a kind with parts, the function checks itself. Its products of
     matrices run on one thread.
     """
-    kinds = {name: _kinds(hint) for name, hint in get_type_hints(function).items()}
+    hints = get_type_hints(function)
+    kinds = {name: _kinds(hint) for name, hint in hints.items()}
+    words = {n: get_args(hint) for n, hint in hints.items() if get_origin(hint) is Literal}
     named = signature(function)
 
     @wraps(function)
@@ -127,6 +129,8 @@ def checked(function: Callable[..., Any]) -> Callable[..., Any]:
         for name, given in named.bind(*args, **keywords).arguments.items():
             if kinds.get(name):
                 of_kind(kinds[name], given, name)
+            if name in words:
+                one_of(words[name], given, name)
         # Threads inside each product of small matrices cost more than they save.
         with threadpool_limits(limits=1, user_api="blas"):
             return function(*args, **keywords)

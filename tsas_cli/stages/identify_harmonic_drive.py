@@ -23,13 +23,12 @@ from tsas_cli.recordings.writing import write_runs
 from tsas_cli.records.base import Fit, parameters_of
 from tsas_cli.records.drive import DRIVE_FILE, DriveDiagnosis, DriveFile, Structure
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, path_of
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
-
 STAGE = "identify-harmonic-drive"
 _OF_SHEET = ("turntable_radius_mm", "gear_ratio", "inertia_N_mm_s2")
 
@@ -115,8 +114,7 @@ def identify_harmonic_drive(
     InputError
         A recording does not serve, or `out` exists and `force` is not set.
     """
-    hold = HOLDS[one_of([*HOLDS], speed, "speed")]
-    data, path = dataset_of(dataset, runs), path_of(out)
+    hold, data, path = HOLDS[speed], dataset_of(dataset, runs), path_of(out)
     with folder_if(path, stage=STAGE, inputs=[data.folder], force=force) as folder:
         step.ahead(2)
         counted = without_duplicates(data)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
 from tsas_cli.comparing import predict as predicting
 from tsas_cli.comparing.predict import Predicted, read_models
@@ -78,8 +77,7 @@ def predict(
     given = [each if isinstance(each, Model) else file_of(each) for each in several_of(models)]
     sides = read_models(given)
     data, path = dataset_of(dataset, runs), path_of(out)
-    inputs = [data.folder, *(side for side in given if isinstance(side, Path))]
-    with folder_if(path, stage="predict", inputs=inputs, force=force) as folder:
+    with folder_if(path, stage="predict", inputs=[data.folder, *given], force=force) as folder:
         step.ahead(len(sides) * len(data.runs))
         it = predicting.predict(sides, data, fit_own=fit_own, step=step)
         record = PredictionFile(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.query import QueryResult, connected, run_query
 from tsas_cli.records.result import Result, Table, heading, notes
-from tsas_cli.stages.given import at_least, listed, of_kind, paths_of
+from tsas_cli.stages.given import at_least, listed, paths_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 if TYPE_CHECKING:
@@ -113,15 +113,15 @@ def runs(
     InputError
         The query is no condition on these columns, a folder is none, or duckdb is not installed.
     """
-    named, condition = paths_of(folders), of_kind((str,), query)
+    named = paths_of(folders)
     if limit is not None:
         at_least(0, limit, "limit")
     shown, order = tuple(listed(columns)), tuple(listed(sort))
     with connected() as connection:
         from tsas_cli.collection.index import index_of
 
-        index = index_of([Path(folder) for folder in named], connection, step)
-        found = run_query(connection, index, condition, columns=shown, sort=order, limit=limit)
+        index = index_of(named, connection, step)
+        found = run_query(connection, index, query, columns=shown, sort=order, limit=limit)
     summary = heading("runs") | {
         "query": query,
         "folders": [str(folder) for folder in named],

@@ -20,12 +20,10 @@ from tsas_cli.records import simulation as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, dataset_of, of_kind, one_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, of_kind, path_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-
-DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "lugre")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -120,7 +118,7 @@ def simulate(
         set.
     """
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
-    _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
+    _refuse_nodes(nodes, dynamics)
     taken = data_sheet(data.manifest) if known is None else model_for(known, data.manifest.run)
     session_start = taken.session_start(data.manifest)
     record = records.SimulationFile(

@@ -22,7 +22,7 @@ from tsas_cli.records import tracking as records
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.stages.given import Named, at_least, listed, one_of, path_of
+from tsas_cli.stages.given import Named, at_least, listed, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.limits import SEEDS
@@ -38,10 +38,9 @@ from tsas_cli.tracking.recorded import (
 )
 from tsas_cli.tracking.references import reference as reference_of
 from tsas_cli.tracking.settings import Settings, known_drive, printed_gains, read_settings
-from tsas_cli.tracking.track import Known, Plant, TendonDynamics, over_seeds, plan, run_loop
+from tsas_cli.tracking.track import Known, Plant, over_seeds, plan, run_loop
 from tsas_cli.verifying.claims import change_notes
 
-DYNAMICS: tuple[TendonDynamics, ...] = ("slip", "lugre")
 COMPARED_SEEDS = 10
 
 
@@ -151,7 +150,6 @@ def track(
     numbers = range(at_least(0, first_seed, "first_seed"), first_seed + many)
     given, path = path_of(settings, Mapping), path_of(out)
     models = path_of(model, Model), path_of(plant, Model), path_of(drive, IdentifiedDrive)
-    one_of(DYNAMICS, dynamics, "dynamics")
     read = printed_gains(read_settings(given)) if as_printed else read_settings(given)
     known, real = what_is_known(read, *models)
     followed = Path(str(reference))  # a shape is the name of no file
