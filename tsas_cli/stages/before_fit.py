@@ -32,10 +32,7 @@ def errors_and_warnings(
 
     By their names in `OfDataset`. `further` codes are allowed in `despite` too; `step` counts runs.
 
-    Raises
-    ------
-    InputError
-        There is an error of another code, or `despite` holds what is no code of a check.
+    InputError: there is an error of another code, or `despite` holds what is no code of a check.
     """
     accepted = {one_of((*CODES, *further), code, "despite") for code in listed(despite)}
     found = [one for one in check_runs(dataset, step).findings if one.code in CODES]

@@ -178,14 +178,14 @@ def diagnose(
         `force` is not set.
     """
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
-    stated = stated_model(data.manifest, known)
+    stated, accepted = stated_model(data.manifest, known), listed(despite)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
-        checked = errors_and_warnings(data, despite, step, further=CODES)
+        checked = errors_and_warnings(data, accepted, step, further=CODES)
         counted = without_duplicates(data)
         step.doing("cleans the runs")
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = prepared_runs(counted, step)
-        result = diagnose_runs(data.manifest, stated, prepared, step, accepted=listed(despite))
+        result = diagnose_runs(data.manifest, stated, prepared, step, accepted=accepted)
         record = records.DiagnosisFile(
             **counted.dataset.header(path),
             **checked,
@@ -206,7 +206,7 @@ def diagnose(
             cannot_tell=(
                 *(
                     f"The diagnosis does not seek the fault {code} of the recordings (--despite)."
-                    for code in listed(despite)
+                    for code in accepted
                     if code in CODES
                 ),
                 *counted.notes,

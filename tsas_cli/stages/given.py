@@ -114,7 +114,7 @@ def of_kind(kinds: tuple[type, ...], given: Any, name: str = "") -> Any:
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that refuses an argument of another kind, or another word, than annotated.
+    """Return a function that refuses what is of no kind, or no word, that it is annotated with.
 
     Numbers, and what can be of a kind with parts, the function checks itself. Its products of
     matrices run on one thread.

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from tsas_cli.identification.comparison import compare
+from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.long_runs import open_long, simulate_long
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.model_file import model_for, source_of, write_model
 from tsas_cli.identification.own_values import with_own_values
 from tsas_cli.identification.phases import segment, segment_records
-from tsas_cli.identification.prepared import prepare
+from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
@@ -135,7 +135,7 @@ def simulate(
             (folder / "runs").mkdir()
         step.ahead(len(data.runs))
         for entry in data.runs:
-            long = open_long(data, entry, session_start)
+            predicted, long = None, open_long(data, entry, session_start)
             if long is not None:
                 own = with_own_values(taken, long.prepared()) if fit_own else taken
                 summary, run = simulate_long(long, own, dynamics, nodes, folder and folder / "runs")
@@ -143,16 +143,12 @@ def simulate(
                 run = prepare(data[entry.id], session_start)
                 own = with_own_values(taken, run) if fit_own else taken
                 compared = compare(run, own, dynamics, nodes)
-                summary = compared.summary
-            of_run = Model(tuple(e for e in own.estimates if e.run == entry.id))
-            used = of_run.over(used)
+                summary, predicted = compared.summary, _prediction(run, compared)
+            used = Model(tuple(e for e in own.estimates if e.run == entry.id)).over(used)
             record = record.with_run(
                 entry.id, summary.record(run), segment_records(run, segment(run))
             )
-            if long is None:
-                x_in = compared.response.x_in_mm
-                columns = {"time_s": run.time_s, "x_in_mm": x_in, **compared.channels}
-                predicted = Recording(entry, {n: v.astype(float) for n, v in columns.items()})
+            if predicted is not None:  # not written piece by piece
                 if folder is None:
                     kept[entry.id] = predicted
                 else:  # many runs need no more memory than one
@@ -177,6 +173,12 @@ def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:
         )
     if not 2 <= of_kind((int,), nodes) <= MOST_NODES:
         raise InputError(f"{nodes} nodes", where="--nodes", expected=f"2 to {MOST_NODES}")
+
+
+def _prediction(run: Prepared, compared: Compared) -> Recording:
+    """Return time, x_in as conditioned, and what the model predicts of a run."""
+    columns = {"time_s": run.time_s, "x_in_mm": compared.response.x_in_mm, **compared.channels}
+    return Recording(run.run, {name: values.astype(float) for name, values in columns.items()})
 
 
 def _notes(runs: Mapping[str, records.SimulatedRun]) -> tuple[str, ...]:

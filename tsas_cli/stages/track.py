@@ -38,7 +38,7 @@ from tsas_cli.tracking.recorded import (
 )
 from tsas_cli.tracking.references import reference as reference_of
 from tsas_cli.tracking.settings import Settings, known_drive, printed_gains, read_settings
-from tsas_cli.tracking.track import Known, Plant, over_seeds, plan, run_loop
+from tsas_cli.tracking.track import Known, Plant, Tracked, over_seeds, plan, run_loop
 from tsas_cli.verifying.claims import change_notes
 
 COMPARED_SEEDS = 10
@@ -139,10 +139,7 @@ def track(
         A file is wrong, a controller unknown, the reference out of reach, the loop unstable, or
         `out` exists and `force` is not set.
     """
-    asked = [disturbed(listed(disturb))] if disturb else []
-    if compare:
-        asked = [Condition("undisturbed"), *(asked or [proximal_spring()])]
-    changes = asked or [Condition("undisturbed")]
+    changes = _conditions(disturb, compare=compare)
     names = CONTROLLERS if compare else _known_controllers(listed(controllers))
     many = COMPARED_SEEDS if compare else 1
     if seeds is not None:
@@ -182,23 +179,14 @@ def track(
                 for seed in numbers:
                     runs.append(follow(acted_on, name, read, seed=seed))
                     step()
-                run_id = f"{name}-{condition.name}"
-                table = table_of(runs[0], drive_path, acted_on.rig, name, numbers[0], read)
                 printed = None
                 if models == (None, None, None):
                     printed = printed_rmse(name, condition, str(reference), read)
-                tables[run_id] = table
-                result = records.TrackedResult(
-                    controller=name,
-                    condition=condition.name,
-                    run=run_id,
-                    scores=over_seeds([run.score for run in runs]),
-                    printed_rmse_N=printed,
-                    relay=any(run.is_relay for run in runs),
-                    unsettled_steps=sum(run.unsettled for run in runs),
-                )
+                result = _result_of(runs, name, condition.name, printed)
+                table = table_of(runs[0], drive_path, acted_on.rig, name, numbers[0], read)
+                tables[result.run] = table
                 results.append(result)
-                each(made(results=results), run_id, table)
+                each(made(results=results), result.run, table)
         said = [*change_notes(models), *run_notes(drive_path, known, real, results)]
         if dynamics == "lugre":
             said += dynamic_notes(drive_path, real, changes, read.step_s)
@@ -211,6 +199,29 @@ def track(
         for run, table in tables.items()
     }
     return TrackingResult(record.content(), path, record, recordings)
+
+
+def _conditions(disturb: str | Sequence[str], *, compare: bool) -> list[Condition]:
+    """Return the conditions of the plant to track under."""
+    asked = [disturbed(listed(disturb))] if disturb else []
+    if compare:
+        return [Condition("undisturbed"), *(asked or [proximal_spring()])]
+    return asked or [Condition("undisturbed")]
+
+
+def _result_of(
+    runs: Sequence[Tracked], controller: str, condition: str, printed_rmse_N: float | None
+) -> records.TrackedResult:
+    """Return what the runs over all seeds say of a controller under a condition."""
+    return records.TrackedResult(
+        controller=controller,
+        condition=condition,
+        run=f"{controller}-{condition}",
+        scores=over_seeds([run.score for run in runs]),
+        printed_rmse_N=printed_rmse_N,
+        relay=any(run.is_relay for run in runs),
+        unsettled_steps=sum(run.unsettled for run in runs),
+    )
 
 
 def _known_controllers(named: Sequence[str]) -> Sequence[str]:
@@ -233,10 +244,7 @@ def what_is_known(
 ) -> tuple[Known, Plant]:
     """Return what the controller knows of rig and drive, and the plant that it acts on.
 
-    Raises
-    ------
-    InputError
-        A model file is wrong, or has two tendons.
+    InputError: a model file is wrong, or has two tendons.
     """
     run, stated = conditions("track", settings), stated_model(settings)
     known = stated if model is None else model_of(model).over(stated)
