@@ -20,7 +20,7 @@ def calibrate(
     ] = None,
     dynamics: Annotated[
         Literal["slip", "lugre"],
-        typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
+        typer.Option(help="slip: distributed friction; lugre: dynamic friction."),
     ] = "slip",
     runs: common.ChosenRuns = None,
     despite: common.Despite = None,
@@ -39,7 +39,6 @@ def identify_harmonic_drive(
     speed: Annotated[
         Literal["measured", "commanded"],
         typer.Option(
-            "--speed",
             help="measured: linear between samples; commanded: zero-order hold, as from a "
             "controller. The wrong choice is a delay of half a sample.",
         ),
@@ -61,7 +60,6 @@ def simulate(
     dynamics: Annotated[
         Literal["static", "slip", "lugre"],
         typer.Option(
-            "--dynamics",
             help="static: of the paper; slip: distributed friction; lugre: dynamic friction.",
         ),
     ] = "slip",

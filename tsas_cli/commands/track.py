@@ -53,9 +53,7 @@ def track(
     ] = False,
     dynamics: Annotated[
         Literal["slip", "lugre"],
-        typer.Option(
-            "--dynamics", help="Friction of the plant: slip, quasi-static; lugre, dynamic."
-        ),
+        typer.Option(help="Friction of the plant: slip, quasi-static; lugre, dynamic."),
     ] = "slip",
     settings: Annotated[
         Path | None,

@@ -220,8 +220,7 @@ def diagnose(
         )
         step()
         if folder is not None:
-            ranges = fitted_to(data.manifest.rig, prepared)
-            _write(folder, record, result, prepared, ranges)
+            _write(folder, record, result, prepared, fitted_to(data.manifest.rig, prepared))
     return DiagnosisResult(record.content(), path, record, result)
 
 
