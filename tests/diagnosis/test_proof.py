@@ -183,6 +183,9 @@ def test_a_wave_that_may_not_repeat_within_the_strokes_is_refused(effect):
     assert failures(effect, *rest) == failures(effect, *rest, stroke_mm=12.2) == ()
     (said,) = failures(effect, *rest, stroke_mm=12.1)
     assert said == "has a period of up to 8.1 mm, which strokes of 12.1 mm hardly repeat"
+    at_bound = replace(period, at_bound=True)
+    (said,) = failures(effect, (sine, at_bound), CLEAR, SAME, SAME)
+    assert said == "has period_mm at the limit of what is plausible (8 mm)"
 
 
 def test_a_split_is_said_with_its_values():

@@ -96,8 +96,10 @@ def failures(
         out.append("gains too little on held-out data with a new fit")
     out += [
         f"has {name} at the limit of what is plausible ({e.value:.3g} {e.unit})"
-        for name, e in sizes.items()
-        if e.at_bound and not _is_near_neutral(e.value, parameters[name])
+        for name, e in own.items()
+        if (name in sizes or parameters[name].period)
+        and e.at_bound
+        and not _is_near_neutral(e.value, parameters[name])
     ]
     out += [
         f"has {name} up to the limit of what is plausible: {e.text()} {_unit(e.unit)}".rstrip()
