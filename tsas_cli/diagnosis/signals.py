@@ -33,17 +33,27 @@ class AtResiduals:
 def signals_at_residuals(bench: Bench, trial: HypothesisFit) -> AtResiduals:
     """Return the signals in the middle of the samples of each residual of a trial."""
     out: dict[str, list[Floats]] = {}
-    channel = []
     for k, run in enumerate(bench.errors_for(trial)):
         predicted = run.predict(bench.rig(trial, k))
         signals = signals_of(run.run, predicted["f_in_N"])
-        for name, at in run.samples.items():
+        for at in run.samples.values():
             edges = mean_edges(at.size)
             middle = at[np.minimum(edges + (edges[1] - edges[0]) // 2, at.size - 1)]
-            channel.append(np.full(edges.size, bench.channels.index(name)))
             for signal, values in signals.items():
                 out.setdefault(signal, []).append(values[middle])
-    return AtResiduals({n: np.concatenate(v) for n, v in out.items()}, np.concatenate(channel))
+    joined = {name: np.concatenate(values) for name, values in out.items()}
+    return AtResiduals(joined, channel_of_residuals(bench, trial))
+
+
+def channel_of_residuals(bench: Bench, trial: HypothesisFit) -> npt.NDArray[np.int64]:
+    """Return the number of the channel of each residual of a trial, shape (n,)."""
+    return np.concatenate(
+        [
+            np.full(mean_edges(at.size).size, bench.channels.index(name))
+            for run in bench.errors_for(trial)
+            for name, at in run.samples.items()
+        ]
+    )
 
 
 def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:

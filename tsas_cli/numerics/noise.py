@@ -48,13 +48,13 @@ def noise_of(values: Floats, time_s: Floats | None = None) -> Noise:
     The times are those at which the samples were taken, or rounded ones of an even clock, as
     without any: of the two noises the smaller one.
     """
-    return min(
-        (_noise_of(*clean) for clean in _at_times(values, time_s)), key=lambda noise: noise.sd
-    )
+    step = quantisation_step(values)
+    found = [_noise_of(clean, at, step) for clean, at in _at_times(values, time_s)]
+    return min(found, key=lambda noise: noise.sd)
 
 
-def _noise_of(clean: Floats, time_s: Floats | None) -> Noise:
-    step, white = quantisation_step(clean), _noise_sd(clean, time_s)
+def _noise_of(clean: Floats, time_s: Floats | None, step: float) -> Noise:
+    white = _noise_sd(clean, time_s)
     rounding = step / math.sqrt(12.0)
     if not white > rounding:
         return Noise(rounding if white <= rounding else math.nan, step=step)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.recordings.quality.bench import trial
 from tests.recordings.quality.even_runs import FINE, WAY, WHITE, N, X, are, fine, of
-from tsas_cli.recordings.quality.checks import extremes, motion, pairs
+from tsas_cli.recordings.quality.checks import extremes, motion, pairs, signs
 from tsas_cli.recordings.quality.finding import Finding
 
 
@@ -40,7 +40,7 @@ def test_steps_are_coarse_from_a_500th_of_the_span_on(step, said):
 def test_a_tension_is_negative_beyond_what_a_slack_tendon_reads(low, high, noise_N, found):
     values = np.where(np.arange(N) < 100, low, high)
     sizes = {"f_in_N": replace(FINE, noise=noise_N)}
-    told = of(motion.negative_tension, sizes=sizes, f_in_N=values)
+    told = of(signs.negative_tension, sizes=sizes, f_in_N=values)
     are(told, found, *(["negative in 25 % of the samples"] if high > 0.0 else []))
 
 
@@ -48,7 +48,7 @@ def test_a_tension_is_negative_beyond_what_a_slack_tendon_reads(low, high, noise
 def test_a_difference_of_two_tendons_may_be_negative(rig, found):
     time_s = np.arange(N) / 100.0
     values = {"time_s": time_s, "x_in_mm": time_s, "f_in_N": 2.0 + 7.0 * np.sin(time_s)}
-    told = motion.negative_tension(trial(values, rig))
+    told = signs.negative_tension(trial(values, rig))
     assert sum(isinstance(one, Finding) for one in told) == found
 
 
@@ -57,7 +57,7 @@ def test_tensions_are_exchanged_where_friction_is_negative_by_a_thirtieth(fricti
     """f_in = 3 + 1.5 f_out ± half of it; a gain and an offset do not matter."""
     f_out = 20.0 + X + 0.3 * np.sin(0.7 * np.arange(N))
     f_in = 3.0 + 1.5 * f_out + 0.5 * friction * WAY
-    told = of(motion.exchanged, x_in_mm=X, f_in_N=f_in, f_out_N=f_out)
+    told = of(signs.exchanged, x_in_mm=X, f_in_N=f_in, f_out_N=f_out)
     are(told, found, f"f_in_N is {-friction:.3g} N lower in contraction")
 
 
@@ -151,7 +151,7 @@ def test_friction_beside_any_gain_is_told_and_a_negative_gain_is_none(gain):
         for at in (made.direction == 1.0, made.direction == -1.0)
     )
     shift = gain * (up - down) if gain < 0.0 else 0.0  # what the directions differ by themselves
-    assert motion._excess_while_pulling(made, "f_in_N", "f_out_N") == pytest.approx(
+    assert signs._excess_while_pulling(made, "f_in_N", "f_out_N") == pytest.approx(
         0.7 + shift, abs=1e-9
     )
 
@@ -187,5 +187,5 @@ def test_a_sign_is_wrong_where_most_of_the_way_is_against_the_drive(back, found)
     """Three strokes of 10 mm against it, one with it: (30 − 3.3)/(30 + 3.3) is 0.8."""
     rate = np.where(np.arange(N) < 300, -1.0, 0.1 * back)
     x_out = np.cumsum(rate * np.diff(X, prepend=X[0]))
-    told = of(motion.sign, x_in_mm=X, x_out_mm=x_out)
+    told = of(signs.sign, x_in_mm=X, x_out_mm=x_out)
     assert [f.column for f in told] == ["x_out_mm"] * found

@@ -13,7 +13,7 @@ from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Names
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, LINEAR
 
-AS_GOOD = 0.1  # of the noise's squares, that an effect may leave more than the fault
+AS_GOOD = 0.1  # of the usual squares, that an effect may leave more than the fault
 
 
 def effects_as_good(fits: Fits, fault: FoundFault) -> Iterator[str]:

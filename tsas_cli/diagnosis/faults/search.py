@@ -22,7 +22,7 @@ from tsas_cli.diagnosis.faults.candidates import (
 from tsas_cli.diagnosis.faults.shapes import WINDOWS, ReadRun, runs_at
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
-from tsas_cli.diagnosis.signals import signals_at_residuals
+from tsas_cli.diagnosis.signals import channel_of_residuals
 from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_EXCESS = 0.05  # of the squares of the noise, that a fault is sought for
@@ -99,8 +99,7 @@ def _usual(fits: Fits, residual: Floats) -> float:
 
     They are at least those of noise.
     """
-    bench, run = fits.bench, fits.folds.run
-    channel = signals_at_residuals(bench, fits.trial(frozenset())).channel
+    run, channel = fits.folds.run, channel_of_residuals(fits.bench, fits.trial(frozenset()))
     usual = 0.0
     for number in np.unique(channel):
         here = channel == number

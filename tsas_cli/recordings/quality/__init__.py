@@ -31,6 +31,7 @@ from tsas_cli.recordings.quality.checks import (
     pairs,
     repeats,
     rows,
+    signs,
 )
 from tsas_cli.recordings.quality.finding import Finding, NotChecked, QualityCheck
 from tsas_cli.recordings.quality.samples import Size, span_of, step_of
@@ -65,9 +66,9 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(clipping.clipped),
     QualityCheck(extremes.stuck),
     QualityCheck(extremes.quantised, of_long="decimated"),
-    QualityCheck(motion.sign, needs=("x_in_mm",), of_long="strokes"),
-    QualityCheck(motion.negative_tension, of_long="strokes"),
-    QualityCheck(motion.exchanged, needs=("x_in_mm", "f_in_N", "f_out_N"), of_long="strokes"),
+    QualityCheck(signs.sign, needs=("x_in_mm",), of_long="strokes"),
+    QualityCheck(signs.negative_tension, of_long="strokes"),
+    QualityCheck(signs.exchanged, needs=("x_in_mm", "f_in_N", "f_out_N"), of_long="strokes"),
     QualityCheck(
         motion.interference, needs=("x_in_mm",), given=("on_spring", "increases", "unbatched")
     ),

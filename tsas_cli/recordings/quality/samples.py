@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.noise import noise_sd, quantisation_step, third_differences
 from tsas_cli.support.arrays import Complex, Floats, Mask
 
 _DEGREE = 4  # of the polynomial that is taken out of a segment
@@ -25,7 +25,6 @@ _COMMON = 0.02  # of all samples: more frequent deviations are the signal
 _FEWEST = 16  # samples for an estimate of the noise
 _FEWEST_CHANGES = 20
 _BLOCK = 16  # rows
-_THIRD = 20.0  # variance of third differences over that of noise
 
 
 class NoiseSpectrum(NamedTuple):
@@ -89,9 +88,9 @@ def alternates(values: Floats) -> bool:
 
 def calm_noise(values: Floats) -> float:
     """Return the noise in the calmest quarter of blocks of rows [unit]; NaN without a whole one."""
-    third = np.diff(values, 3)
+    third = third_differences(values)
     blocks = third[: third.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
-    level = np.sqrt(np.mean(blocks**2, axis=1) / _THIRD)
+    level = np.sqrt(np.mean(blocks**2, axis=1))
     level = level[np.isfinite(level)]
     return float(np.quantile(level, 0.25)) if level.size else np.nan
 

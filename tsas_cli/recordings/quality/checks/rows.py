@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tsas_cli.numerics.noise import third_differences
 from tsas_cli.recordings.quality.finding import Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.samples import smallest_change
 from tsas_cli.recordings.quality.trial import GAP, RunSignals
@@ -152,7 +153,7 @@ def _jumps(values: Floats, rows: int, step_s: float) -> _Jumps:
 
 
 _BLOCK = 32  # rows
-_MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
+_MEDIAN = 0.6745  # of |noise| of unit deviation
 
 
 def repeated_rows(trial: RunSignals) -> Findings:
@@ -197,8 +198,8 @@ def _chances(trial: RunSignals, fresh: Mask) -> Floats:
     for values in (channel[fresh] for channel in trial.channels.values()):
         smallest = smallest_change(values)
         third = np.zeros(chance.size * _BLOCK)
-        third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(np.diff(values, 3)))
-        noise = np.median(third.reshape(-1, _BLOCK), axis=1) / _MEDIAN_OF_THIRD
+        third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(third_differences(values)))
+        noise = np.median(third.reshape(-1, _BLOCK), axis=1) / _MEDIAN
         repeats = smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300)
         chance *= np.where(noise > smallest, repeats, 1.0)
     padded = np.pad(chance, 1, mode="edge")
