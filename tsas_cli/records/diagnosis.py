@@ -271,5 +271,6 @@ class DiagnosisFile(OfDataset, Findings):
     residual_map: ResidualMaps = ResidualMaps()
     evidence: Evidence = Evidence()
     cannot_tell: tuple[str, ...] = ()
+    not_sought: tuple[str, ...] = ()  # codes of faults of the recordings
     solver: str = ""
     segments: dict[str, tuple[PhaseSegment, ...]] = {}

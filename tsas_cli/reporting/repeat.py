@@ -10,6 +10,7 @@ from tsas_cli.identification.model_file import IN_MEMORY
 from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.closing import HIDDEN, ClosingFile
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.prediction import PredictionFile
 from tsas_cli.records.simulation import SimulationFile
@@ -95,7 +96,8 @@ def _options(stage: StageFile, inputs: Inputs) -> Iterator[str]:
     if isinstance(stage, OfDataset):
         if stage.chosen is not None:
             yield from ("--runs", ",".join(map(quoted, stage.chosen)))
-        for code in dict.fromkeys(error.code for error in stage.despite):
+        not_sought = stage.not_sought if isinstance(stage, DiagnosisFile) else ()
+        for code in dict.fromkeys((*(error.code for error in stage.despite), *not_sought)):
             yield from ("--despite", code)
     if isinstance(stage, SimulationFile) and stage.own_values_fitted:
         yield "--fit-own"

@@ -179,6 +179,7 @@ def diagnose(
     """
     data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated, accepted = stated_model(data.manifest, known), listed(despite)
+    not_sought = tuple(code for code in accepted if code in CODES)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
         checked = errors_and_warnings(data, accepted, step, further=CODES)
         counted = without_duplicates(data)
@@ -206,8 +207,7 @@ def diagnose(
             cannot_tell=(
                 *(
                     f"The diagnosis does not seek the fault {code} of the recordings (--despite)."
-                    for code in accepted
-                    if code in CODES
+                    for code in not_sought
                 ),
                 *counted.notes,
                 *found.beside_a_law(result),
@@ -215,6 +215,7 @@ def diagnose(
                 *contradictions(data.manifest, result.model, [c.effect for c in result.causes]),
                 *result.cannot_tell,
             ),
+            not_sought=not_sought,
             solver="" if result.final is None else result.final.solver,
             segments={run.run.id: segment_records(run, segment(run)) for run in prepared},
         )

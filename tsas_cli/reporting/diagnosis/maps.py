@@ -40,8 +40,8 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     maps = diagnosis.residual_map
     if not maps.before:
         return None
-    title = "Where the residual was, and is now" if diagnosis.named else "Where the residual is"
-    after = maps.after if diagnosis.named else {}
+    title = "Where the residual was, and is now" if diagnosis.extended else "Where the residual is"
+    after = maps.after if diagnosis.extended else {}
     panels = [
         Panel(channel, signal, bins, after.get(channel, {}).get(signal, ()))
         for channel, signals in maps.before.items()

@@ -164,7 +164,7 @@ def _sources(inputs: Inputs) -> Iterator[Source]:
         yield SIMULATED
     if diagnosis is not None:
         yield NOMINAL
-        if diagnosis.named:
+        if diagnosis.extended:
             yield EXTENDED
     if simulation is not None or diagnosis is not None:
         stage = DiagnosisFile if simulation is None else SimulationFile

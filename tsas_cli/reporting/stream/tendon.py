@@ -61,7 +61,7 @@ def models_of(run: SeenRun) -> TendonModels | None:
     diagnosis, simulation = run.inputs.get(DiagnosisFile), run.inputs.get(SimulationFile)
     files = {SIMULATED: MODEL_FILE}
     if diagnosis is not None:
-        files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.named else {})
+        files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.extended else {})
     elif simulation is None or simulation.dynamics == "static":
         return None
     stage = next(iter(files)).stage
