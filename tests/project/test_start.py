@@ -74,6 +74,15 @@ def test_a_folder_that_is_there_gets_the_files_beside_its_own(tmp_path, monkeypa
     assert (tmp_path / "README.md").read_text().startswith(f"# {tmp_path.name}\n")
 
 
+def test_the_parent_folder_is_a_source_like_any(tmp_path, monkeypatch):
+    recorded(tmp_path / "a.csv")
+    (tmp_path / "in").mkdir()
+    monkeypatch.chdir(tmp_path / "in")
+    files, _ = start(Path("new"), [Path("..")])
+    assert "raw/a.csv" in files
+    assert (tmp_path / "in" / "new" / "raw" / "a.csv").is_file()
+
+
 @pytest.mark.parametrize("there", ["Makefile", "bench.toml", "raw/README.md", "raw/a.csv"])
 def test_nothing_is_overwritten(tmp_path, there):
     source = recorded(tmp_path / "a.csv")

@@ -80,6 +80,8 @@ def test_rows_that_repeat_go_only_when_the_map_says_so():
     with pytest.raises(InputError, match=r"a.csv, row 12: .*repeated_times = .first."):
         ask(twice)
     np.testing.assert_allclose(ask(twice, drop_repeated_rows=True)["x_in_mm"], [25.4, 50.8, 76.2])
+    held = {"t": [0, 1, 2, 3], "x": [1, 2, 2, 3], "f": [4, 5, 5, 5]}  # a sensor slower than its log
+    np.testing.assert_allclose(ask(held, drop_repeated_rows=True)["time_s"] * 1e3, [0, 1, 3])
     with pytest.raises(InputError, match=r"a.csv, row 13: .*correct the file"):  # as in the file
         ask(twice | {"t": [0, 1, 1, 0.5]}, drop_repeated_rows=True)
     with pytest.raises(InputError, match="does not increase"):  # its other values differ

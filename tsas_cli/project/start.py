@@ -80,7 +80,7 @@ def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
             if path.resolve().is_relative_to((folder / RAW).resolve()):
                 continue
             inside = path.relative_to(source.parent) if source.is_dir() else Path(path.name)
-            if source.is_dir() and not source.name:
+            if source.is_dir() and source.name in {"", ".."}:  # a name that is no folder's
                 inside = path.relative_to(source)
             place = f"{RAW}/{inside.as_posix()}"
             if place in copies and copies[place] != path:  # lists may share a file

@@ -115,10 +115,15 @@ def _converted(
 
 
 def _differs_from_row_before(columns: Mapping[str, Floats], last: Mapping[str, float]) -> Mask:
-    """Return which rows differ from the preceding one, shape (n,); `last` precedes the first."""
+    """Return which rows differ from the preceding one but for time, shape (n,).
+
+    `last` precedes the first.
+    """
     differs = np.zeros(columns[TIME].size, dtype=np.bool_)
     differs[0] = not last
     for name, values in columns.items():
+        if name == TIME:
+            continue
         before = np.concatenate(([last.get(name, np.nan)], values[:-1]))
         differs |= (values != before) & ~(np.isnan(values) & np.isnan(before))
     return differs

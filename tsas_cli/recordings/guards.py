@@ -34,12 +34,12 @@ class EncryptedError(InputError):
 
 def damaged(path: object, kind: str, error: Exception) -> InputError:
     """Return the error for a file that the library for its format refuses."""
-    if "crypt" in str(error):  # of pyarrow, at an encrypted file or column
+    if "crypt" in str(error):  # of pyarrow, at an encrypted file or column, and of zipfile
         return EncryptedError(
-            "holds encrypted columns",
+            "holds encrypted data",
             where=path,
-            expected="columns that can be read",
-            remedy="decrypt them, and write the file again without encryption",
+            expected="data that can be read",
+            remedy="decrypt it, and write the file again without encryption",
         )
     reason = str(error).splitlines()[0] if str(error) else type(error).__name__
     return InputError(

@@ -101,12 +101,12 @@ def simulate(
     step
         Called once for each run.
     each
-        Called after each run with the summary so far, the compared to it, and the model as used.
+        Called after each run with the summary so far, the simulated run, and the model as used.
 
     Returns
     -------
     SimulationResult
-        `result["a"].columns` holds the compared to run a, arrays of shape (n,) as in the recording:
+        `result["a"].columns` holds the simulation of run a, arrays of shape (n,) as its recording:
         `time_s`, `x_in_mm` as conditioned, `f_in_N`, `f_out_N`, `x_out_mm`; NaN where nothing is
         simulated. `.summary["runs"]["a"]["channels"]` holds RMSE and noise of each channel, in
         its unit.

@@ -98,13 +98,13 @@ def test_an_encrypted_column_is_told_and_not_left_out(tmp_path, column):
     path = encrypted(tmp_path / "a.parquet", [column])
     with pytest.raises(InputError, match=f"column {column} is encrypted; .* without it"):
         open_file(path)
-    with pytest.raises(InputError, match=r"a\.parquet: holds encrypted columns; .* decrypt them"):
+    with pytest.raises(InputError, match=r"a\.parquet: holds encrypted data; .* decrypt it"):
         read(path, ReadOptions(), [column])
     assert read(path, ReadOptions(), ["x_in_mm"]).columns["x_in_mm"].size == 500
-    assert "holds encrypted columns" in refusal(read_columns, path)
+    assert "holds encrypted data" in refusal(read_columns, path)
 
 
 def test_an_encrypted_footer_is_told(tmp_path):
     path = encrypted(tmp_path / "a.parquet", ["f_in_N"], plaintext_footer=False)
     for opened in (open_file, read_columns, lambda at: read(at, ReadOptions(), ["x_in_mm"])):
-        assert "holds encrypted columns" in refusal(opened, path)
+        assert "holds encrypted data" in refusal(opened, path)
