@@ -93,6 +93,17 @@ def test_what_is_found_in_the_whole_is_found_in_its_stretches(check, measured, h
     assert summary(parts) == summary(whole)
 
 
+@pytest.mark.parametrize("harm", ["stuck", "clipped"])
+def test_what_is_not_checked_is_so_beside_a_finding_of_the_same_check(check, harm):
+    measured = columns(Bench(load="force", seed=5, **NOISY))
+    HARM[harm](measured)
+    whole, parts = check(measured, "force", parts=1), check(measured, "force")
+    assert summary(parts) == summary(whole) != []
+    known = {(one.code, one.reason) for one in whole.not_checked}
+    assert known
+    assert known == {(one.code, one.reason) for one in parts.not_checked}
+
+
 def test_rows_are_counted_from_the_beginning_of_the_run(check, measured):
     backwards(measured)
     assert "first at row 700 " in check(measured).findings[0].sentence

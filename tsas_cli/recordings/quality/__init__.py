@@ -220,11 +220,13 @@ def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
             if isinstance(one, Finding):
                 same = f"{one.column} {re.sub(_NUMBER, '', one.sentence)}"
                 found.setdefault(same, []).append((where, one))
+    each = [results for _, results in stretches]
     if not found:  # a check that applies to one stretch applies
-        reasons = [results for _, results in stretches]
-        return list(reasons[0]) if all(reasons) else []
+        return list(each[0]) if all(each) else []
     count = len(stretches)
-    return [
+    nowhere = [one for one in each[0] if all(one in results for results in each)]
+    unchecked = [one for one in nowhere if isinstance(one, NotChecked)]
+    return unchecked + [
         replace(
             first,
             sentence=f"{first.sentence} ({where}; in {len(dict(same))} of {count} stretches of the "
