@@ -79,7 +79,7 @@ def own(
     start = np.zeros((2, LUMPS + 2))
     start[1] = rig.preload_N
     control = StepControl(tolerance, step_ends_s)
-    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, LUMPS, control, None)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, LUMPS, control)
     return output, progress
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from tests.physics.references import GROUP_A, branches
-from tsas_cli.physics.frames import empty_frames
+from tests.physics.references import GROUP_A
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.response import simulate
 
 mpl.use("svg")
 import matplotlib.pyplot as plt
@@ -21,9 +22,9 @@ def main() -> None:
     pull = np.linspace(0.0, STROKE_MM, SAMPLES + 1)
     x_in = np.concatenate((pull, STROKE_MM - np.linspace(0.0, AFTER_MM, SAMPLES + 1)[1:]))
     every = np.arange(SAMPLES, x_in.size)
-    frames = empty_frames(every, 60)
-    f_in, _, phase = branches(x_in, GROUP_A, frames)
-    front = np.where(phase[every] == 1, 0.0, frames.front)  # all slips still when it turns
+    run = simulate(GROUP_A, DriveInput(x_in), nodes=200, looked_at=every)
+    frames, f_in = run.frames, run.f_in_N
+    front = np.where(run.phase[every] == 1, 0.0, frames.front)  # all slips still when it turns
     travel, places = STROKE_MM - x_in[every], frames.places * GROUP_A.sheath_length_mm
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.4), layout="constrained")
     right.plot(travel, f_in[every], color="0.6")

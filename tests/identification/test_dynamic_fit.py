@@ -128,7 +128,7 @@ def f_in(rig, tolerance=3e-6, step_ends_s=OWN_STEPS):
     start[1] = rig.preload_N
     course = course_of(x_in, rig, time_s=time_s)
     control = StepControl(tolerance, step_ends_s)
-    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, 50, control, None)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, 50, control)
     return output.f_in, progress.step_ends_s
 
 

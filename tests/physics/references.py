@@ -34,9 +34,9 @@ LOADED_BY_DISPLACEMENT = Boundary(DISPLACEMENT, DISPLACEMENT)
 DRIVEN_BY_FORCE = LOADED_BY_SPRING._replace(drive=FORCE)
 
 
-def branches(x_in, rig, frames=None):
+def branches(x_in, rig):
     """Return tensions and phase of the closed form for a motion from rest."""
-    return follow_branches(x_in, rig, with_room(branches_at_rest(rig.preload_N), x_in), frames)
+    return follow_branches(x_in, rig, with_room(branches_at_rest(rig.preload_N), x_in))
 
 
 def static_model(x_in, rig):

@@ -1,6 +1,6 @@
 """Profiles along the tendon at chosen samples of a run: tensions and slip states.
 
-The solvers write their own state into a `Frames`; nothing is computed again. Positions (`places`)
+The slip chain writes its own state into a `Frames`; nothing is computed again. Positions (`places`)
 are shares of the total bend from 0 at the drive to 1 at the load, which are shares of the sheath's
 length where it is evenly bent; between two neighbours is an element.
 """
@@ -18,7 +18,7 @@ class Frames(NamedTuple):
     """Profiles along m elements at k samples of a run.
 
     `slip` is +1 or −1 where an element's friction is at its limit in contraction or loosening (it
-    slips, or rests as it slipped last), 0 where it sticks, 2 where it is slack, 3 where the solver
+    slips, or rests as it slipped last), 0 where it sticks, 2 where it is slack, 3 where the chain
     did not converge.
     """
 
@@ -34,7 +34,7 @@ class Frames(NamedTuple):
 
 
 def empty_frames(samples: Indices, elements: int) -> Frames:
-    """Return unfilled frames at samples, shape (k,), for a solver to write."""
+    """Return unfilled frames at samples, shape (k,), for the slip chain to write."""
     k = samples.size
     return Frames(
         samples.astype(np.int64),

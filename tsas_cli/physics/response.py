@@ -34,7 +34,6 @@ NODES = 60  # of the slip chain, where the closed form is not valid
 LUMPS = 50  # of the dynamic chain
 TOLERANCE = 2.5e-6  # error that a step of the dynamic chain may add, over a tension
 CLOSED, STATIC = 0, -1  # nodes of the closed form, and of the lumped dead bands
-ELEMENTS = 60  # of the closed form's profiles along the tendon
 MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(e.name for e in (*EFFECTS, *LAWS) if not e.closed_form)
 _effects_on_chain = attrgetter(*ON_CHAIN)
@@ -48,8 +47,7 @@ class Prediction:
     `phase` is +1 in contraction and −1 in loosening with the whole tendon slipping, 0 in a dead
     band, 2 slack, 3 not converged. `solver` names the solver; `step_ends_s` are the ends of the
     steps of the dynamic chain, empty with any other solver. `frames` are the profiles along the
-    tendon at the requested samples, without the sensors' errors; None without a request, and with
-    the static model, which has none.
+    tendon at the requested samples, without the sensors' errors; None without a request.
     """
 
     x_in_mm: Floats
@@ -78,7 +76,8 @@ class Solver(TypedDict, total=False):
     With `nodes` a chain of that many is used even where the closed form is valid: models that are
     compared must share a mesh. `tolerance` is the error of a tension that a step of the dynamic
     chain may add, over the larger tension of the ends; `step_ends_s` are given steps, of another
-    run. `looked_at` are samples, increasing, shape (k,), for profiles along the tendon.
+    run. `looked_at` are samples, increasing, shape (k,), for profiles along the tendon: those of
+    the slip chain, which solves the run then.
     """
 
     nodes: int | None
@@ -108,21 +107,24 @@ def solve(
     """Return the solution of the distributed model (`slip`), the static or the dynamic one.
 
     The distributed model uses the closed form where that is valid (`is_closed`), and the slip chain
-    elsewhere, or with `nodes`. The static one (`static`) has the limits of the closed form; the
-    dynamic one (`lugre`) needs the times of the samples.
+    elsewhere, or with `nodes` or `looked_at`. The static one (`static`) has the limits of the
+    closed form; the dynamic one (`lugre`) needs the times of the samples.
+
+    ValueError: a number of nodes that no chain has, or profiles of a model that has none.
     """
     nodes, looked_at = how.get("nodes"), how.get("looked_at")
     if nodes is not None and not 2 <= nodes <= MOST_NODES:
         raise ValueError(f"{nodes} nodes; expected 2 to {MOST_NODES}")
+    if looked_at is not None and dynamics != "slip":
+        raise ValueError(f"profiles along the tendon with dynamics {dynamics!r}; expected 'slip'")
     if dynamics == "lugre":
         steps = how.get("tolerance", TOLERANCE), how.get("step_ends_s", OWN_STEPS)
-        return _dynamic(rig, drive, nodes or LUMPS, StepControl(*steps), looked_at)
-    nodes = nodes_of(rig, drive, dynamics, nodes)
+        return _dynamic(rig, drive, nodes or LUMPS, StepControl(*steps))
+    nodes = nodes_of(rig, drive, dynamics, nodes if looked_at is None else nodes or NODES)
     ends = ends_of(rig, drive)
     before = history(rig, ends, drive, nodes)
-    skip, frames = len(before), None
-    if looked_at is not None and nodes != STATIC:
-        frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
+    skip = len(before)
+    frames = None if looked_at is None else empty_frames(looked_at + skip, nodes)
     output = samples_of(_solve(rig, ends.after(before), nodes, frames), slice(skip, None))
     frames = frames and frames._replace(samples=frames.samples - skip)
     return SolvedRun(output, solver_of(nodes), frames=frames)
@@ -135,9 +137,7 @@ def nodes_of(rig: Rig, drive: DriveInput, dynamics: Dynamics, nodes: int | None)
     return nodes or (CLOSED if is_closed(rig, drive) else NODES)
 
 
-def _dynamic(
-    rig: Rig, drive: DriveInput, lumps: int, control: StepControl, looked_at: Indices | None
-) -> SolvedRun:
+def _dynamic(rig: Rig, drive: DriveInput, lumps: int, control: StepControl) -> SolvedRun:
     """Return the solution of the dynamic chain, from the slip chain's state of rest."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
@@ -151,10 +151,9 @@ def _dynamic(
         stribeck_friction=neutral.stribeck_friction, viscous_friction=neutral.viscous_friction
     )  # each lump has its own speed
     course = ends_of(rig._replace(effects=without_speed), drive).course
-    frames = None if looked_at is None else empty_frames(looked_at, lumps)
-    output, progress = lugre_chain(course, start, rig, ends.boundary, lumps, control, frames)
+    output, progress = lugre_chain(course, start, rig, ends.boundary, lumps, control)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
-    return SolvedRun(at_drive_sensor(rig, ends, output), solver, progress.step_ends_s, frames)
+    return SolvedRun(at_drive_sensor(rig, ends, output), solver, progress.step_ends_s)
 
 
 def solver_of(nodes: int) -> str:
@@ -203,11 +202,11 @@ def advanced(
 ) -> tuple[Output, State]:
     """Return the output of a quasi-static solver for a motion from a state, and the final state.
 
-    That of a chain is updated in place.
+    That of a chain is updated in place; `frames` are written by the slip chain alone.
     """
     if isinstance(state, BranchState):
         state = with_room(state, ends.drive)
-        tensions = follow_branches(ends.drive, rig, state, frames)
+        tensions = follow_branches(ends.drive, rig, state)
     elif isinstance(state, StaticState):
         tensions, state = follow_static(ends.drive, rig, state)
     else:

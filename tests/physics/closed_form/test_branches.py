@@ -8,7 +8,6 @@ import pytest
 from tests.physics.references import FREE, GROUP_A, Profile, branches, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.closed_form.branches import from_rest, strokes
-from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)
 UP, DOWN = math.exp(A), math.exp(-A)
@@ -83,11 +82,9 @@ def test_a_straight_sheath_is_three_springs_in_series(bend):
     length = rig.sheath_length_mm + 152.0 + 61.0
     stiffness = 1.0 / (1.0 / rig.load_stiffness_N_per_mm + length / rig.tendon_stiffness_N)
     x = np.array([0.0, 3.0, 1.0, 2.0, -4.0, 0.0])
-    frames = empty_frames(np.arange(x.size), 4)
-    f_in, f_out, _ = branches(x, rig, frames)
+    f_in, f_out, _ = branches(x, rig)
     np.testing.assert_allclose(f_in, 25.0 + stiffness * x, rtol=1e-4)
     np.testing.assert_allclose(f_out, f_in, rtol=1e-4)
-    np.testing.assert_allclose(frames.tension_N, np.tile(f_in[:, None], 5), rtol=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -106,39 +103,6 @@ def test_room_for_strokes_is_that_of_turns_and_rests(motion, count):
     """The way to the first sample, the first stroke, and one for each change after it."""
     x = np.array(motion)
     assert strokes(x) == count
-
-
-def test_what_is_along_the_tendon_after_a_few_strokes():
-    """Each lays its exponential over what was before, up to where both meet: its front."""
-    tensions = 25.0 * np.array([1.2, 2.0, 1.5, 1.7, 1.55, 1.65, 0.9])
-    x_in, _ = pulled_through(GROUP_A, tensions)
-    frames = empty_frames(np.arange(7), 8)
-    branches(x_in, GROUP_A, frames)
-    # From rest it runs against a level profile, then against one as steep as its own.
-    changes = np.abs(np.diff(np.log(tensions)))
-    fronts = [math.log(1.2) / A, 1.0, *changes[1:-1] / (2.0 * A), 1.0]
-    np.testing.assert_allclose(frames.front, fronts, rtol=1e-6)
-    s, middles, profile = np.linspace(0.0, 1.0, 9), np.arange(0.5, 8.0) / 8.0, np.full(9, 25.0)
-    for k, way in enumerate((1, 1, -1, 1, -1, 1, -1)):
-        lifted_or_lowered = np.maximum if way > 0 else np.minimum
-        profile = lifted_or_lowered(profile, tensions[k] * np.exp(-way * A * s))
-        np.testing.assert_allclose(frames.tension_N[k], profile, rtol=1e-6)
-        assert frames.slip[k].tolist() == [way if m < fronts[k] else 0 for m in middles]
-
-
-@pytest.mark.parametrize("factor", [1.3, 0.8])
-def test_a_front_from_rest_goes_as_far_as_the_tension_has_changed(factor):
-    x_in, _ = pulled_through(FREE, 25.0 * np.array([factor]))
-    frames = empty_frames(np.array([0]), 4)
-    branches(x_in, FREE, frames)
-    front = abs(math.log(factor)) / A
-    assert 0.5 < front < 0.75
-    assert frames.front[0] == pytest.approx(front, rel=1e-6)
-    way = 1 if factor > 1.0 else -1
-    assert frames.slip[0].tolist() == [way, way, way if front > 0.625 else 0, 0]
-    fading = 25.0 * factor * np.exp(-way * A * np.linspace(0.0, 1.0, 5))
-    expected = np.maximum(fading, 25.0) if way > 0 else np.minimum(fading, 25.0)
-    np.testing.assert_allclose(frames.tension_N[0], expected, rtol=1e-6)
 
 
 F0 = GROUP_A.preload_N

@@ -27,11 +27,11 @@ def cleared(rig):
 
 
 def run(
-    drive, time_s, *, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=N, frames=None,
+    drive, time_s, *, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=N,
     tolerance=1e-3, steps=OWN_STEPS, **given,
 ):  # fmt: skip
     """Follow a drive from rest at the preload, where all places are zero."""
     start = np.zeros((2, n + 2))
     start[1] = rig.preload_N
     course = course_of(drive, rig, time_s=time_s, **given)
-    return lugre_chain(course, start, rig, boundary, n, StepControl(tolerance, steps), frames)
+    return lugre_chain(course, start, rig, boundary, n, StepControl(tolerance, steps))

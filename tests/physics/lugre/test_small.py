@@ -19,7 +19,6 @@ from tests.physics.references import (
     at,
     course_of,
 )
-from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre import state as rows
 from tsas_cli.physics.lugre.balance import balance
 from tsas_cli.physics.lugre.chain import OWN_STEPS
@@ -280,14 +279,3 @@ def test_a_run_is_that_of_a_general_solver(solved, steps):
     for name in ("x_out", "f_in", "f_out"):
         values = getattr(expected, name + ("_mm" if name == "x_out" else "_N"))
         np.testing.assert_allclose(getattr(found, name)[::2], values, atol=2e-3 * np.ptp(values))
-
-
-def test_along_the_tendon_are_the_tensions_of_its_ends(solved):
-    samples = np.array([0, 7, 20, 31, 50])
-    frames = empty_frames(samples, N)
-    found, _ = small_run(solved[0], frames=frames)
-    np.testing.assert_allclose(frames.tension_N[:, 0], found.f_in[samples], rtol=1e-9)
-    np.testing.assert_allclose(frames.tension_N[:, -1], found.f_out[samples], rtol=1e-9)
-    alike = np.all(frames.slip == frames.slip[:, :1], axis=1)
-    np.testing.assert_array_equal(np.where(alike, frames.slip[:, 0], 0), found.phase[samples])
-    assert {-1, 1} <= set(found.phase)

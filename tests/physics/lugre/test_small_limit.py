@@ -100,17 +100,3 @@ def test_a_run_that_begins_in_the_middle_of_a_stroke():
     _, lugre, off = both(STIFF, drive)
     assert max(off.values()) < 2e-3
     assert lugre.f_in_N[0] == pytest.approx(26.0, abs=0.05)
-
-
-def test_along_the_tendon_it_is_the_slip_chain():
-    at, drive = np.array([3, 11, 22, 23, 30, 40]), DriveInput(MOTION, time_s=TIME_S)
-    slip = simulate(STIFF, drive, nodes=N, looked_at=at).frames
-    lugre = simulate(STIFF, drive, "lugre", nodes=N, looked_at=at).frames
-    np.testing.assert_allclose(lugre.tension_N, slip.tension_N, atol=0.02)
-    np.testing.assert_array_equal(lugre.slip, slip.slip)
-    np.testing.assert_array_equal(lugre.front, slip.front)
-    hanging = DriveInput(MOTION - 18.0, time_s=TIME_S)
-    limp = simulate(STIFF, hanging, "lugre", nodes=N, looked_at=np.array([1, 20, 40])).frames
-    assert limp.slip[[0, 2]].tolist() == [[SLACK] * N] * 2
-    assert not np.any(limp.tension_N[[0, 2]])
-    assert np.all(limp.tension_N[1] > 1.0)

@@ -170,14 +170,15 @@ def test_a_simulation_shows_its_one_model(made, tmp_path):
     assert "/run/a/tendon/simulated/tension" in paths
 
 
-def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
+def test_other_dynamics_and_folders_without_a_model_show_none(made, tmp_path):
     dataset = made / "dataset"
     assert view_in(by_hand.make_simulation(dataset, tmp_path / "simulate")) is None
     assert view_in(made_diagnoses.make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
-    out = tmp_path / "static"
-    tsas.simulate(dataset, dynamics="static", out=out)
-    assert json.loads((out / "simulation.json").read_text())["dynamics"] == "static"
-    assert view_in(out) is None
+    for dynamics in ("static", "lugre"):
+        out = tmp_path / dynamics
+        tsas.simulate(dataset, dynamics=dynamics, out=out)
+        assert json.loads((out / "simulation.json").read_text())["dynamics"] == dynamics
+        assert view_in(out) is None
     assert view_in(dataset) is None
 
 

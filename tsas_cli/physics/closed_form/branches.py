@@ -19,7 +19,6 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.capstan import mean_tension_ratio, tension_ratio
 from tsas_cli.physics.course import Tensions
-from tsas_cli.physics.frames import Frames, is_next
 from tsas_cli.physics.mesh import (
     compliance_at_drive,
     compliance_at_load,
@@ -126,7 +125,7 @@ def with_room(state: BranchState, x_in: Floats) -> BranchState:
 
 
 @kernel
-def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None) -> Tensions:
+def follow_branches(x_in: Floats, rig: Rig, state: BranchState) -> Tensions:
     """Return the tensions for a motion from a state, which is updated in place.
 
     Parameters
@@ -137,8 +136,6 @@ def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames |
         The rig; its sensor zeros are not used.
     state
         The state before the motion, `with_room` for it.
-    frames
-        Written over with the profile along the tendon, on any number of elements.
     """
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
@@ -156,7 +153,6 @@ def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames |
     x, T, out = last[LAST_X], last[LAST_F_IN], last[LAST_F_OUT]
     direction, depth, base = int(last[DIRECTION]), int(last[DEPTH]), int(last[BASE])
     before = int(last[PHASE])
-    written = 0
     for i in range(n):
         if x_in[i] != x:
             sign = 1 if x_in[i] > x else -1
@@ -190,56 +186,6 @@ def follow_branches(x_in: Floats, rig: Rig, state: BranchState, frames: Frames |
         before = phase[i]
         f_in[i] = T
         f_out[i] = out
-        if frames is not None and is_next(frames, written, i):  # compiled away without frames
-            past = Strokes(reversal_T[:depth], T, direction, base)
-            write_profile(frames, written, past, rig.preload_N, wrap)
-            written += 1
     # In the order of the indices: stored one by one, or in a record, the loop takes a fifth longer.
     last[:] = np.array([x, T, out, direction, depth, base, before])
     return Tensions(f_in, f_out, phase)
-
-
-class Strokes(NamedTuple):
-    """The strokes that shape the profile of tension, the last one up to its front."""
-
-    reversal_tensions: Floats  # at the drive at the end of each earlier stroke, (depth,) [N]
-    f_in: float  # at the drive now
-    direction: int
-    base: int  # of the stack, REST or SLIP
-
-
-@kernel
-def write_profile(frames: Frames, k: int, past: Strokes, preload: float, wrap: float) -> None:
-    """Write the profile of tension after the strokes into frame k.
-
-    Each stroke replaces the earlier profile by T0 e^(∓a s/L), as far as that is above (contraction)
-    or below (loosening) it; a stroke with full slip replaces all of it.
-    """
-    m, depth = frames.slip.shape[1], past.reversal_tensions.size
-    for half in range(2 * m + 1):  # nodes at the even ones, the middles of elements between
-        s = 0.5 * half / m
-        tension, slid = preload, False
-        for stroke in range(depth + 1):
-            sign = past.direction if (depth - stroke) % 2 == 0 else -past.direction
-            at_drive = past.reversal_tensions[stroke] if stroke < depth else past.f_in
-            new = at_drive * math.exp(-sign * wrap * s)
-            slid = (past.base == SLIP and stroke == 0) or (new - tension) * sign > 0.0
-            tension = new if slid else tension
-        if half % 2 == 0:
-            frames.tension_N[k, half // 2] = tension
-        elif past.f_in == 0.0:
-            frames.slip[k, half // 2] = SLACK
-        else:
-            frames.slip[k, half // 2] = past.direction if slid else 0
-    frames.front[k] = front_of(past, preload, wrap)
-
-
-@kernel
-def front_of(past: Strokes, preload: float, wrap: float) -> float:
-    """Return the share of the sheath up to which the last stroke has slid the tendon."""
-    depth = past.reversal_tensions.size
-    if past.f_in == 0.0 or past.direction == 0:
-        return 0.0
-    if depth > 0:
-        return min(abs(math.log(past.f_in / past.reversal_tensions[depth - 1])) / (2.0 * wrap), 1.0)
-    return 1.0 if past.base == SLIP else min(abs(math.log(past.f_in / preload)) / wrap, 1.0)

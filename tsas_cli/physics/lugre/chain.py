@@ -14,7 +14,6 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import FORCE, Boundary
 from tsas_cli.physics.course import TIME, Output
-from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.lugre.ends import (
     F_IN,
     F_OUT,
@@ -28,13 +27,6 @@ from tsas_cli.physics.lugre.ends import (
     input_error,
     write_samples,
 )
-from tsas_cli.physics.lugre.frames import (
-    empty_tensions,
-    sliding_direction,
-    store_tensions,
-    write_along,
-    write_slack_frames,
-)
 from tsas_cli.physics.lugre.input import next_reversal, step_at
 from tsas_cli.physics.lugre.slack import (
     end_of_slack,
@@ -44,7 +36,7 @@ from tsas_cli.physics.lugre.slack import (
     write_slack,
 )
 from tsas_cli.physics.lugre.start import clear_state, lugre_laws, start_at_rest
-from tsas_cli.physics.lugre.state import ROWS, LugreLaws
+from tsas_cli.physics.lugre.state import DEFLECTION_NEW, LIMIT, ROWS, LugreLaws
 from tsas_cli.physics.lugre.step import (
     accept_step,
     bdf2,
@@ -54,7 +46,7 @@ from tsas_cli.physics.lugre.step import (
     try_step,
 )
 from tsas_cli.physics.mesh import PITCH
-from tsas_cli.physics.phases import UNCONVERGED
+from tsas_cli.physics.phases import SLIDING_SHARE, UNCONVERGED
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats
 
@@ -94,7 +86,6 @@ def lugre_chain(
     boundary: Boundary,
     n: int,
     control: StepControl,
-    frames: Frames | None,  # a default would be compiled apart from None
 ) -> tuple[Output, Progress]:
     """Return the output for the motion of both ends from a state of rest.
 
@@ -114,8 +105,6 @@ def lugre_chain(
         Number of lumps, 2 to `MOST_NODES`.
     control
         Error control of steps, or given steps.
-    frames
-        Written over with the profile along the tendon, n elements with a lump in each.
 
     Returns
     -------
@@ -141,11 +130,6 @@ def lugre_chain(
     steps = tries = iterations = 0
     ends_s = np.empty(MOST_TRIES + MOST_PER_SAMPLE * m)  # as many as may be tried
     controlled, stop = control.ends_s.size == 0, 0
-    written, along = 0, empty_tensions(n)
-    if frames is not None:  # here and below compiled away without frames
-        store_tensions(s, along, laws)
-        store_tensions(s, along, laws)
-        written = write_along(frames, written, 0, course, Span(t, 1.0), along, s, laws)
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
         most = tolerances_of(ends, laws, control.tolerance, MOST_RESIDUAL)
@@ -176,9 +160,6 @@ def lugre_chain(
         write_samples(columns, Samples(since, k + 1), course, span, earlier, ends, laws)
         now = phase_of(s, laws)
         phase[since : k + 1] = now
-        if frames is not None:
-            store_tensions(s, along, laws)
-            written = write_along(frames, written, k, course, span, along, s, laws)
         accept_step(s, step, laws)
         stiffness = end_stiffnesses(earlier, ends, least)
         first = h if h1 == math.inf else first
@@ -191,9 +172,6 @@ def lugre_chain(
             if k < m - 1:
                 start = slack_state(s, load_position(course, k, t, laws), laws)
                 ends = start_at_rest(s, start, course, k, t, laws)
-            if frames is not None:
-                written = write_slack_frames(frames, written, k)
-                store_tensions(s, along, laws)
         if lands and k < m - 1:
             reversal = next_reversal(course, k, laws)
             h, h1, h2 = first if controlled else math.inf, math.inf, math.inf
@@ -238,3 +216,12 @@ def phase_of(s: Floats, laws: LugreLaws) -> int:
         pulled += direction > 0
         released += direction < 0
     return int(pulled == laws.n) - int(released == laws.n)
+
+
+@kernel
+def sliding_direction(s: Floats, i: int, laws: LugreLaws) -> int:
+    """Return +1 or −1 where a lump's bristles are at their limit, 0 where they are not."""
+    steady = s[LIMIT + i] / laws.lump.bristle.stiffness + laws.lump.bristle.travel
+    return int(s[DEFLECTION_NEW + i] > SLIDING_SHARE * steady) - int(
+        s[DEFLECTION_NEW + i] < -SLIDING_SHARE * steady
+    )

@@ -17,7 +17,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.model_file import read_model
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.frames import Frames
-from tsas_cli.physics.response import Dynamics, simulate
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.run_files import read_recording
@@ -44,25 +44,24 @@ EYE = np.array([0.0, -0.9, 0.9])  # of the scene's size, from where it looks to 
 
 @dataclass(frozen=True)
 class TendonModels:
-    """The models that a stage simulated a run with, and how."""
+    """The models that a stage simulated a run with, and the nodes of their chains."""
 
     stage: type[StageFile]
     models: Mapping[Source, Model]
-    dynamics: Dynamics = "slip"
     nodes: int | None = None
 
 
 def models_of(run: SeenRun) -> TendonModels | None:
     """Return both models of a diagnosis, else the simulated one.
 
-    None where neither stage took the run or wrote its models, and for the lumped model, which
-    does not say what is along the tendon.
+    None where neither stage took the run or wrote its models, and for a simulation with other
+    dynamics than the slip chain's, which alone gives profiles along the tendon.
     """
     diagnosis, simulation = run.inputs.get(DiagnosisFile), run.inputs.get(SimulationFile)
     files = {SIMULATED: MODEL_FILE}
     if diagnosis is not None:
         files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.extended else {})
-    elif simulation is None or simulation.dynamics == "static":
+    elif simulation is None or simulation.dynamics != "slip":
         return None
     stage = next(iter(files)).stage
     folder = run.inputs.folders[stage]
@@ -73,7 +72,7 @@ def models_of(run: SeenRun) -> TendonModels | None:
     models = {source: read_model(path) for source, path in paths.items()}
     if diagnosis is not None or simulation is None:
         return TendonModels(stage, models)
-    return TendonModels(stage, models, simulation.dynamics, simulation.nodes)
+    return TendonModels(stage, models, simulation.nodes)
 
 
 def record_tendon(recorder: Recorder, run: SeenRun) -> None:
@@ -89,7 +88,7 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
     for source, model in given.models.items():
         rig, start = model.rig(entry), model.session_start(dataset.manifest)
         of_session = replace(drive, session_s=seconds_into(start, entry.started))
-        found = simulate(rig, of_session, given.dynamics, nodes=given.nodes, looked_at=at)
+        found = simulate(rig, of_session, nodes=given.nodes, looked_at=at)
         if found.frames is not None:
             followed[source] = rig, found.frames
     record_tendons(recorder, run.entity("tendon"), run.times.at(at), followed)
