@@ -42,6 +42,23 @@ REASONS = {
     "undecided": "two strokes are too few to hold any out.",
 }
 EVIDENCE = "each of 4 runs is predicted by a fit to the others; 55 blocks count."
+_SIZE = {"value": 1.0, "unit": "N", "interval_low": 0.9, "interval_high": 1.1}
+LAW = {
+    "law": "drive_law",
+    "title": "Law at the drive",
+    "equation": "f = g(x)",
+    "sentence": "Elements at the drive.",
+    "channel": "f_in_N",
+    "unit": "N",
+    "rmse_before": 0.62,
+    "rmse_after": 0.11,
+    "what": "f_in [N]",
+    "travel_mm": [0.0, 1.0],
+    "after_reversal": [0.0, 2.0],
+    "place_mm": [0.0, 10.0],
+    "along_stroke": [1.0, 1.1],
+    "parameters": {"size_N": _SIZE, "x_out_size_mm": _SIZE},
+}
 LEFT = ["time_s (f_in_N swings at 3.1 Hz)", "speed_mm_per_s"]
 
 

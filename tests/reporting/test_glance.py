@@ -135,14 +135,9 @@ def test_the_reproduction_counts_its_verdicts():
 
 
 def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
-    length = {"value": 1.0, "unit": "N", "interval_low": 0.9, "interval_high": 1.1}
-    law = {"law": "drive_law", "title": "Law at the drive", "equation": "f = g(x)"}
-    law |= {"sentence": "Elements at the drive.", "channel": "f_in_N", "unit": "N"}
-    law |= {"rmse_before": 0.62, "rmse_after": 0.11, "what": "f_in [N]"}
-    law |= {"travel_mm": [0.0, 1.0], "after_reversal": [0.0, 2.0]}
-    law |= {"place_mm": [0.0, 10.0], "along_stroke": [1.0, 1.1]}
-    law["parameters"] = {"size_N": length, "x_out_size_mm": length}
-    folder = made_diagnoses.make_diagnosis(dataset, tmp_path / "d", "unexplained", laws=[law])
+    folder = made_diagnoses.make_diagnosis(
+        dataset, tmp_path / "d", "unexplained", laws=[made_diagnoses.LAW]
+    )
     with by_hand.edited(folder / "diagnosis.json") as content:
         content["verdict"] = "described"
     it = of(folder)

@@ -12,7 +12,8 @@ from tsas_cli.records.diagnosis import EXTENDED_MODEL
 from tsas_cli.reporting import simulation
 from tsas_cli.reporting.calibration import parameters_section
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.simulation import rms, simulated_models
+from tsas_cli.reporting.simulation import rms
+from tsas_cli.reporting.sources import simulated_models
 from tsas_cli.support.files import sha256_of
 
 

@@ -17,7 +17,8 @@ from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, pictu
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import X_IN, in_words, quantity_of
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.simulation import channels_of, diagnosed_models, rms
+from tsas_cli.reporting.simulation import channels_of, rms
+from tsas_cli.reporting.sources import diagnosed_models
 from tsas_cli.support.arrays import Floats, Indices
 
 _FEWEST = 10  # samples that make a picture

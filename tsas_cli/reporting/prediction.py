@@ -17,7 +17,8 @@ from tsas_cli.reporting.drawing import picture, shared_points
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import TENSIONS, X_IN, in_words
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.simulation import Simulated, channels_of, draw_comparison
+from tsas_cli.reporting.simulation import channels_of, draw_comparison
+from tsas_cli.reporting.sources import Source
 
 _POINTS = 30_000  # of all curves
 
@@ -31,7 +32,7 @@ def section(inputs: Inputs) -> Section | None:
     shown = _order(prediction, recordings)
     folder = inputs.folders[PredictionFile]
     models = [
-        Simulated(f"model {it.name}", role, folder, partial(name_by, model=it.name))
+        Source(f"model {it.name}", role, folder, partial(name_by, model=it.name))
         for it, role in zip(prediction.models, cycle((*MODELS[1:], MODELS[0])), strict=False)
     ]
     curves = len(TENSIONS) * min(len(shown), MOST_RUNS) * (1 + 2 * len(models))
@@ -68,7 +69,7 @@ def _order(prediction: PredictionFile, known: Container[str]) -> list[str]:
 
 
 def _pictures(
-    inputs: Inputs, recording: Recording, models: Sequence[Simulated], number: int, points: int
+    inputs: Inputs, recording: Recording, models: Sequence[Source], number: int, points: int
 ) -> Iterator[Picture]:
     """Yield the loop of each tension over x_in, and below it the residual of each model."""
     x = models[0].driven(recording) if models else None

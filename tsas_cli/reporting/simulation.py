@@ -4,18 +4,16 @@ The models are those of a diagnosis, and each simulation by its name.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tsas_cli.identification.prepared import CHANNELS
-from tsas_cli.recordings.columns import BY_NAME, nominal_name
+from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import (
     MOST_RUNS,
@@ -28,47 +26,15 @@ from tsas_cli.reporting.content import (
     table_of,
 )
 from tsas_cli.reporting.drawing import kept_samples, legend, noise_bounds, picture, shared_points
-from tsas_cli.reporting.inputs import Inputs, series_of, written_in
+from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import X_IN, at_axis, in_words, quantity_of
 from tsas_cli.reporting.numbers import over, plain, spanned
+from tsas_cli.reporting.sources import Source, simulated_models
 from tsas_cli.support.arrays import Floats
-from tsas_cli.support.files import sha256_of
 
-NOMINAL, EXTENDED = "nominal model", "extended model"
 _LINES = ("-", "--", ":")
-_ROLES = ("simulated", "dead-band-up", "alike", "rest")
 _TITLE = "Simulation and measurement"
 _POINTS = 50_000  # of all curves
-
-
-@dataclass(frozen=True)
-class Simulated:
-    """One model's predictions: its name on the page, its colour's role, and where they are.
-
-    `named` gives the name of a channel's column in the files there.
-    """
-
-    label: str
-    role: str
-    folder: Path
-    named: Callable[[str], str] = str
-
-    def driven(self, recording: Recording) -> Floats | None:
-        """Return x_in of a run as it drives the model [mm], shape (n,); None if not written."""
-        return self._written(recording, X_IN)
-
-    def predicted(self, recording: Recording, column: str) -> Floats | None:
-        """Return a channel of a run as predicted, shape (n,); None if not written.
-
-        InputError: the file cannot be read, or does not belong to this recording.
-        """
-        return self._written(recording, self.named(column))
-
-    def _written(self, recording: Recording, name: str) -> Floats | None:
-        run = recording.run.id
-        if name not in written_in(self.folder, run):
-            return None
-        return series_of(self.folder, run, recording.time_s.size, name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +49,7 @@ class ShownChannel:
     noise: float | None
     time_s: Floats
     measured: Floats
-    by_model: Mapping[Simulated, Floats]
+    by_model: Mapping[Source, Floats]
     x: Floats | None = None
 
     @property
@@ -91,7 +57,7 @@ class ShownChannel:
         """The channel's unit."""
         return BY_NAME[self.channel].unit
 
-    def rmse(self, model: Simulated) -> float | None:
+    def rmse(self, model: Source) -> float | None:
         """Return the RMS of a model's residual, None without the model."""
         return rms(self.measured - self.by_model[model]) if model in self.by_model else None
 
@@ -136,7 +102,7 @@ def _intro(inputs: Inputs) -> Iterator[str]:
 
 
 def channels_of(
-    inputs: Inputs, recording: Recording, models: Sequence[Simulated]
+    inputs: Inputs, recording: Recording, models: Sequence[Source]
 ) -> Iterator[ShownChannel]:
     """Yield the channels of a run that are measured and predicted by a model."""
     for channel in CHANNELS:
@@ -155,7 +121,7 @@ def channels_of(
             yield ShownChannel(run, channel, noise, time_s, measured, by_model)
 
 
-def _table(compared: Sequence[ShownChannel], models: Sequence[Simulated]) -> Table:
+def _table(compared: Sequence[ShownChannel], models: Sequence[Source]) -> Table:
     """Return the residuals in the channel's unit, and over its noise level."""
     rows = []
     for one in compared:
@@ -238,27 +204,6 @@ def draw_comparison(figure: Any, *, it: ShownChannel, points: int) -> None:
     lower.set(xlabel=label, ylabel=f"residual [{it.unit}]")
     figure.align_ylabels()
     legend(figure, upper, ncols=3 if len(it.by_model) < 3 else 2)
-
-
-def diagnosed_models(inputs: Inputs) -> tuple[Simulated, ...]:
-    """Return the nominal model of a diagnosis, and the extended one where there is one."""
-    diagnosis = inputs.get(DiagnosisFile)
-    if diagnosis is None:
-        return ()
-    folder = inputs.folders[DiagnosisFile]
-    extended = (Simulated(EXTENDED, "after", folder),) if diagnosis.extended else ()
-    return Simulated(NOMINAL, "before", folder, nominal_name), *extended
-
-
-def simulated_models(inputs: Inputs) -> tuple[Simulated, ...]:
-    """Return the diagnosis's models and those of the simulations, but none twice."""
-    found = list(diagnosed_models(inputs))
-    extended = inputs.folders[DiagnosisFile] / EXTENDED_MODEL if found else None
-    digest = sha256_of(extended) if extended is not None and extended.is_file() else None
-    for number, (name, (record, folder)) in enumerate(inputs.simulations.items()):
-        if digest is None or record.model.sha256 != digest:
-            found.append(Simulated(name, _ROLES[number % len(_ROLES)], folder))
-    return tuple(found)
 
 
 def rms(residual: Floats) -> float:

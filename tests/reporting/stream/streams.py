@@ -82,9 +82,9 @@ def stream(folder: Path, *stages: Path) -> dict[str, Read]:
     return read(folder / "s.rrd")
 
 
-def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named") -> Path:
+def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named", **more) -> Path:
     """Write what `tsas diagnose` would: by 2 N the nominal model is off, the extended one not."""
-    make_diagnosis(dataset, folder, verdict)
+    make_diagnosis(dataset, folder, verdict, **more)
     (folder / "model-extended.toml").write_text(MODEL, encoding="utf-8")
     return write_predictions(dataset, folder, lambda *_: -2.0, channels=("f_in",))
 

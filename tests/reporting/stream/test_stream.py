@@ -10,6 +10,7 @@ import pytest
 
 from tests.reporting import made_folders as by_hand
 from tests.reporting import made_loops
+from tests.reporting.made_diagnoses import LAW
 from tests.reporting.stream.streams import make_diagnosed, stream
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.reporting.colours import dark
@@ -78,6 +79,12 @@ def test_what_was_not_simulated_has_no_answer_and_what_drives_a_model_no_residua
     assert "/run/a/f_in_N/simulated" not in found
     assert "/run/a/x_in_mm/model_input" in found
     assert "/run/a/x_in_mm/residual/model_input" not in found
+
+
+@pytest.mark.parametrize("laws", [[], [LAW]])
+def test_the_extended_model_is_there_where_a_law_extends_it(made, tmp_path, laws):
+    folder = make_diagnosed(made / "dataset", tmp_path / "d", "unexplained", laws=laws)
+    assert ("/run/a/f_in_N/model_extended" in stream(tmp_path, folder)) == bool(laws)
 
 
 def test_series_are_named_and_coloured_as_in_the_report(found):

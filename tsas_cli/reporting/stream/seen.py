@@ -10,8 +10,8 @@ from tsas_cli.recordings.columns import BY_NAME, TIME, nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import RunColumns, open_run
-from tsas_cli.records.base import OfDataset, PhaseSegment, StageFile
-from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.base import OfDataset, PhaseSegment
+from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
@@ -19,39 +19,13 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs, series_of, written_in
 from tsas_cli.reporting.names import TENSIONS, X_IN
+from tsas_cli.reporting.sources import Source, diagnosed_models
 from tsas_cli.reporting.stream.recorder import Times, times_of
 from tsas_cli.support.arrays import Floats
 
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
-_TENDON = frozenset({*TENSIONS, "x_out_mm"})
 _BROKEN = {"unreadable", "time-order"}
 _REFERENCES = {"f_out_ref_N": "f_out_N"}  # a reference is shown with its channel
-
-
-@dataclass(frozen=True)
-class Source:
-    """What a stage says of some columns: its name in paths, in words, and its colour's role.
-
-    What comes later in the alphabet is drawn over what comes before. `nominal` where it is of the
-    nominal model; `cleaned` where it is the measurement itself, cleaned before it drove a model.
-    """
-
-    key: str
-    label: str
-    role: str
-    stage: type[StageFile]
-    columns: frozenset[str] = _TENDON
-    nominal: bool = False
-    cleaned: bool = False
-
-    def named(self, column: str) -> str:
-        """Return what the column is called in the stage's file."""
-        return nominal_name(column) if self.nominal else column
-
-
-SIMULATED = Source("simulated", "simulated", "simulated", SimulationFile)
-NOMINAL = Source("model", "nominal model", "before", DiagnosisFile, nominal=True)
-EXTENDED = Source("model_extended", "extended model", "after", DiagnosisFile)
 
 
 @dataclass(frozen=True)
@@ -126,28 +100,24 @@ class SeenRun:
 
     def predicted(self, column: str, source: Source) -> Floats:
         """Return what a stage says of a column, shape (n,), NaN for gaps."""
-        return self.written(source.named(column), source.stage)
-
-    def written(self, column: str, stage: type[StageFile]) -> Floats:
-        """Return a column that a stage has written, shape (n,), NaN for gaps."""
-        return series_of(self.inputs.folders[stage], self.id, self.file.rows, column)
+        return series_of(source.folder, self.id, self.file.rows, source.named(column))
 
 
 def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     """Yield the runs in the order of the manifest, none without a dataset."""
     if inputs.dataset is None:
         return
-    given, tracking, folders = tuple(_sources(inputs)), inputs.get(TrackingFile), inputs.folders
-    stages = dict.fromkeys(source.stage for source in given)
+    given, tracking = tuple(_sources(inputs)), inputs.get(TrackingFile)
+    folders = dict.fromkeys(source.folder for source in given)
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
     parted = inputs.get(CalibrationFile), inputs.get(DiagnosisFile), inputs.get(SimulationFile)
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
-        written = {stage: written_in(folders[stage], run.id) for stage in stages}
+        written = {folder: written_in(folder, run.id) for folder in folders}
         channels = tuple(
             Channel(
                 name,
-                tuple(s for s in given if name in s.columns and s.named(name) in written[s.stage]),
+                tuple(s for s in given if name in s.columns and s.named(name) in written[s.folder]),
             )
             for name in BY_NAME
             if name in file.names and name != TIME
@@ -156,22 +126,24 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
         yield SeenRun(inputs, file, channels, next(phases, ()), tracked.get(run.id))
 
 
+def simulation_of(inputs: Inputs) -> tuple[Source, ...]:
+    """Return the model of a simulation, none without one."""
+    folder, key = inputs.folders.get(SimulationFile), "simulated"
+    return () if folder is None else (Source(key, key, folder, key=key, model=MODEL_FILE),)
+
+
 def _sources(inputs: Inputs) -> Iterator[Source]:
-    """Yield the sources that were given; where nothing is named, both models are one."""
-    simulation, diagnosis = inputs.get(SimulationFile), inputs.get(DiagnosisFile)
+    """Yield the sources that were given; where nothing is found, both models are one."""
+    models = (*simulation_of(inputs), *diagnosed_models(inputs))
+    yield from models
     drive = frozenset({X_IN})
-    if simulation is not None:
-        yield SIMULATED
-    if diagnosis is not None:
-        yield NOMINAL
-        if diagnosis.extended:
-            yield EXTENDED
-    if simulation is not None or diagnosis is not None:
-        stage = DiagnosisFile if simulation is None else SimulationFile
-        yield Source("model_input", "conditioned", "simulated", stage, drive, cleaned=True)
-    if inputs.get(DriveFile) is not None:
-        yield Source("model", "nominal drive", "before", DriveFile, drive, nominal=True)
-        yield Source("model_identified", "identified drive", "after", DriveFile, drive)
+    for model in models[:1]:
+        yield Source(
+            "conditioned", "simulated", model.folder, key="model_input", columns=drive, cleaned=True
+        )
+    if folder := inputs.folders.get(DriveFile):
+        yield Source("nominal drive", "before", folder, nominal_name, "model", columns=drive)
+        yield Source("identified drive", "after", folder, key="model_identified", columns=drive)
 
 
 def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:

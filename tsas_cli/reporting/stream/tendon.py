@@ -7,6 +7,7 @@ little over half a turn; beyond, where its ends would meet, as a helix of a gent
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import cast
 
 import numpy as np
@@ -22,15 +23,13 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.recordings.session import seconds_into
-from tsas_cli.records.base import StageFile
-from tsas_cli.records.calibration import MODEL_FILE
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.inputs import written_in
+from tsas_cli.reporting.inputs import series_of, written_in
 from tsas_cli.reporting.names import TENSIONS
+from tsas_cli.reporting.sources import Source, diagnosed_models
 from tsas_cli.reporting.stream.recorder import Recorder, Times
-from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, SeenRun, Source
+from tsas_cli.reporting.stream.seen import SeenRun, simulation_of
 from tsas_cli.support.arrays import Floats, Indices
 
 PER_SECOND = 15.0
@@ -44,11 +43,11 @@ EYE = np.array([0.0, -0.9, 0.9])  # of the scene's size, from where it looks to 
 
 @dataclass(frozen=True)
 class TendonModels:
-    """The models that a stage simulated a run with, and the nodes of their chains."""
+    """The models that a stage simulated a run with, its folder, and the nodes of their chains."""
 
-    stage: type[StageFile]
+    folder: Path
     models: Mapping[Source, Model]
-    nodes: int | None = None
+    nodes: int | None
 
 
 def models_of(run: SeenRun) -> TendonModels | None:
@@ -57,22 +56,17 @@ def models_of(run: SeenRun) -> TendonModels | None:
     None where neither stage took the run or wrote its models, and for a simulation with other
     dynamics than the slip chain's, which alone gives profiles along the tendon.
     """
-    diagnosis, simulation = run.inputs.get(DiagnosisFile), run.inputs.get(SimulationFile)
-    files = {SIMULATED: MODEL_FILE}
-    if diagnosis is not None:
-        files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.extended else {})
-    elif simulation is None or simulation.dynamics != "slip":
+    simulation, nodes = run.inputs.get(SimulationFile), None
+    sources = diagnosed_models(run.inputs)
+    if not sources:
+        if simulation is None or simulation.dynamics != "slip":
+            return None
+        sources, nodes = simulation_of(run.inputs), simulation.nodes
+    files = {source: source.folder / source.model for source in sources}
+    folder = sources[0].folder
+    if not written_in(folder, run.id) or not all(file.is_file() for file in files.values()):
         return None
-    stage = next(iter(files)).stage
-    folder = run.inputs.folders[stage]
-    paths = {source: folder / file for source, file in files.items()}
-    written = written_in(folder, run.id)
-    if not written or not all(path.is_file() for path in paths.values()):
-        return None
-    models = {source: read_model(path) for source, path in paths.items()}
-    if diagnosis is not None or simulation is None:
-        return TendonModels(stage, models)
-    return TendonModels(stage, models, simulation.nodes)
+    return TendonModels(folder, {source: read_model(file) for source, file in files.items()}, nodes)
 
 
 def record_tendon(recorder: Recorder, run: SeenRun) -> None:
@@ -82,8 +76,9 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
         return
     dataset, entry = cast("Dataset", run.inputs.dataset), run.file.run
     drive = prepare(read_recording(dataset.folder, entry)).drive
-    written = written_in(run.inputs.folders[given.stage], run.id)
-    at = moments(run.time_s, [run.written(n, given.stage) for n in TENSIONS if n in written])
+    tensions = [name for name in TENSIONS if name in written_in(given.folder, run.id)]
+    rows = run.file.rows
+    at = moments(run.time_s, [series_of(given.folder, run.id, rows, name) for name in tensions])
     followed: dict[Source, tuple[Rig, Frames]] = {}
     for source, model in given.models.items():
         rig, start = model.rig(entry), model.session_start(dataset.manifest)
