@@ -183,7 +183,7 @@ def repeated_rows(trial: RunSignals) -> Findings:
             None,
             f"{count} of {repeated.size} rows ({100 * count / repeated.size:.2g} %) repeat the row "
             f"before them in all channels; with this noise about {expected:.0f} would",
-            "record no faster than the slowest sensor updates, or set drop_repeated_rows in the map",
+            "record no faster than the slowest sensor, or set drop_repeated_rows in the map",
             first_s=float(trial.time_s[np.argmax(repeated)]),
         )
 
