@@ -89,10 +89,12 @@ def absorbed_by(
 
     `whole` is the fit with one effect more than `fewer`, both `beside_tolerances`: what it gains
     has to be a gain too where the `effect` of both has values of its own for the parts of a
-    signal. None where it is.
+    signal. None where it is, and where tolerances and frictions alone do what it does.
     """
     trials = [_with_frictions(trial, effect, folds) for trial in (fewer, whole)]
     if not all(columns for _, columns in trials):
+        return None
+    if not gain(*(held_out_squares(trial, folds) for trial, _ in trials)).convincing:
         return None
     for by, (labels, part) in _parts(signals, folds.run, ()).items():
         split = (_split(trial, columns, part, len(labels))[0] for trial, columns in trials)

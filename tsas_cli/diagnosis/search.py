@@ -110,11 +110,13 @@ def sufficient(fits: Fits, names: Names, mesh: bool) -> float:
 def add(fits: Fits, names: Names, least: float = 0.0) -> list[tuple[str, Reduction]]:
     """Return each further effect that passes screening, fitted, with its gain, best first.
 
-    `least` is the reduction of the mean square that the effects have to make. A wave that is longer
+    `least` is the reduction of the mean square that the effects have to make. Beside an effect that
+    does what tolerances do as well, others explain what those leave. A wave that is longer
     than the strokes is left out, since no name could be proven.
     """
     screened = fits.screen(names)
-    part = max(least_part(screened), _least_part(fits, names, least))
+    of_best = least_part(screened) * (1.0 - fits.of_tolerances(names))
+    part = max(of_best, _least_part(fits, names, least))
     candidates = [s for s in screened if s.part >= part]
     fits.step.ahead(sum(fits.is_new(names | {s.effect.name}) for s in candidates))
     found = []
