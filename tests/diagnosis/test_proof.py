@@ -145,7 +145,12 @@ def test_an_offset_that_is_the_same_for_both_sensors_may_be_friction(f_out, refu
 
 @pytest.mark.parametrize(
     ("effect", "parameter", "refused"),
-    [("tilt", "per_mm", True), ("gain_drift", "rate_per_s", True), ("curvature", "per_N", False)],
+    [
+        ("tilt", "per_mm", True),
+        ("gain_drift", "rate_per_s", True),
+        ("hysteresis", "share", True),
+        ("curvature", "per_N", False),
+    ],
 )
 def test_what_is_the_same_for_both_sensors_may_be_of_the_tendon(effect, parameter, refused):
     """A force along the way is a tilt of both; a load that softens takes a share of both."""

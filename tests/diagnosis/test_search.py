@@ -17,6 +17,7 @@ from tests.diagnosis.searched import (
     screened,
     search_over,
     seen,
+    tolerances_take,
 )
 from tsas_cli.diagnosis import fits as fits_module
 from tsas_cli.diagnosis import search as s
@@ -115,11 +116,16 @@ def test_a_straight_sheath_has_no_friction_over_the_inverse_of_its_bend(
     assert len(looked_at) == lines
 
 
-def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
+@pytest.mark.parametrize(("by_tolerances", "found"), [(0.0, [C, A]), (0.2, [D, C, A])])
+def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(
+    made, monkeypatch, by_tolerances, found
+):
+    """A fifth of the best is 0.1; what tolerances take, the best may be no more than."""
     fits = made({names(): 4.0, names(A): 3.0, names(C): 2.0, names(D): 1.0})
-    seen(fits, names(), (A, 0.5), (C, 0.11), (D, 0.09))  # a fifth of the best is 0.1
-    assert [name for name, _ in s.add(fits, names())] == [C, A]
-    assert names(D) not in fits.bench.fitted
+    tolerances_take(monkeypatch, by_tolerances)
+    seen(fits, names(), (A, 0.5), (C, 0.11), (D, 0.09))
+    assert [name for name, _ in s.add(fits, names())] == found
+    assert (names(D) in fits.bench.fitted) == (D in found)
 
 
 @pytest.mark.parametrize(("least", "found"), [(0.99, [C, A]), (1.01, [A])])

@@ -38,6 +38,7 @@ ALIKE = 0.1  # relative difference of two sensors' errors within which they are 
 BOTH_SENSORS = {
     "force_sensor_drift": "friction that changes and does not vanish with the tension",
     "force_sensor_gain_drift": "a load whose stiffness changes",
+    "force_sensor_hysteresis": "a hysteresis of the load",
     "force_sensor_offset": "friction that does not vanish with the tension",
     "force_sensor_tilt": "a force along the way of the tendon",
 }
@@ -137,7 +138,7 @@ def _alike_in_both(effect: str, sensors: tuple[Estimate, Estimate], *, zero: boo
     near, unsure = apart < ALIKE * size, not zero and all(e.holds(*both) for e in sensors)
     if not (near or (unsure and apart < 2.0 * ALIKE * size)):
         return []
-    values = f"{both[0]:.3g} and {both[1]:.3g} {sensors[0].unit}"
+    values = f"{both[0]:.3g} and {both[1]:.3g} {_unit(sensors[0].unit)}".rstrip()
     are = "is" if near else "may be"
     return [f"{are} the same for both sensors ({values}), which {BOTH_SENSORS[effect]} does too"]
 
