@@ -66,7 +66,7 @@ def test_a_recording_may_begin_anywhere_in_a_cycle_and_half_of_one_is_enough(end
     """In contraction, in the dead band, in loosening: what came before does not enter the fit."""
     result = calibrated(ran(part_of(recorded(), *ends)))
     is_right(result)
-    assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+    assert not any("lacks an effect" in sentence for sentence in result.cannot_tell)
 
 
 def test_a_dead_band_alone_says_that_it_is_not_enough():
@@ -122,7 +122,7 @@ def test_gaps_are_left_out(name):
     rows = [*range(100), *range(600, 700), *range(-100, 0)]
     result = calibrated(ran(with_gap(recorded(), rows, name)))
     is_right(result)
-    assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+    assert not any("lacks an effect" in sentence for sentence in result.cannot_tell)
 
 
 def test_channels_of_two_loggers_that_never_share_a_row():
@@ -198,7 +198,7 @@ def test_almost_no_friction_is_found_to_be_that():
     result = calibrated(ran(recorded(rig=rig), rig=rig))
     assert fitted(result)["friction_coefficient"].value < 0.002
     assert fitted(result)["load_stiffness_N_per_mm"].value == pytest.approx(1.579, rel=2e-3)
-    assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+    assert not any("lacks an effect" in sentence for sentence in result.cannot_tell)
 
 
 def test_much_friction():
@@ -254,7 +254,7 @@ def test_a_fit_that_ends_at_a_bound_says_so():
     at_bound = [e.name for e in result.model.estimates if e.at_bound]
     said = [s.split()[0] for s in result.cannot_tell if "converged to its plausible bound" in s]
     assert at_bound == said
-    assert any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+    assert any("lacks an effect" in sentence for sentence in result.cannot_tell)
 
 
 def test_a_run_begins_with_the_tension_that_was_measured():
@@ -287,4 +287,4 @@ def test_where_a_fit_ends_with_every_parameter_at_a_bound_the_model_is_called_wr
     }
     run = recorded_as(columns, preload_N=89.0, load="force")
     result = calibrated(run, **dict.fromkeys(DATA_SHEET))
-    assert any("the nominal model is wrong" in note for note in result.cannot_tell)
+    assert any("the nominal model lacks an effect" in note for note in result.cannot_tell)

@@ -21,6 +21,7 @@ from tsas_cli.identification.transfer import Slope, tension_transfer, without_tr
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.support.wording import listed, some_of
 
 MISSING_EFFECTS_NOTE = (
     "The intervals do not include effects that the model lacks: find them with `tsas diagnose` and "
@@ -89,8 +90,8 @@ def calibrate_runs(
             wider = widened(fit, step)
             model = Model(wider.estimates).over(model)
             residual_notes.append(
-                f"The intervals are widened by the influence of {' or '.join(wider.effects)}, "
-                "which would explain most of the residual; `tsas diagnose` searches for the cause."
+                "The intervals are widened by what is not in the model: "
+                f"{listed(some_of(wider.effects), ' or ')} would explain most of the residual."
                 if wider.effects
                 else "No catalogued effect explains the residual: the intervals may not contain "
                 "the true values."

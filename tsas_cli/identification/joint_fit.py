@@ -120,8 +120,8 @@ def misfit(fit: FittedModel) -> list[str]:
     wrong = [f"{x:.3g} for {name}" for name, x in worst.items() if x > WRONG_RATIO**2]
     said = (
         f"The reduced chi-square is up to {listed(wrong)} (1 at the noise level): the nominal "
-        "model is wrong somewhere, and its estimates are those of the nearest nominal model, not "
-        "of the rig."
+        "model lacks an effect, or load cells, bend or friction are off by their tolerances "
+        "(`tsas diagnose` says which). The estimates are those of the nearest nominal model."
     )
     return [said] if wrong else []
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+SOME = 3
+
 
 def count_of(number: int, noun: str) -> str:
     """Return a number with its noun, in the plural unless it is one."""
@@ -15,6 +17,16 @@ def quoted(name: str) -> str:
     ['a', '"a,b"']
     """
     return f'"{name}"' if "," in name else name
+
+
+def some_of(words: Sequence[str]) -> list[str]:
+    """Return the first words and how many more there are, if they are many.
+
+    >>> some_of(["time", "speed", "run", "phase", "place"])
+    ['time', 'speed', 'run', '2 more']
+    """
+    more = len(words) - SOME
+    return [*words[:SOME], f"{more} more"] if more > 1 else list(words)
 
 
 def listed(words: Sequence[str], last: str = " and ") -> str:
