@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
-from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.response import first_determined_sample, simulate
+from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
 MOTION = np.concatenate((np.linspace(0, 20, 500), np.linspace(20, 5, 500), np.linspace(5, 9, 300)))
@@ -82,3 +83,13 @@ def test_a_tension_out_of_reach_starts_at_the_nearest_one(wanted):
     pulled = simulate(GROUP_A, DriveInput(np.array([0.0, 10.0]))).f_in_N[-1]
     released = simulate(GROUP_A, DriveInput(np.array([0.0, 20.0, 10.0]))).f_in_N[-1]
     assert reached == pytest.approx(pulled if wanted > 100.0 else released, rel=1e-6)
+
+
+def test_a_tendon_that_is_tightened_anew_leaves_the_drives_ripple_where_it_is():
+    """The end of the tendon is ahead by the wave of the reading, wherever the zero of x_in is."""
+    reading = np.linspace(0.0, 5.0, 400)
+    wave = {"drive_ripple.sine_mm": 0.1, "drive_ripple.period_mm": 1.2}
+    ahead = 0.1 * np.sin(2.0 * np.pi * reading / 1.2)
+    for zero in (-0.4, 0.0, 0.7):
+        rig = with_values(GROUP_A, wave | {"x_in_zero_mm": zero})
+        assert np.ptp(ends_of(rig, DriveInput(reading)).drive - reading - ahead) < 1e-12

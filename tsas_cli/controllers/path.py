@@ -18,7 +18,7 @@ from tsas_cli.effects.laws.tendon_law import tendon_law_factor
 from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.stops import ELEMENTS, GAPS
-from tsas_cli.numerics.wave import Wave, rippled
+from tsas_cli.numerics.wave import Wave, rippled, wave_from
 from tsas_cli.physics.course import PULLED, RELEASED
 from tsas_cli.physics.ends import (
     NO_TENDON_LAW,
@@ -101,7 +101,8 @@ def follow(
     force = tension - rig.preload_N
     force += force_at_drive(end, last_direction(end), of_motion, rig.effects)
     force += law_force(end, speed, force + rig.preload_N, rig.effects.drive_law)
-    drive = drive_at(geared, rig.effects.drive_ripple, step_s)
+    ripple = wave_from(rig.effects.drive_ripple, rig.x_in_zero_mm)
+    drive = drive_at(geared, ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
     return DrivePath(drive, drive + wound, missed)
 

@@ -7,11 +7,13 @@ Equation: two harmonics of the kinematic error of a gear (for harmonic drives e.
 Seering 1996, IEEE Trans. Robotics and Automation 12(3)). Two waves per revolution of the wave
 generator make a period of 2π r1/(2 im), 0.7095 mm for the drive of Yang 2025, Eq. (48): r1 =
 27.1 mm, im = 120. An encoder of x_in that turns off its centre is equivalent: what it reads too
-much, the tendon's end lags behind x_in, in every channel.
+much, the tendon's end lags behind x_in, in every channel. The phase belongs to x_in as recorded: a
+tendon that is tightened anew moves the zero of x_in, and not the gear.
 Mistaken for: position_sensor_ripple (x_out alone has the wave); mains hum on a sensor (its period
 is one of time); load_spring_nonlinearity (where the period is longer than the stroke).
-Not validated: a third harmonic; a ripple that changes with torque; one so steep that
-2π·amplitude/period exceeds 1, which reverses the tendon's end.
+Not validated: a third harmonic; an encoder that is set to zero elsewhere in each run; a ripple that
+changes with torque; one so steep that 2π·amplitude/period exceeds 1, which reverses the tendon's
+end.
 """
 
 from tsas_cli.effects.effect import Effect, wave_parameters

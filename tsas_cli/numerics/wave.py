@@ -8,6 +8,8 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.support.arrays import Values
 
+DISTANT = 10.0  # periods
+
 
 class Wave(NamedTuple):
     """Two amplitudes of the wave, its period in travel [mm], and its second harmonic.
@@ -58,6 +60,28 @@ def wave_at(position: Values, wave: Wave) -> tuple[Values, Values]:
 def rippled(position: Values, wave: Wave) -> Values:
     """Return a position with the wave on it [mm]."""
     return position + wave_at(position, wave)[0]
+
+
+@kernel
+def wave_from(wave: Wave, origin_mm: float) -> Wave:
+    """Return the wave over the distance from an origin, but for a constant.
+
+    It is the same one for a distant origin, as of an encoder that nobody has set to zero: a phase
+    so many periods away depends on the period more than a fit begins to know it.
+    """
+    if wave.sine_mm == wave.cosine_mm == 0.0 or abs(origin_mm) > DISTANT * wave.period_mm:
+        return wave
+    angle = 2.0 * math.pi * origin_mm / wave.period_mm
+    sine, cosine = _turned(wave.sine_mm, wave.cosine_mm, angle)
+    second_sine, second_cosine = _turned(wave.second_sine, wave.second_cosine, 2.0 * angle)
+    return Wave(sine, cosine, wave.period_mm, second_sine, second_cosine)
+
+
+@kernel
+def _turned(sine: float, cosine: float, angle: float) -> tuple[float, float]:
+    """Return the amplitudes of a wave whose phase is larger by an angle."""
+    up, along = math.sin(angle), math.cos(angle)
+    return sine * along - cosine * up, sine * up + cosine * along
 
 
 def periods(longest: float, shortest: float, number: int) -> tuple[float, ...]:

@@ -21,7 +21,7 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.sheath_drag import drag_over
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import Wave, rippled
+from tsas_cli.numerics.wave import Wave, rippled, wave_from
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.course import DIRECTION, DRIVE, MOTION, STEP, TRAVEL, Losses
 from tsas_cli.physics.rig import Rig
@@ -110,7 +110,8 @@ def ends_of(
     else:
         x = drive.values - rig.x_in_zero_mm
         before = float(x[0]) if start is None else start[0]
-        at_drive = tendon_end(x, rig.effects.drive_ripple, rig.effects.backlash.play_mm, before)
+        ripple = wave_from(rig.effects.drive_ripple, rig.x_in_zero_mm)
+        at_drive = tendon_end(x, ripple, rig.effects.backlash.play_mm, before)
         position, speed = at_drive, np.zeros(n)
         if (  # a fit asks thousands of times
             rig.effects.viscous_friction.coefficient_N_s_per_mm != 0.0

@@ -19,7 +19,7 @@ import math
 from typing import NamedTuple
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.wave import Wave, rippled
+from tsas_cli.numerics.wave import Wave, rippled, wave_from
 from tsas_cli.physics.rig import Rig
 
 FLANK = 1.0 - 1e-9  # of half the play, from which the drive is in contact with its flank
@@ -113,7 +113,8 @@ def spring_of(table: Turntable, p: float, rig: Rig, step: DriveStep) -> Turntabl
     stiffness = m * c * c + actuator.damping_N_s_per_mm * c + actuator.stiffness_N_per_mm
     pull = actuator.stiffness_N_per_mm * step.motor_mm - m * a_rest
     pull -= actuator.damping_N_s_per_mm * v_rest
-    gear = ripple_tangent(2.0 * table.x - table.x_before, rig.effects.drive_ripple)
+    ripple = wave_from(rig.effects.drive_ripple, rig.x_in_zero_mm)
+    gear = ripple_tangent(2.0 * table.x - table.x_before, ripple)
     half = 0.5 * rig.effects.backlash.play_mm
     x = (pull - gear.slope * (table.f_in - rig.preload_N)) / stiffness  # with the end at rest
     if half > 0.0:
