@@ -76,6 +76,8 @@ def test_what_tolerances_may_do_beside_named_causes_is_said():
         "load cells, bend and friction do."
     )
     assert reason_of("named", [cause(PLAY)], [], START, left(4.0)).endswith(within)
+    beside = reason_of("partly", [cause(PLAY)], [cause(MASS, failed=("fails",))], START, left(4.0))
+    assert beside.endswith(within.replace("left,", "left without it,"))
     more = reason_of("partly", [cause(PLAY)], [], START, left(4.0, "time_s"))
     assert within not in more
 

@@ -45,7 +45,8 @@ def reason_of(
             sentences.append("No catalogued effect explains the remaining residual.")
         sentences += _dependence(after)
     elif causes and _exceeds_noise(after):
-        sentences.append(f"What is left, {_over_noise(after)}, is {WITHIN_TOLERANCES}.")
+        without = f" without {'them' if stand_ins[1:] else 'it'}" if stand_ins else ""
+        sentences.append(f"What is left{without}, {_over_noise(after)}, is {WITHIN_TOLERANCES}.")
     if law is not None:
         sentences.append(_law(law))
     return " ".join(text[0].upper() + text[1:] for text in sentences)
