@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis import remainder as remainder_module
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.moments import _is_brief, _is_late, at_moments
 from tsas_cli.diagnosis.remainder import Remainder, SlowPart, remainder
@@ -162,6 +163,15 @@ def test_a_displacement_is_late_by_more_than_a_contact_gives_way(unit_mm, late):
     run = Run({"f_in_N": noise(1), "x_out_mm": noise(2)})
     run.lags, run.delay_unit = np.array([3.0, 3.1, 3.0, 3.1]), unit_mm
     assert at_moments(bench_of(run), [run], [None])[0] == late
+
+
+def test_a_place_over_which_the_error_repeats_is_said_once(monkeypatch):
+    repeats = "x_in_mm (f_in_N repeats every 7 mm)"
+    monkeypatch.setattr(remainder_module, "ripple", lambda runs, by_run: repeats)
+    wave = 3.0 * np.sign(np.sin(0.9 * X))
+    found = left_of({"f_in_N": wave + noise(1)}, {"f_in_N": wave + noise(3)})
+    assert found.depends_on[0] == repeats
+    assert "x_in_mm" not in found.depends_on
 
 
 def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():

@@ -7,6 +7,7 @@ with no signal: slow noise.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -131,7 +132,7 @@ def remainder(
     return Remainder(
         mean_square=sum(part.squares for part in by_channel.values()) / count,
         explained={name: part.explained for name, part in by_channel.items()},
-        depends_on=(*([oscillates] if oscillates else []), *found[:3]),
+        depends_on=_said(oscillates, found[:3]),
         reducible=sum(part.explained * part.samples / count for part in by_channel.values()),
         structure=sum(part.structure for part in by_channel.values()),
         slow={
@@ -144,6 +145,14 @@ def remainder(
         brief=brief,
         oscillates=oscillates,
     )
+
+
+def _said(oscillates: str | None, signals: Sequence[str]) -> tuple[str, ...]:
+    """Return the signals, the one that a residual repeats over with the phrase that says so."""
+    if oscillates is None:
+        return tuple(signals)
+    over = oscillates.partition(" ")[0]
+    return (oscillates, *(signal for signal in signals if signal != over))
 
 
 @dataclass(frozen=True)
