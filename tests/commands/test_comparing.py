@@ -37,8 +37,9 @@ def test_the_tables_say_how_far_a_prediction_is_and_whether_inside(run):
     assert "- Each run's own preload and zeros are fitted to it, and nothing else." in out
 
 
+MODELS = ("calibrated-1/model.toml", "calibrated-2/model.toml")
 WRITTEN = {
-    "compare": ("calibrated-1", "calibrated-1/model.toml"),
+    "compare": (*MODELS, "--on", "data-2", "--runs", "slow"),
     "predict": ("calibrated-1", "again", "--as-is"),
 }
 
@@ -57,10 +58,11 @@ def test_out_holds_all_that_json_prints_and_the_keys_are_documented(run, tmp_pat
     if command == "predict":
         assert content["own_values_fitted"] is False
         return
-    assert {row["run_a"] for row in content["errors"]} == {"slow", "fast"}
+    assert {row["run_a"] for row in content["errors"]} == {"slow"}
+    assert content["on"]["chosen"] == ["slow"]
     page = (out / "report.html").read_text()
     assert page.startswith("<!DOCTYPE html>")
-    assert "tsas compare calibrated-1 calibrated-1/model.toml" in page
+    assert "tsas compare calibrated-1/model.toml" in page
 
 
 COMPARE = partial(pytest.param, "compare")
@@ -71,7 +73,9 @@ PREDICT = partial(pytest.param, "predict")
     ("command", "words", "message"),
     [
         COMPARE(("calibrated-1", "nowhere"), "nowhere: nothing that can be compared is here"),
+        COMPARE(("calibrated-1", "calibrated-2", "--runs", "slow"), "add --on"),
         COMPARE(("calibrated-1", "calibrated-2", "--fit-own"), "No such option: --fit-own"),
+        COMPARE(("calibrated-1", "calibrated-2", "--on", "data-1", "--runs", "sl"), "no run 'sl'"),
         PREDICT(("calibrated-1",), "calibrated-1: one argument alone; expected MODEL… DATASET"),
         PREDICT(("calibrated-1", "calibrated-1"), "calibrated-1: no dataset.toml here"),
         PREDICT(("calibrated-1", "again", "--runs", "sl"), "no run 'sl'"),

@@ -26,7 +26,7 @@ CALLS = {
     "identify-harmonic-drive": ["home/drive-chirp"],
     "simulate": ["home/tracked", "--model", "home/model/model.toml"],
     "diagnose": ["home/tracked", "--model", "home/model/model.toml"],
-    "compare": ["home/model", "home/other/model.toml"],
+    "compare": ["home/model", "home/other/model.toml", "--on", "home/tracked"],
     "predict": ["home/model", "home/other/model.toml", "home/tracked"],
     "plan": ["home/tracked"],
     "export": ["home/model/model.toml", "--to", "json"],
@@ -49,7 +49,7 @@ NO_FILES |= {"dynamics", "speed", "to", "sheath_length_mm", "total_bend_rad", "p
 NO_FILES |= {"fit_own", "nodes", "controllers", "compare", "disturb", "as_printed", "seeds", "seed"}
 NO_FILES |= {"cases", "hide", "each_run", "workers", "cluster", "pdf", "small", "kind", "rate"}
 NO_FILES |= {"tool", "what", "conditions", "salt", "first_seed"}
-FILES = {"sources", "map_path", "dataset", "model", "a", "b", "path", "plant", "drive"}
+FILES = {"sources", "map_path", "dataset", "model", "a", "b", "on", "path", "plant", "drive"}
 FILES |= {"given", "settings", "reference", "datasets", "options", "folders", "sealed", "entries"}
 WRITE_NO_FILE = {"verify", "view", "runs", "doctor", "effects", "explain"}
 WITHOUT_FORCE = {"init", "upload"}  # nothing is overwritten; to an address alone

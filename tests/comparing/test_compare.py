@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomlkit
 
 from tests.comparing.made import NOMINAL, calibrated
 from tsas_cli.comparing.compare import compare
@@ -29,18 +30,9 @@ def changed(root):
 
 
 @pytest.fixture(scope="module")
-def simulated(root, tmp_path_factory):
-    """Simulations of the second dataset with both models."""
-    folder = tmp_path_factory.mktemp("simulated")
-    for seed in (1, 2):
-        model = root / f"calibrated-{seed}" / "model.toml"
-        simulate(root / "data-2", model=model, out=folder / f"s{seed}")
-    return folder
-
-
-@pytest.fixture(scope="module")
-def on_second(simulated):
-    return compare(simulated / "s1", simulated / "s2")
+def on_second(root):
+    models = (root / f"calibrated-{seed}" / "model.toml" for seed in (1, 2))
+    return compare(*models, on=read_dataset(root / "data-2"))
 
 
 def copied(root, folder):
@@ -60,15 +52,17 @@ def test_a_known_difference_is_recovered_and_nothing_else(changed):
     assert {p.name for p in changed.tested} >= {"load_stiffness_N_per_mm", "tendon_stiffness_N"}
 
 
-def test_swapped_sides_turn_the_signs_and_the_ratios(root, changed, simulated, on_second):
+def test_swapped_sides_turn_the_signs_and_the_ratios(root, changed, on_second):
     turned = compare(root / "calibrated-2", root / "calibrated-1")
     d, t = (of(it, "friction_coefficient") for it in (changed, turned))
     assert (t.value, t.low, t.high) == pytest.approx((-d.value, -d.high, -d.low))
     assert "larger in B" in findings(changed)[0]
     assert "smaller in B" in findings(turned)[0]
-    back = compare(simulated / "s2", simulated / "s1")
+    models = (root / f"calibrated-{seed}" / "model.toml" for seed in (2, 1))
+    back = compare(*models, on=read_dataset(root / "data-2"))
     for one, other in zip(on_second.errors, back.errors, strict=True):
         assert one.ratio == pytest.approx(1.0 / other.ratio)
+        assert (one.fitted_a, one.fitted_b) == (other.fitted_b, other.fitted_a)
     assert on_second.maps["a"] == back.maps["b"]
 
 
@@ -113,19 +107,35 @@ def test_a_renamed_recording_is_matched(root, tmp_path):
     assert ("preload_N", "slow = s") in {(p.name, p.run) for p in it.pairs if p.difference}
 
 
-def test_simulations_of_the_same_recordings_are_held_against_each_other(on_second):
+def test_on_a_dataset_both_models_are_held_to_the_same_recordings(on_second):
     rows = [r for r in on_second.errors if r.channel == "f_in_N"]
     assert [(r.run_a, r.run_b) for r in rows] == [("slow", "slow"), ("fast", "fast")]
     assert all(r.ratio < 0.2 for r in rows)  # friction off by 20 % against the rig's own
     assert all(r.rmse_b < 2.0 * r.noise for r in rows)
-    assert {(r.fitted_a, r.fitted_b) for r in rows} == {(None, None)}
+    assert {(r.fitted_a, r.fitted_b) for r in rows} == {(False, True)}
+    assert any("favours" in note for note in notes(on_second))
+
+
+def test_another_recording_of_the_same_name_keeps_its_own_preload(root, tmp_path):
+    # The model's own preload of its run `slow` is spoiled: it must not reach another recording.
+    content = tomlkit.parse((root / "calibrated-1" / "model.toml").read_text())
+    preload = content["runs"]["slow"]["preload_N"]
+    content["runs"]["slow"]["preload_N"] = {"value": 100.0 + preload["value"], "unit": "N"}
+    spoiled = tmp_path / "model.toml"
+    spoiled.write_text(tomlkit.dumps(content))
+    whole = root / "calibrated-1" / "model.toml"
+    other = compare(whole, spoiled, on=read_dataset(root / "data-2"))
+    assert {row.ratio for row in other.errors} == {1.0}
+    own = compare(whole, spoiled, on=read_dataset(root / "data-1"))
+    slow = [r.ratio for r in own.errors if r.run_a == "slow" and r.channel == "f_out_N"]
+    assert slow[0] > 10.0
 
 
 def test_two_model_files_alone_give_their_values_and_say_what_gives_more(root):
     it = compare(*(root / f"calibrated-{seed}" / "model.toml" for seed in (1, 2)))
     assert [p.name for p in it.differing] == ["friction_coefficient"]
     assert (it.errors, it.maps) == ([], {})
-    assert "`tsas predict`" in notes(it)[-1]
+    assert "--on DATASET" in notes(it)[-1]
 
 
 def test_maps_share_their_bins_and_show_where_the_error_is(on_second):
@@ -139,11 +149,16 @@ def test_maps_share_their_bins_and_show_where_the_error_is(on_second):
     assert edges[0] == edges[1]
 
 
-def test_simulations_are_held_to_their_own_series(simulated, on_second):
-    assert on_second.pairs == []
+def test_simulations_are_held_to_their_own_series(root, tmp_path):
+    data = read_dataset(root / "data-2")
+    for seed in (1, 2):
+        model = root / f"calibrated-{seed}" / "model.toml"
+        simulate(data, model=model, out=tmp_path / f"s{seed}")
+    it = compare(tmp_path / "s1", tmp_path / "s2")
+    assert it.pairs == []
     for side, name in (("s1", "rmse_a"), ("s2", "rmse_b")):
-        said = json.loads((simulated / side / "simulation.json").read_text())["runs"]
-        for row in on_second.errors:
+        said = json.loads((tmp_path / side / "simulation.json").read_text())["runs"]
+        for row in it.errors:
             known = said[row.run_a]["channels"][row.channel]["rmse"]
             assert getattr(row, name) == pytest.approx(known, rel=1e-9)
 
@@ -154,12 +169,12 @@ def test_everything_that_is_printed_is_in_the_json(changed, on_second):
         assert content.format == 1
         assert content.stage == "compare"
         printed = {title: rows for title, _, rows in tables(content)}
-        assert len(printed.get("parameters", ())) == len(content.parameters)
+        assert len(printed["parameters"]) == len(content.parameters)
         assert len(printed["errors"]) == len(content.errors)
-    friction = next(p for p in record_of(changed).parameters if p.name == "friction_coefficient")
-    assert friction.difference.excludes_zero is True
-    assert friction.a.value == pytest.approx(0.125, abs=1e-3)
-    assert friction.b.value == pytest.approx(0.150, abs=1e-3)
+        friction = next(p for p in content.parameters if p.name == "friction_coefficient")
+        assert friction.difference.excludes_zero is True
+        assert friction.a.value == pytest.approx(0.125, abs=1e-3)
+        assert friction.b.value == pytest.approx(0.150, abs=1e-3)
 
 
 def test_a_dataset_that_is_gone_or_has_changed_leaves_the_values(root, tmp_path):
@@ -185,15 +200,17 @@ def test_what_cannot_be_compared_is_refused(root, tmp_path):
     (tmp_path / "empty").mkdir()
     shutil.copytree(root / "calibrated-1", tmp_path / "two")
     shutil.copy(tmp_path / "s" / "simulation.json", tmp_path / "two")
-    for b, said in (
-        (tmp_path / "empty", "calibration.json, diagnosis.json"),
-        (tmp_path / "none.toml", "nothing that can be compared"),
-        (root / "data-1" / "dataset.toml", "dataset.toml"),
-        (tmp_path / "two", "calibration.json and simulation.json"),
-        (tmp_path / "s", "nothing to compare"),
+    data = read_dataset(root / "data-1")
+    for a, b, more, said in (
+        (model, tmp_path / "empty", {}, "calibration.json, diagnosis.json"),
+        (model, tmp_path / "none.toml", {}, "nothing that can be compared"),
+        (model, root / "data-1" / "dataset.toml", {}, "dataset.toml"),
+        (model, tmp_path / "two", {}, "calibration.json and simulation.json"),
+        (model, tmp_path / "s", {}, "nothing to compare"),
+        (tmp_path / "s", tmp_path / "s", {"on": data}, "does not hold its model"),
     ):
         with pytest.raises(InputError, match=said):
-            compare(model, b)
+            compare(a, b, **more)
 
 
 def test_runs_of_one_dataset_that_were_fitted_apart_are_independent(root, tmp_path):
@@ -216,10 +233,29 @@ def test_a_series_of_another_length_is_refused(root, tmp_path):
         compare(tmp_path / "s", tmp_path / "s")
 
 
+@pytest.mark.parametrize(
+    ("ratios", "said"),
+    [
+        ((0.5, 0.8), "in f_in_N B is better (RMSE of B 0.5 to 0.8 times that of A)"),
+        ((1.2, 1.2), "in f_in_N A is better (RMSE of B 1.2 times that of A)"),
+        ((0.5, 1.2), "in f_in_N neither is better in all"),
+        ((0.995, 1.005), "in f_in_N they are alike"),
+    ],
+)
+def test_which_is_better_is_said_of_runs_that_no_fit_has_seen(on_second, ratios, said):
+    row = next(r for r in on_second.errors if r.channel == "f_in_N")
+    held_out = {"fitted_a": False, "fitted_b": False}
+    told = [held_out | {"run_b": f"r{n}", "ratio": ratio} for n, ratio in enumerate(ratios)]
+    it = replace(on_second, errors=[row.model_copy(update=one) for one in told])
+    assert findings(it)[0].startswith("On 2 held-out runs")
+    assert said in findings(it)[0]
+    assert not any("predicts better" in note for note in notes(it))
+    assert any("predicts better" in note for note in notes(on_second))
+
+
 def test_doubts_are_said(on_second):
     doubtful = replace(on_second.b, dynamics="lugre", not_converged="it wandered.")
     said = " ".join(notes(replace(on_second, b=doubtful)))
-    assert "does not show which model predicts better" in said
     assert "two laws of motion: A slip, B lugre" in said
     assert "fit of B did not converge (it wandered)" in said
     assert "converge" not in " ".join(notes(on_second))

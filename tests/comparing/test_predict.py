@@ -126,21 +126,6 @@ def test_only_the_preload_and_the_zeros_of_a_run_are_fitted_to_it(root, tmp_path
     assert verdicts(own) == ["inside"]  # 8 % of the preload
 
 
-def test_another_recording_of_the_same_name_keeps_its_own_preload(root, tmp_path):
-    # The model's own preload of its run `slow` is spoiled: it must not reach another recording.
-    content = tomlkit.parse((root / "calibrated-1" / "model.toml").read_text())
-    preload = content["runs"]["slow"]["preload_N"]
-    content["runs"]["slow"]["preload_N"] = {"value": 100.0 + preload["value"], "unit": "N"}
-    spoiled = tmp_path / "model.toml"
-    spoiled.write_text(tomlkit.dumps(content))
-    whole = root / "calibrated-1" / "model.toml"
-    other, own = (
-        tsas.predict([whole, spoiled], root / name, fit_own=False) for name in ("data-2", "data-1")
-    )
-    assert {row.ratio for row in rows(other, model="B")} == {1.0}
-    assert rows(own, model="B", run="slow", channel="f_out_N")[0].ratio > 10.0
-
-
 def test_another_bend_is_outside_the_range_and_the_same_rig_is_inside(root):
     model = root / "calibrated-1"
     again = tsas.predict(model, root / "again")

@@ -87,5 +87,5 @@ def test_models_are_compared_on_a_dataset_at_an_address(both, tmp_path):
     assert found.summary["same_recordings"] == "all"
     (row,) = found.summary["errors"]
     assert row["rmse_a"] == row["rmse_b"]
-    predicted = tsas.predict(tmp_path / "a/model.toml", address)
-    assert predicted.record.dataset.name == "bench-42"
+    on = tsas.compare(tmp_path / "a/model.toml", tmp_path / "b/model.toml", on=address)
+    assert on.summary["on"]["name"] == "bench-42"

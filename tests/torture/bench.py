@@ -55,7 +55,7 @@ STAGES = (
         PAGE,
     ),
     _stage("predict", "in/calibrate in/diagnose in/dataset", "dataset", "calibrate", "diagnose"),
-    _stage("compare", "in/calibrate in/diagnose", *PAGE),
+    _stage("compare", "in/calibrate in/diagnose --on in/dataset", *PAGE),
 )
 
 

@@ -138,6 +138,11 @@ def predict(
 def compare(
     a: Annotated[Path, typer.Argument(metavar="A", help="A model, or a stage's folder.")],
     b: Annotated[Path, typer.Argument(metavar="B", help="The other model or folder.")],
+    on: Annotated[
+        str | None,
+        typer.Option(metavar="DATASET", help="Simulate both models on these recordings."),
+    ] = None,
+    runs: common.ChosenRuns = None,
     out: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Also write DIR/compare.json and DIR/report.html."),

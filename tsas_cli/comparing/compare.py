@@ -10,6 +10,7 @@ from tsas_cli.comparing.sides import Overlap, Side, overlap, pairs, read_side
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
 from tsas_cli.identification.model import Model
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.comparison import ErrorRow, ParameterPair
 from tsas_cli.records.diagnosis import Maps
 from tsas_cli.support.arrays import Floats
@@ -19,7 +20,10 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 @dataclass(frozen=True)
 class Comparison:
-    """What two sides say, side by side, each held to the recordings that it has read."""
+    """What two sides say, side by side.
+
+    `on` is the dataset that both models are held to, None where each is held to what it has read.
+    """
 
     a: Side
     b: Side
@@ -28,6 +32,7 @@ class Comparison:
     recordings: list[Both]
     errors: list[ErrorRow]
     maps: dict[str, Maps]
+    on: Dataset | None = None
 
     @property
     def sides(self) -> dict[str, Side]:
@@ -50,20 +55,24 @@ class Comparison:
         return [both for both in self.recordings if both.a and both.b]
 
 
-def compare(a: Path | Model, b: Path | Model, *, step: Steps = NO_PROGRESS) -> Comparison:
+def compare(
+    a: Path | Model, b: Path | Model, *, on: Dataset | None = None, step: Steps = NO_PROGRESS
+) -> Comparison:
     """Hold two models, or what two stages wrote, against each other.
 
     `a` and `b` are models, their files, or folders that `tsas calibrate`, `diagnose` or `simulate`
-    wrote. A folder's model is held to the recordings that the stage has read, a model file to none.
+    wrote. Without a dataset `on` a folder's model is held to the recordings that the stage has
+    read, and a model file to none.
 
     InputError: A or B is none of these, there is nothing that both hold, or a recording cannot be
     read.
     """
     sides = read_side(a), read_side(b)
-    _refuse(sides)
+    _refuse(sides, on)
     predictions = Predictions(step)
     predicted = [
-        predictions.of(side, None if side.kind == "model" else side.dataset) for side in sides
+        predictions.of(side, on or (None if side.kind == "model" else side.dataset))
+        for side in sides
     ]
     recordings = matched(*predicted)
     return Comparison(
@@ -73,12 +82,19 @@ def compare(a: Path | Model, b: Path | Model, *, step: Steps = NO_PROGRESS) -> C
         recordings,
         error_rows(*sides, recordings),
         residual_maps(recordings),
+        on,
     )
 
 
-def _refuse(sides: tuple[Side, Side]) -> None:
-    """Refuse what has nothing in common."""
+def _refuse(sides: tuple[Side, Side], on: Dataset | None) -> None:
+    """Refuse what has nothing in common, or asks for a model where there is none."""
     without = [side for side in sides if side.model is None]
+    if without and on is not None:
+        raise InputError(
+            "a simulation does not hold its model, so that it cannot be simulated on --on",
+            where=without[0].path,
+            remedy="give the model that it was made with",
+        )
     if without and any(side.kind == "model" for side in sides):
         raise InputError(
             "a simulation and a model file have nothing to compare",

@@ -12,11 +12,12 @@ from tsas_cli.support.wording import count_of
 from tsas_cli.verifying.claims import change_notes
 
 SHOWN = 4  # names that are listed
+ALIKE = 0.01  # relative difference of two RMSE that makes none of them better
 
 
 def findings(it: Comparison) -> list[str]:
     """Return what differs: values, causes, errors; the most important first."""
-    every = [*_values(it), *_effects(it)]
+    every = [*_held_out(it), *_values(it), *_effects(it)]
     for channel in CHANNELS:
         ratios = [r.ratio for r in it.errors if r.channel == channel and r.ratio is not None]
         if ratios:
@@ -78,6 +79,32 @@ def _effects(it: Comparison) -> Iterator[str]:
             yield f"The verdict of diagnosis {name} is {found.verdict}: {found.reason}"
 
 
+def _held_out(it: Comparison) -> Iterator[str]:
+    """Yield which model is better in each channel on runs that neither was fitted to."""
+    rows = [
+        r for r in it.errors if r.ratio is not None and (r.fitted_a, r.fitted_b) == (False,) * 2
+    ]
+    said = []
+    for channel in CHANNELS:
+        ratios = [r.ratio for r in rows if r.channel == channel and r.ratio is not None]
+        if not ratios:
+            continue
+        low, high = min(ratios), max(ratios)
+        better = (
+            "B is better"
+            if high < 1.0 - ALIKE
+            else "A is better"
+            if low > 1.0 + ALIKE
+            else "they are alike"
+            if low >= 1.0 - ALIKE and high <= 1.0 + ALIKE
+            else "neither is better in all"
+        )
+        said.append(f"in {channel} {better} (RMSE of B {span_text(ratios)} times that of A)")
+    if said:
+        runs = count_of(len({r.run_b for r in rows}), "held-out run")
+        yield f"On {runs}, which neither was fitted to: {'; '.join(said)}."
+
+
 def _recordings(it: Comparison) -> Iterator[str]:
     if it.a.model is None or it.b.model is None:
         return
@@ -121,10 +148,16 @@ def _doubts(it: Comparison) -> Iterator[str]:
     bound = [p.name for p in it.pairs if p.difference and p.difference.why_none == "at its bound"]
     if bound:
         yield f"At a bound, so that no difference is claimed: {_some(bound)}."
-    if any(r.ratio is not None for r in it.errors):
+    shared = [r for r in it.errors if r.ratio is not None]
+    if shared and all(r.fitted_a is not False or r.fitted_b is not False for r in shared):
         yield (
             "No run is known to be held out from both fits, so that this does not show which model "
-            "predicts better: `tsas predict` does, on a dataset of other runs."
+            "predicts better: `--on` a dataset of other runs does, and `tsas predict`."
+        )
+    if any({r.fitted_a, r.fitted_b} == {True, False} for r in it.errors if r.ratio is not None):
+        yield (
+            "Some recordings were seen by one fit and not by the other, which favours the one that "
+            "has seen them."
         )
 
 
@@ -144,15 +177,16 @@ def _unmatched(it: Comparison) -> Iterator[str]:
 
 
 def _more(it: Comparison) -> Iterator[str]:
-    for name, side in it.sides.items():
-        if side.kind != "model" and side.dataset is None:
-            yield f"There are no errors of {name}: {side.gone}."
+    if it.on is None:
+        for name, side in it.sides.items():
+            if side.kind != "model" and side.dataset is None:
+                yield f"There are no errors of {name}: {side.gone}."
     if it.a.model is None or it.b.model is None:
         yield "A simulation does not hold its model: compare the model files for their values."
     elif not it.shared:
         yield (
-            "`tsas predict` gives the errors of both models on the same recordings; where they are "
-            "is shown between two outputs of `tsas simulate`."
+            "With `--on DATASET` both models are simulated on the same recordings, which gives "
+            "errors for each run and shows where they are."
         )
 
 

@@ -5,6 +5,7 @@ from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.sides import Side, rounded
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import (
+    ComparedOn,
     EffectPlaces,
     HeldOutPair,
     ModelComparison,
@@ -19,9 +20,14 @@ from tsas_cli.records.result import Table
 
 def record_of(it: Comparison) -> ModelComparison:
     """Return what `compare.json` says."""
+    on = None
+    if (data := it.on) is not None:
+        chosen = None if data.chosen is None else [run.id for run in data.runs]
+        on = ComparedOn(name=data.manifest.name, hashes=data.hashes(), chosen=chosen)
     return ModelComparison(
         a=_side(it.a),
         b=_side(it.b),
+        on=on,
         same_recordings=it.overlap,
         parameters=it.pairs,
         effects=effects(it),

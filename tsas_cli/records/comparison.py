@@ -42,6 +42,15 @@ class ModelSide(ComparedSide):
     reason: str | None = None
 
 
+class ComparedOn(Record):
+    """The dataset that both models are simulated on."""
+
+    SPARSE = frozenset({"chosen"})
+    name: str
+    hashes: dict[str, str]
+    chosen: tuple[str, ...] | None = None
+
+
 class ValueDifference(Record):
     """B less A in the parameter's unit; without an interval where there is none, and why.
 
@@ -128,6 +137,7 @@ class ModelComparison(ComparisonFile):
 
     a: ModelSide
     b: ModelSide
+    on: ComparedOn | None = None
     same_recordings: str
     parameters: tuple[ParameterPair, ...]
     effects: tuple[EffectPlaces, ...]

@@ -4,7 +4,7 @@ It is of two models, or of two folders of tracked runs.
 """
 
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -60,6 +60,8 @@ def _sections(it: Comparison, record: ModelComparison) -> Iterator[Section]:
         yield Section("effects", "Effects", verdicts, tables=(printed["effects"],))
     if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
         held = "Each side is held to the recordings that it has read."
+        if record.on is not None:
+            held = f"Both models are simulated on the recordings of {record.on.name}."
         ratio = "A ratio below 1 means that B is nearer to the measurement than A."
         yield Section(
             "errors", "Errors per run", (held, ratio)[: 1 + bool(it.shared)], tables=errors
@@ -68,14 +70,22 @@ def _sections(it: Comparison, record: ModelComparison) -> Iterator[Section]:
         yield _maps(it)
     if it.shared:
         yield _residuals(it)
-    yield _repeat(record)
+    options: list[str] = []
+    if it.on is not None:
+        options = ["--on", str(it.on.folder)]
+        if it.on.chosen is not None:
+            options += ["--runs", ",".join(it.on.chosen)]
+    yield _repeat(record, {} if record.on is None else record.on.hashes, options)
 
 
-def _repeat(record: ComparisonFile) -> Section:
+def _repeat(
+    record: ComparisonFile, on: Mapping[str, str] = {}, options: Sequence[str] = ()
+) -> Section:
     """Return the command that makes the page, and the checksums of what both sides read."""
     sides = {"A": record.a, "B": record.b}
     files = [(name, *read) for name, side in sides.items() for read in side.files.items()]
-    command = ["tsas", "compare", record.a.path, record.b.path, "--out", "compared"]
+    files += [("", *read) for read in on.items()]
+    command = ["tsas", "compare", record.a.path, record.b.path, *options, "--out", "compared"]
     return Section(
         "repeat",
         "How to repeat it",

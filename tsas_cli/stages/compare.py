@@ -1,5 +1,6 @@
 """Hold two models, or what two stages wrote, against each other."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,9 +9,11 @@ from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.compare import compare as compare_sides
 from tsas_cli.comparing.tracked import Tracks, are_tracked, compare_tracked
 from tsas_cli.identification.model import Model
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.comparison import ModelComparison, TrackedComparison
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, file_of, path_of
+from tsas_cli.stages.given import Named, dataset_of, file_of, path_of
+from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -37,6 +40,8 @@ def compare(
     b: Model | Named,
     *,
     out: Named | None = None,
+    on: Dataset | Named | None = None,
+    runs: Iterable[str] | None = None,
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> CompareResult:
@@ -51,6 +56,10 @@ def compare(
         What it is compared with, likewise.
     out
         Where to write `compare.json` and `report.html`; None writes nothing.
+    on
+        A dataset that both models are simulated on.
+    runs
+        The ids of its runs that are taken; all without it.
     force
         Replace the folder if it is there.
     step
@@ -65,15 +74,20 @@ def compare(
     Raises
     ------
     InputError
-        A or B is none of these, there is nothing that both hold, a recording cannot be read, or
-        `out` exists and `force` is not set.
+        A or B is none of these, there is nothing that both hold, a recording cannot be read, an
+        option has nothing to work on, or `out` exists and `force` is not set.
     """
     sides = [side if isinstance(side, Model) else file_of(side) for side in (a, b)]
     paths = [side for side in sides if isinstance(side, Path)]
     tracks = len(paths) == len(sides) and are_tracked(*paths)
-    path = path_of(out)
-    with folder_if(path, stage="compare", inputs=paths, force=force) as folder:
-        both = compare_tracked(*paths) if tracks else compare_sides(*sides, step=step)
+    if tracks and on is not None:
+        raise InputError("closed loops have recordings of their own", where="--on")
+    if runs is not None and on is None:
+        raise InputError("there is no dataset to take runs of", where="--runs", remedy="add --on")
+    data, path = None if on is None else dataset_of(on, runs), path_of(out)
+    inputs = paths if data is None else [*paths, data.folder]
+    with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
+        both = compare_tracked(*paths) if tracks else compare_sides(*sides, on=data, step=step)
         record = both.record if isinstance(both, Tracks) else stage.record_of(both)
         if folder is not None:
             record.write(folder)
