@@ -181,7 +181,7 @@ def _beside(found: _Found, unproven: HypothesisFit, folds: Folds) -> _Found:
     initial = unproven.values() | best.trial.values()
     fitted = bench.fit(names, initial, near=best.trial, on_mesh=mesh)
     after = refitted(bench, fitted, folds, scatter=scatter_is_no_effect(best.trial, folds.run))
-    if _worse(best.before, after) or not gain(best.after.squares, after.squares).beyond(AS_WELL):
+    if _worse(best.before, after) or not gain(best.after.squares, after.squares).convincing:
         return found
     return found._replace(best=best._replace(trial=fitted, after=after))
 
