@@ -1,5 +1,6 @@
 """Which of several faults is said, and what leaves no more than noise."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -39,6 +40,9 @@ def test_the_simplest_is_said_and_rivals_as_good_elsewhere_with_no_more_ends(mon
     two = fault(100.0, 0, edges=2), fault(99.0, 1, edges=2)
     assert runs(*two, fault(96.9, 2)) == [0, 1, 2]
     assert runs(*two, fault(97.1, 2)) == [2]  # with fewer ends as good
+    since = replace(fault(98.0, 1), first_s=5.0)
+    assert runs(best, since) == [1, 0]  # as good as until then
+    assert runs(best, replace(since, reduction=96.9)) == [0, 1]
 
 
 @pytest.mark.parametrize(("share", "noise"), [(1.14, True), (1.16, False)])

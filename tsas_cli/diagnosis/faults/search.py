@@ -75,9 +75,16 @@ def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | No
 
 
 def simplest(found: Sequence[Candidate]) -> Candidate:
-    """Return the best fault, or one as good with fewer ends; of a lag and a delay the delay."""
+    """Return the best fault, or one as good with fewer ends; of a lag and a delay the delay.
+
+    Of one since a moment and one until then, which a free zero makes the same, that since then.
+    """
     good = [c for c in found if c.reduction >= AS_GOOD * found[0].reduction]
-    return min(good, key=lambda c: (c.edges, c.code == "run-lag", -c.reduction))
+    return min(good, key=lambda c: (c.edges, c.code == "run-lag", _is_until(c), -c.reduction))
+
+
+def _is_until(c: Candidate) -> bool:
+    return c.edges == 1 and c.first_s is None
 
 
 def _stands_out(found: Sequence[Candidate]) -> bool:
@@ -148,11 +155,11 @@ def _closer(
     found: Sequence[Candidate], reads: Sequence[ReadRun], left: Beside, run: Indices
 ) -> list[Candidate]:
     """Return the faults, those that explain most with the best ends, constants and steps."""
-    best: dict[tuple[str, int | None, tuple[str, ...], int], Candidate] = {}
+    best: dict[tuple[str, int | None, tuple[str, ...], int, bool], Candidate] = {}
     for c in found:
         if c.reduction < CLOSER * found[0].reduction:
             break
-        best.setdefault((c.code, c.run, c.channels, c.edges), c)
+        best.setdefault((c.code, c.run, c.channels, c.edges, _is_until(c)), c)
     closer = list(found)
     for c in best.values():
         if c.code == "ac-coupled":
