@@ -7,7 +7,9 @@ from pathlib import Path
 from tsas_cli.identification.prepared import CHANNELS
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.inputs import Inputs, series_of, written_in
 from tsas_cli.reporting.names import X_IN
 from tsas_cli.support.arrays import Floats
@@ -61,6 +63,12 @@ def diagnosed_models(inputs: Inputs) -> tuple[Source, ...]:
     nominal = Source("nominal model", "before", folder, nominal_name, "model", NOMINAL_MODEL)
     extended = Source("extended model", "after", folder, key="model_extended", model=EXTENDED_MODEL)
     return (nominal, extended) if diagnosis.extended else (nominal,)
+
+
+def simulation_of(inputs: Inputs) -> tuple[Source, ...]:
+    """Return the model of a simulation, none without one."""
+    folder, key = inputs.folders.get(SimulationFile), "simulated"
+    return () if folder is None else (Source(key, key, folder, key=key, model=MODEL_FILE),)
 
 
 def simulated_models(inputs: Inputs) -> tuple[Source, ...]:

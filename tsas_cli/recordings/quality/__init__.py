@@ -224,9 +224,8 @@ def _merged(stretches: Sequence[tuple[str, Results]]) -> Results:
     if not found:  # a check that applies to one stretch applies
         return list(each[0]) if all(each) else []
     count = len(stretches)
-    nowhere = [one for one in each[0] if all(one in results for results in each)]
-    unchecked = [one for one in nowhere if isinstance(one, NotChecked)]
-    return unchecked + [
+    not_checked = (one for one in each[0] if isinstance(one, NotChecked))
+    return [one for one in not_checked if all(one in results for results in each)] + [
         replace(
             first,
             sentence=f"{first.sentence} ({where}; in {len(dict(same))} of {count} stretches of the "

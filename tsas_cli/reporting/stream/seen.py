@@ -11,7 +11,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import RunColumns, open_run
 from tsas_cli.records.base import OfDataset, PhaseSegment
-from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
+from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
@@ -19,7 +19,7 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs, series_of, written_in
 from tsas_cli.reporting.names import TENSIONS, X_IN
-from tsas_cli.reporting.sources import Source, diagnosed_models
+from tsas_cli.reporting.sources import Source, diagnosed_models, simulation_of
 from tsas_cli.reporting.stream.recorder import Times, times_of
 from tsas_cli.support.arrays import Floats
 
@@ -124,12 +124,6 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
         )
         phases = (s.segments[run.id] for s in parted if s is not None and run.id in s.segments)
         yield SeenRun(inputs, file, channels, next(phases, ()), tracked.get(run.id))
-
-
-def simulation_of(inputs: Inputs) -> tuple[Source, ...]:
-    """Return the model of a simulation, none without one."""
-    folder, key = inputs.folders.get(SimulationFile), "simulated"
-    return () if folder is None else (Source(key, key, folder, key=key, model=MODEL_FILE),)
 
 
 def _sources(inputs: Inputs) -> Iterator[Source]:

@@ -27,9 +27,9 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import series_of, written_in
 from tsas_cli.reporting.names import TENSIONS
-from tsas_cli.reporting.sources import Source, diagnosed_models
+from tsas_cli.reporting.sources import Source, diagnosed_models, simulation_of
 from tsas_cli.reporting.stream.recorder import Recorder, Times
-from tsas_cli.reporting.stream.seen import SeenRun, simulation_of
+from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.support.arrays import Floats, Indices
 
 PER_SECOND = 15.0
