@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.faults import search as s
 from tsas_cli.diagnosis.faults import shapes
-from tsas_cli.diagnosis.faults.beside import beside
+from tsas_cli.diagnosis.faults.beside import beside, one
 from tsas_cli.diagnosis.faults.candidates import candidates
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
 from tsas_cli.diagnosis.faults.words import differing
@@ -207,10 +207,25 @@ def test_what_is_left_is_beside_the_free_parameters_and_the_tolerances(alike):
     left = beside(trial, TOLERATED, RUN, alike=alike)
     np.testing.assert_allclose(left.residual, least(A), atol=1e-9)
     assert left.squares == pytest.approx(float(least(A) @ least(A)))
-    column = RNG.standard_normal(RUN.size)
+    column = RNG.standard_normal(RUN.size) * (RUN == 1)
     further = least(np.column_stack((A, np.append(column, np.zeros(m)))))
-    np.testing.assert_allclose(left.without(column).residual, further, atol=1e-9)
-    np.testing.assert_allclose(left.without(column).project(column[:, None]), 0.0, atol=1e-9)
+    beside_it = left.without(1, column[RUN == 1])
+    np.testing.assert_allclose(beside_it.residual, further, atol=1e-9)
+    np.testing.assert_allclose(beside_it.seen(column[:, None])[0], 0.0, atol=1e-9)
+
+
+def test_products_beside_the_basis_are_those_of_what_least_squares_leave_of_columns():
+    """A column of one run has the same by its rows alone; the basis itself has none."""
+    trial = trial_of(30.0 * NOISE)
+    left = beside(trial, TOLERATED, RUN, alike=True)
+    columns = RNG.standard_normal((RUN.size, 2)) * (RUN == 1)[:, None]
+    own = np.vstack((columns, np.zeros((left.basis.shape[0] - RUN.size, 2))))
+    own = own - left.basis @ np.linalg.lstsq(left.basis, own, rcond=None)[0]
+    for products, along in (left.seen(columns), left.in_run(1).seen(columns[RUN == 1])):
+        np.testing.assert_allclose(products, own.T @ own, rtol=1e-9)
+        np.testing.assert_allclose(along, own.T @ left.residual, rtol=1e-9)
+    assert not list(one("run-offset", None, (), trial.solution.jacobian[:, 0], left))
+    assert len(list(one("run-offset", None, (), columns[:, 0], left))) == 1
 
 
 def test_an_amplifier_coupled_to_ac_forgets_the_level_and_passes_on_the_slope():

@@ -119,9 +119,8 @@ def signatures_of(search: Hypotheses | None) -> records.Signatures:
     screened = sorted(search.screened, key=lambda s: s.effect.name)
     sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in screened]
     spaces = [_orthonormal(s.signatures) for s in screened]
-    similarity = [[_similarity(a, b) for b in spaces] for a in spaces]
     names = tuple(s.effect.name for s in screened)
-    return records.Signatures(effects=names, visible=sizes, similarity=similarity)
+    return records.Signatures(effects=names, visible=sizes, similarity=_similarity(spaces))
 
 
 def _orthonormal(signatures: Floats) -> Floats:
@@ -129,11 +128,16 @@ def _orthonormal(signatures: Floats) -> Floats:
     return np.asarray(u[:, sizes > 1e-6 * sizes.max(initial=1e-12)])
 
 
-def _similarity(a: Floats, b: Floats) -> float:
-    """Return the cosine of the smallest angle between the spans of two effects' signatures."""
-    if a.shape[1] == 0 or b.shape[1] == 0:
-        return 0.0
-    return float(min(np.linalg.svd(a.T @ b, compute_uv=False).max(), 1.0))
+def _similarity(spaces: list[Floats]) -> list[list[float]]:
+    """Return the cosine of the smallest angle between each two effects' orthonormal bases."""
+    together = np.hstack(spaces)
+    ends = np.cumsum([space.shape[1] for space in spaces])[:-1]
+    rows = np.split(together.T @ together, ends, axis=0)
+    return [[_cosine(block) for block in np.split(row, ends, axis=1)] for row in rows]
+
+
+def _cosine(products: Floats) -> float:
+    return float(np.linalg.svd(products, compute_uv=False).max(initial=0.0).clip(max=1.0))
 
 
 def residual_maps_of(result: Diagnosis) -> records.ResidualMaps:

@@ -12,8 +12,6 @@ from collections.abc import Callable
 from itertools import combinations
 from operator import attrgetter
 
-import numpy as np
-
 from tsas_cli.diagnosis.evidence import (
     LEAST_REDUCTION,
     LEAST_REDUCTION_PER_COMPLEXITY,
@@ -26,7 +24,7 @@ from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder_of
 from tsas_cli.effects import Effect
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
-from tsas_cli.identification.screening import least_part
+from tsas_cli.identification.screening import least_part, parts_of_pairs
 
 MOST_EFFECTS = 4
 SHARE = 0.2  # least reduction of the excess over the noise by a cause
@@ -175,13 +173,15 @@ def _best_pair(fits: Fits, names: Names, convinces: Criterion) -> Names | None:
     """Return two effects that are significant only together."""
     screened = fits.screen(names)
     part_of_both = _least_part(fits, names, sufficient(fits, names, fits.bench.on_mesh(names)))
+    pairs = list(combinations(screened, 2))
+    meshes = [fits.bench.on_mesh([*names, a.effect.name, b.effect.name]) for a, b in pairs]
+    explained = {
+        mesh: parts_of_pairs(screened, fits.trial(names, on_mesh=mesh).solution.residual)
+        for mesh in sorted(set(meshes))
+    }
     parts = []
-    for a, b in combinations(screened, 2):
-        mesh = fits.bench.on_mesh([*names, a.effect.name, b.effect.name])
-        both = np.hstack((a.signatures, b.signatures))
-        residual = fits.trial(names, on_mesh=mesh).solution.residual
-        basis = np.linalg.qr(both)[0]
-        part = float(np.sum((basis.T @ residual) ** 2)) / float(residual @ residual)
+    for k, ((a, b), mesh) in enumerate(zip(pairs, meshes, strict=True)):
+        part = explained[mesh][k]
         if part >= part_of_both:
             parts.append((part - a.part - b.part, a, b))
     parts.sort(key=lambda p: -p[0])

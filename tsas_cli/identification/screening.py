@@ -6,9 +6,9 @@ of the residual on that, how much it could explain. Linear: the full fit that fo
 effects.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
@@ -23,6 +23,8 @@ LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain
 SHARE_OF_BEST = 0.2  # the same, of the share of the best signature
 ROUGH = 0.5  # the same, of a share by a signature of another set of effects
 HIDDEN = 1e-6  # relative norm below which a column is linearly dependent
+DEPENDENT = HIDDEN**2  # the same, of the squares of columns
+TINY = 1e-12  # norm of a signature that is none
 
 
 @dataclass(frozen=True)
@@ -142,6 +144,23 @@ def screen_again(known: Screened, trial: HypothesisFit, basis: Floats) -> Screen
                 values=values,
             )
     return best if best.initial else replace(best, part=0.0)
+
+
+def parts_of_pairs(screened: Sequence[Screened], residual: Floats) -> list[float]:
+    """Return the share of the squares that each two effects could explain together.
+
+    They are in the order of `itertools.combinations`.
+    """
+    together = np.hstack([s.signatures for s in screened])
+    together = together / np.maximum(np.linalg.norm(together, axis=0), TINY)
+    gram, along = together.T @ together, together.T @ residual
+    ends = np.cumsum([s.signatures.shape[1] for s in screened])[:-1]
+    parts = []
+    for a, b in combinations(np.split(np.arange(along.size), ends), 2):
+        both = np.append(a, b)
+        inverse = np.linalg.pinv(gram[np.ix_(both, both)], rcond=DEPENDENT, hermitian=True)
+        parts.append(float(along[both] @ inverse @ along[both]) / float(residual @ residual))
+    return parts
 
 
 def refined(bench: Bench, trial: HypothesisFit, rough: Screened, basis: Floats) -> Screened:

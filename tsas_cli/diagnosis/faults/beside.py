@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from tsas_cli.identification.screening import orthogonal_to
 from tsas_cli.support.arrays import Floats, Indices
 
 TINY = 1e-9
+HIDDEN = 1e-9  # share of a column's squares, below which the basis holds it
 
 
 @dataclass(frozen=True)
@@ -39,24 +42,42 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Beside:
-    """The residual of a trial beside its parameters and tolerances, and columns beside them."""
+    """The residual of a trial beside its parameters and tolerances, or its rows of one run.
 
-    basis: Floats  # orthonormal, of residuals and priors, shape (n + m, p)
+    `basis` is orthonormal, of residuals and of priors, shape (n + m, p), `residual` orthogonal to
+    it, shape (n + m,), `runs` the rows of each run.
+    """
+
+    basis: Floats
     residual: Floats
-    squares: float
+    runs: tuple[slice, ...] = ()
 
-    def project(self, columns: Floats) -> Floats:
-        """Return columns, shape (n, m), beside the basis."""
+    @cached_property
+    def squares(self) -> float:
+        """The squares of the residual."""
+        return float(self.residual @ self.residual)
+
+    def in_run(self, k: int) -> "Beside":
+        """Return the rows of one run, for columns that are zero in all others."""
+        return Beside(self.basis[self.runs[k]], self.residual[self.runs[k]])
+
+    def seen(self, columns: Floats) -> tuple[Floats, Floats]:
+        """Return the products of columns beside the basis with each other and with the residual.
+
+        Their shape is (n, m), that of the products (m, m) and (m,).
+        """
         n = columns.shape[0]
-        padded = np.vstack((columns, np.zeros((self.basis.shape[0] - n, columns.shape[1]))))
-        return np.asarray(padded - self.basis @ (self.basis.T @ padded))
+        along = self.basis[:n].T @ columns
+        return columns.T @ columns - along.T @ along, columns.T @ self.residual[:n]
 
-    def without(self, column: Floats) -> "Beside":
-        """Return the residual beside a column too, shape (n,)."""
-        own = self.project(column[:, None])
+    def without(self, k: int, column: Floats) -> "Beside":
+        """Return the residual beside a column of one run too, shape (r,)."""
+        whole = np.zeros((self.residual.size, 1))
+        whole[self.runs[k], 0] = column
+        own = orthogonal_to(self.basis, whole)
         own = own / np.linalg.norm(own)
-        residual = self.residual - own[:, 0] * float(own[:, 0] @ self.residual)
-        return Beside(np.hstack((self.basis, own)), residual, float(residual @ residual))
+        basis = np.hstack((self.basis, own))
+        return Beside(basis, orthogonal_to(own, self.residual), self.runs)
 
 
 def beside(trial: HypothesisFit, tolerated: Floats, run: Indices, *, alike: bool = False) -> Beside:
@@ -75,15 +96,16 @@ def beside(trial: HypothesisFit, tolerated: Floats, run: Indices, *, alike: bool
     priors = np.hstack((np.zeros((count, np.count_nonzero(size))), np.eye(count)))
     basis = np.linalg.qr(np.vstack((columns, priors)))[0]
     residual = np.append(trial.solution.residual, np.zeros(count))
-    residual = orthogonal_to(basis, residual)
-    return Beside(basis, residual, float(residual @ residual))
+    ends = np.searchsorted(run, np.arange(run[-1] + 2))
+    runs = tuple(slice(first, last) for first, last in pairwise(ends.tolist()))
+    return Beside(basis, orthogonal_to(basis, residual), runs)
 
 
 def one(
     code: str, k: int | None, channels: tuple[str, ...], column: Floats, left: Beside
 ) -> Iterator[Candidate]:
-    """Yield a fault by its column beside the basis, shape (n + m,), if it changes anything."""
-    square = float(column @ column)
-    if square > TINY:
-        along = float(column @ left.residual)
-        yield Candidate(code, k, channels, along / square, along**2 / square)
+    """Yield a fault by its column, shape (n,), if it changes anything beside the basis."""
+    products, along = left.seen(column[:, None])
+    square, score = float(products[0, 0]), float(along[0])
+    if square > max(TINY, HIDDEN * float(column @ column)):
+        yield Candidate(code, k, channels, score / square, score**2 / square)

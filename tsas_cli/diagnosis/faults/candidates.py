@@ -12,7 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
-from tsas_cli.diagnosis.faults.beside import Beside, Candidate, beside, one
+from tsas_cli.diagnosis.faults.beside import HIDDEN, Beside, Candidate, beside, one
 from tsas_cli.diagnosis.faults.hum import swings
 from tsas_cli.diagnosis.faults.shapes import (
     LATE_S,
@@ -26,7 +26,7 @@ from tsas_cli.diagnosis.faults.shapes import (
 from tsas_cli.diagnosis.friction_scatter import SCATTER, friction_of_runs
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
-from tsas_cli.support.arrays import Floats, Indices, Mask
+from tsas_cli.support.arrays import Floats, Indices
 
 STIFFNESS, OWN_FRICTION = "tendon_stiffness_N", "run-friction"
 SINCE = ("lost-samples", "repeated-buffer")  # a channel that is early, or late, since a moment
@@ -47,12 +47,12 @@ def candidates(
     """Return all faults with the squares that each takes away, the largest first."""
     shapes = [shapes_of(read) for read in reads]
     found = [
-        *(c for k, own in enumerate(shapes) for c in _of_run(k, own, left, run)),
+        *(c for k, own in enumerate(shapes) for c in _of_run(k, own, left.in_run(k))),
         *_of_clocks(shapes, left),
         *(c for constant_s in CONSTANTS_S for c in of_amplifiers(reads, left, constant_s)),
         *_of_saturation(reads, left),
         *_of_manifest(bench, trial, left, run),
-        *_of_hum(reads, left, run),
+        *_of_hum(reads, left),
         *(c for late_s in LATE_S for c in _of_shifts(reads, left, run, late_s)),
     ]
     return sorted(found, key=lambda c: -c.reduction)
@@ -65,19 +65,17 @@ def of_frictions(
     frictions = friction_of_runs(trial, run)
     left = beside(trial, tolerated, run, alike=True)
     for k in range(frictions.shape[1]):
-        column = left.project(-frictions[:, [k]])[:, 0]
-        for found in one(OWN_FRICTION, k, (), column, left):
+        for found in one(OWN_FRICTION, k, (), -frictions[:, k], left):
             if abs(found.amount) > MOST_SCATTER:
                 alone = bends.count(bends[k]) == 1
                 yield replace(found, amount=SCATTER * found.amount, alone=alone), left.squares
 
 
-def _of_run(k: int, shapes: RunShapes, left: Beside, run: Indices) -> Iterator[Candidate]:
+def _of_run(k: int, shapes: RunShapes, left: Beside) -> Iterator[Candidate]:
     """Yield the best part of the run, for each channel, for its zero and its gain."""
     for code, columns in (("run-offset", shapes.offset), ("run-gain", shapes.gain)):
         for name, own in columns.items():
-            parts = left.project(_in_run(own, run == k))
-            gram, score = parts.T @ parts, parts.T @ left.residual
+            gram, score = left.seen(own)
             sums = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
             scores = np.append(0.0, np.cumsum(score))
             for first, last in combinations(range(WINDOWS + 1), 2):
@@ -101,13 +99,11 @@ def _of_run(k: int, shapes: RunShapes, left: Beside, run: Indices) -> Iterator[C
     for code, late in (("run-delay", shapes.late), ("clock", shapes.pace)):
         names = tuple(late)
         for channels in _groups(names):
-            whole = _in_run(_sum(late, channels)[:, None], run == k)
-            yield from one(code, k, channels, left.project(whole)[:, 0], left)
+            yield from one(code, k, channels, _sum(late, channels), left)
     for channels in _groups(tuple(shapes.clocked)):
         for rate in RATES:
-            whole = _in_run(shapes.at_pace(channels, rate)[:, None], run == k)
-            column = left.project(whole)[:, 0]
-            yield from _of_size(one("clock", k, channels, column, left), rate)
+            at_pace = shapes.at_pace(channels, rate)
+            yield from _of_size(one("clock", k, channels, at_pace, left), rate)
 
 
 def _of_clocks(shapes: Sequence[RunShapes], left: Beside) -> Iterator[Candidate]:
@@ -176,8 +172,7 @@ def _of_all(
     code: str, channels: tuple[str, ...], parts: Sequence[Floats], left: Beside
 ) -> Iterator[Candidate]:
     """Yield a fault of all runs, by its column in each of them."""
-    column = left.project(np.concatenate(parts)[:, None])[:, 0]
-    yield from one(code, None, channels, column, left)
+    yield from one(code, None, channels, np.concatenate(parts), left)
 
 
 def _of_manifest(
@@ -194,17 +189,17 @@ def _of_manifest(
     else:
         slope = trial.solution.jacobian[:, free]
     for k in range(int(run.max()) + 1):
-        column = -slope * (run == k)
-        yield from one("run-length", k, (), left.project(column[:, None])[:, 0], left)
+        yield from one("run-length", k, (), -slope[run == k], left.in_run(k))
 
 
-def _of_hum(reads: Sequence[ReadRun], left: Beside, run: Indices) -> Iterator[Candidate]:
+def _of_hum(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
     """Yield a swing of a channel at one frequency in all runs."""
+    from scipy.linalg import block_diag
+
     for name, frequency, columns in swings(reads, _common(reads)):
-        of_runs = [_in_run(own, run == k) for k, own in enumerate(columns)]
-        basis = np.linalg.qr(left.project(np.hstack(of_runs)))[0]
-        along = basis.T @ left.residual
-        yield Candidate("hum", None, (name,), frequency, float(along @ along))
+        products, along = left.seen(block_diag(*columns))
+        amounts = np.linalg.lstsq(products, along, rcond=HIDDEN)[0]
+        yield Candidate("hum", None, (name,), frequency, float(along @ amounts))
 
 
 def _of_shifts(
@@ -215,28 +210,18 @@ def _of_shifts(
     for k, read in enumerate(reads):
         if squares[k] < LEAST_SHARE * left.squares:
             continue
-        here = run == k
-        late = {
-            name: left.project(_in_run(read.since(name, read.late(name, late_s)), here))
-            for name in read.errors.samples
-        }
+        here = left.in_run(k)
+        late = {name: read.since(name, read.late(name, late_s)) for name in read.errors.samples}
         for channels in _groups(tuple(late)):
             columns = _sum(late, channels)
             for part, first_s in enumerate(read.time_s[read.starts]):
                 code = SINCE[late_s > 0.0] if part else "run-delay"
                 since = float(first_s) if part else None
-                for found in _of_size(one(code, k, channels, columns[:, part], left), late_s):
+                for found in _of_size(one(code, k, channels, columns[:, part], here), late_s):
                     yield replace(found, edges=int(part > 0), first_s=since)
         for name in read.errors.samples if late_s > 0.0 else ():
-            lagging = _in_run(read.changed(name, read.lagging(name, late_s))[:, None], here)
-            lags = one("run-lag", k, (name,), left.project(lagging)[:, 0], left)
-            yield from _of_size(lags, late_s)
-
-
-def _in_run(own: Floats, here: Mask) -> Floats:
-    column = np.zeros((here.size, own.shape[1]))
-    column[here] = own
-    return column
+            lagging = read.changed(name, read.lagging(name, late_s))
+            yield from _of_size(one("run-lag", k, (name,), lagging, here), late_s)
 
 
 def _groups(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.diagnosis.faults.beside import TINY, Beside, Candidate, beside, one
+from tsas_cli.diagnosis.faults.beside import HIDDEN, TINY, Beside, Candidate, beside, one
 from tsas_cli.diagnosis.faults.candidates import (
     OF_A_SIZE,
     OF_THE_CATALOGUE,
@@ -23,7 +23,7 @@ from tsas_cli.diagnosis.faults.shapes import WINDOWS, ReadRun, runs_at
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.diagnosis.signals import channel_of_residuals
-from tsas_cli.support.arrays import Floats, Indices
+from tsas_cli.support.arrays import Floats
 
 LEAST_EXCESS = 0.05  # of the squares of the noise, that a fault is sought for
 MOST, LEAST = 0.9, 0.7  # of the excess, that a fault has to explain; where only noise is left
@@ -64,7 +64,7 @@ def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | No
     if left.squares > (1.0 + LEAST_EXCESS) * run.size:
         reads = runs_at(bench, trial)
         found = [c for c in candidates(bench, trial, reads, left, run) if c.code not in accepted]
-        closer = [c for c in _closer(found, reads, left, run) if c.code not in accepted]
+        closer = [c for c in _closer(found, reads, left) if c.code not in accepted]
         usual = _usual(fits, left.residual) if _stands_out(closer) else run.size
         choices.append(_judged(closer, left.squares, usual))
     if OWN_FRICTION not in accepted:
@@ -151,9 +151,7 @@ def explains(share: float, excess: float, left: float) -> bool:
     return excess > LEAST_EXCESS and share > least
 
 
-def _closer(
-    found: Sequence[Candidate], reads: Sequence[ReadRun], left: Beside, run: Indices
-) -> list[Candidate]:
+def _closer(found: Sequence[Candidate], reads: Sequence[ReadRun], left: Beside) -> list[Candidate]:
     """Return the faults, those that explain most with the best ends, constants and steps."""
     best: dict[tuple[str, int | None, tuple[str, ...], int, bool], Candidate] = {}
     for c in found:
@@ -166,49 +164,48 @@ def _closer(
             constants = c.amount * 2.0**FINER
             closer += [s for constant in constants for s in of_amplifiers(reads, left, constant)]
         elif c.run is not None and c.code in OF_A_SIZE:
-            closer.append(_with_size(c, reads[c.run], left, run))
+            closer.append(_with_size(c, reads[c.run], left.in_run(c.run)))
         elif c.run is not None and c.edges:
-            closer.append(_with_ends(c, reads[c.run], left, run))
+            closer.append(_with_ends(c, reads[c.run], left.in_run(c.run)))
     zero = next((c for c in found if c.code == "run-offset"), None)
     if zero is not None and zero.run is not None and len(reads) > 1:
-        closer += _of_steps(zero, reads[zero.run], left, run)
+        closer += _of_steps(zero, zero.run, reads[zero.run], left)
     return sorted(closer, key=lambda c: -c.reduction)
 
 
-def _with_ends(c: Candidate, read: ReadRun, left: Beside, run: Indices) -> Candidate:
+def _with_ends(c: Candidate, read: ReadRun, left: Beside) -> Candidate:
     """Return a fault of a part of a run with the ends that take most away."""
     part_s = float(read.time_s[-1]) / WINDOWS
     for end in ("first_s", "last_s"):
         at_s = getattr(c, end)
         if at_s is not None:
             others = (replace(c, **{end: at_s + f * part_s}) for f in FINER)
-            fitted = [_fitted(other, _of_part(other, read, run), left) for other in others]
+            fitted = [_fitted(other, _of_part(other, read), left) for other in others]
             c = max((c, *fitted), key=lambda other: other.reduction)
     return c
 
 
-def _with_size(c: Candidate, read: ReadRun, left: Beside, run: Indices) -> Candidate:
+def _with_size(c: Candidate, read: ReadRun, left: Beside) -> Candidate:
     """Return a delay or a lag with the size, and the moment, that take most away."""
     for step in (1.0, 0.25, 0.0625):
         sizes = [replace(c, amount=c.amount * 2.0 ** (step * f)) for f in FINER]
-        fitted = [_fitted(size, _of_part(size, read, run), left) for size in sizes]
+        fitted = [_fitted(size, _of_part(size, read), left) for size in sizes]
         best = max(fitted, key=lambda other: other.reduction)
-        c = _with_ends(best, read, left, run)
+        c = _with_ends(best, read, left)
     return c
 
 
 def _fitted(c: Candidate, column: Floats, left: Beside) -> Candidate:
-    """Return a fault with the amount that fits best, by its column, shape (n,)."""
-    beside_it = left.project(column[:, None])[:, 0]
-    for found in one(c.code, c.run, c.channels, beside_it, left):
+    """Return a fault with the amount that fits best, by its column in its run, shape (r,)."""
+    for found in one(c.code, c.run, c.channels, column, left):
         size = c.amount if c.code in OF_A_SIZE else 1.0
         return replace(c, amount=size * found.amount, reduction=found.reduction)
     return replace(c, reduction=0.0)
 
 
-def _of_part(c: Candidate, read: ReadRun, run: Indices) -> Floats:
-    """Return the change of all residuals by one unit of a fault of a part of a run, shape (n,)."""
-    column = np.zeros(run.size)
+def _of_part(c: Candidate, read: ReadRun) -> Floats:
+    """Return the change of the residuals by one unit of a fault of a part of a run, shape (r,)."""
+    parts = []
     for name in c.channels:
         reading = np.ones(read.time_s.size)
         if c.code == "run-gain":
@@ -217,27 +214,28 @@ def _of_part(c: Candidate, read: ReadRun, run: Indices) -> Floats:
             reading = read.lagging(name, c.amount)
         elif c.code in OF_A_SIZE:
             reading = read.late(name, c.amount)
-        column[run == c.run] += read.changed_in(name, reading, c.first_s, c.last_s)
-    return column
+        parts.append(read.changed_in(name, reading, c.first_s, c.last_s))
+    return np.asarray(np.sum(parts, axis=0))
 
 
-def _of_steps(zero: Candidate, read: ReadRun, left: Beside, run: Indices) -> Iterator[Candidate]:
-    """Yield several steps of the zero of one channel in one run, one after the other."""
-    before, excess = left, left.squares - run.size
+def _of_steps(zero: Candidate, k: int, read: ReadRun, left: Beside) -> Iterator[Candidate]:
+    """Yield several steps of the zero of one channel in run k, one after the other."""
+    before, excess = left, left.squares - left.runs[-1].stop
     starts_s = np.linspace(0.0, float(read.time_s[-1]), WINDOWS + 1)[1:-1]
     since = [replace(zero, first_s=float(s), last_s=None, edges=1) for s in starts_s]
-    columns = [_of_part(c, read, run) for c in since]
+    columns = [_of_part(c, read) for c in since]
     steps: list[Candidate] = []
     for _ in range(MOST_STEPS):
-        each = [_fitted(c, column, left) for c, column in zip(since, columns, strict=True)]
-        step = _with_ends(max(each, key=lambda c: c.reduction), read, left, run)
+        here = left.in_run(k)
+        each = [_fitted(c, column, here) for c, column in zip(since, columns, strict=True)]
+        step = _with_ends(max(each, key=lambda c: c.reduction), read, here)
         if step.reduction < STEP * excess:
             break
         steps.append(step)
-        left = left.without(_of_part(step, read, run))
+        left = left.without(k, _of_part(step, read))
     if len(steps) > 1:
-        together = before.project(np.column_stack([_of_part(c, read, run) for c in steps]))
-        amounts = np.linalg.lstsq(together, before.residual, rcond=None)[0].tolist()
+        products, along = before.in_run(k).seen(np.column_stack([_of_part(c, read) for c in steps]))
+        amounts = np.linalg.lstsq(products, along, rcond=HIDDEN)[0].tolist()
         at = sorted((c.first_s or 0.0, d) for c, d in zip(steps, amounts, strict=True))
         yield replace(
             zero,
