@@ -15,6 +15,7 @@ from tsas_cli.identification.model_file import (
     model_of,
     read_fitted_to,
     read_model,
+    read_source,
     source_of,
     write_model,
 )
@@ -72,6 +73,7 @@ def test_what_is_written_is_read_back(tmp_path, ranges):
     [
         ("ranges.f_in_N = [80.0, 20.0]", "f_in_N begins at 80, above its end 20"),
         ("ranges.f_in_N = [20.0]", "fitted_to.ranges.f_in_N"),
+        ("ranges.f_in_N = [2.0, 3.0, 4.0]", "f_in_N: at most 2 items are expected, got 3"),
         ("ranges.f_in_N = [0.0, inf]", "should be a finite number"),
         ("words.load = [1]", "should be text"),
         ("span.f_in_N = [0.0, 1.0]", "unknown key fitted_to.span"),
@@ -116,6 +118,8 @@ def test_a_range_that_cannot_be_is_one_line(tmp_path, entry, says):
         (friction("'x'"), "should be a number"),
         (friction("true"), "value: true and false are no numbers"),
         (friction(more="stdder = 0.1"), "did you mean stderr"),
+        (friction(more="at_bound = 'no'"), "at_bound: input should be true or false, got 'no'"),
+        ("format = 1\n[effects.backlash]\n", "effects.backlash has no parameter"),
         (friction(more="stderr = nan"), "friction_coefficient.stderr: input should be a finite"),
         (friction(more="stderr = inf"), "friction_coefficient.stderr: input should be a finite"),
         (friction(more="stderr = -0.1"), "stderr: expected 0 to 1e+15, got -0.1"),
@@ -208,6 +212,13 @@ def test_where_a_model_is_from(tmp_path):
     assert len(of_file["sha256"]) == 64
     assert source_of(tmp_path, tmp_path) == of_file
     assert "[bristles" not in path.read_text(encoding="utf-8")
+
+
+def test_a_wrong_source_is_said_with_its_table(tmp_path):
+    written = "format = 1\n[dataset]\nname = 'a'\nfolder = 3\n[dataset.hashes]\n"
+    with pytest.raises(InputError, match=r"dataset\.folder: input should be text, got 3"):
+        read_source(file_of(tmp_path, written))
+    assert read_source(file_of(tmp_path, "format = 1\n")) is None
 
 
 def test_bristles_have_a_table_of_their_own(tmp_path):

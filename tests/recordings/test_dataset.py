@@ -148,6 +148,10 @@ def scaled(factor):
         (scaled(1e-100), ", row 1: time_s increases by "),
         (scaled(1e100), ", row 1: time_s increases by "),
         (
+            lambda c: c | {"time_s": c["time_s"] + 1e7 * (np.arange(500) > 99)},
+            ", row 100: the recording pauses for 1e+07 s; expected at most 1000 times all",
+        ),
+        (
             changed("time_s", 0, [0.0, 5e-324]),
             ", row 1: time_s increases by 4.94066e-324 s; expected steps",
         ),

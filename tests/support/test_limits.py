@@ -80,6 +80,11 @@ def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
     assert "needs 2 GB of memory, and 1 GB are free; use a larger machine, or export it" in line
 
 
+def test_where_memory_ends_the_file_may_be_damaged(tmp_path):
+    line = limits.out_of_memory(tmp_path / "a.bag").line()
+    assert "see whether the file is whole; else use a larger machine, or export it" in line
+
+
 @pytest.mark.parametrize("packed", ["snappy", "zstd"])
 def test_a_recording_of_an_even_clock_and_channels_at_rest_is_taken(tmp_path, packed, monkeypatch):
     monkeypatch.setattr(limits, "HARMLESS", 0)

@@ -17,7 +17,7 @@ from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, read_toml
 from tsas_cli.recordings.session import Session
 from tsas_cli.recordings.validation import parse
-from tsas_cli.records.base import DatasetSource
+from tsas_cli.records.base import DatasetSource, Record
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.plausible import Range
@@ -67,7 +67,9 @@ def read_source(path: Path) -> DatasetSource | None:
     InputError: as from `read_model`, but for the values.
     """
     said = _read(path).dataset
-    return parse(DatasetSource, said, path) if "hashes" in said else None
+    if "hashes" not in said:
+        return None
+    return parse(_OfDataset, {"dataset": said}, path).dataset
 
 
 def recordings_of(source: DatasetSource, runs: Iterable[Run]) -> dict[str, str]:
@@ -127,10 +129,21 @@ class _ModelTables(StrictTable):
     effects: dict[str, dict[str, StoredValue]] = Field(default_factory=dict)
 
     @model_validator(mode="after")
+    def _effects_have_parameters(self) -> Self:
+        for name, values in self.effects.items():
+            if not values:
+                raise ValueError(f"effects.{name} has no parameter: give one or delete the table")
+        return self
+
+    @model_validator(mode="after")
     def _session_is_in_order(self) -> Self:
         if self.session is not None and not self.session.goes_on_at(self.session.last):
             raise ValueError("session ends before it begins, or one of both has a time zone")
         return self
+
+
+class _OfDataset(Record):
+    dataset: DatasetSource
 
 
 def write_model(

@@ -31,7 +31,7 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support import limits
-from tsas_cli.support.arrays import Floats
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, state_of
 from tsas_cli.support.wording import count_of
@@ -247,6 +247,22 @@ def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:
             expected=f"steps from {limits.SHORTEST_STEP_S:g} s to {limits.LONGEST_STEP_S:g} s",
             remedy="check the unit of the time, and ingest again",
         )
+
+    paused = pauses(step)
+    if paused.any():
+        row = int(paused.argmax()) + 1
+        raise InputError(
+            f"the recording pauses for {step[row - 1]:.6g} s",
+            where=f"{path}, row {first_row + row}",
+            expected=f"at most {limits.LONGEST_PAUSE:g} times all the rest of it",
+            remedy="correct the clock, or split the recording there into two runs",
+        )
+
+
+def pauses(step: Floats) -> Mask:
+    """Return which step of the time is longer by far than all others together."""
+    rest = step.sum() - step
+    return np.asarray((rest > 0.0) & (step > limits.LONGEST_PAUSE * rest))
 
 
 def check_magnitude(name: str, values: Floats, path: Location, *, first_row: int = 0) -> None:

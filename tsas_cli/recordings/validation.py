@@ -38,13 +38,13 @@ def parse(model: type[T], content: Raw, path: object) -> T:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:
         raise InputError(_sentences(error, content, model), where=path) from error
-    for place, what in _no_numbers(content, read):
+    for place, what in _misread(content, read):
         raise InputError(f"{place}: {what}", where=path)
     return read
 
 
-def _no_numbers(written: Any, read: Any, place: str = "") -> Iterator[tuple[str, str]]:
-    """Yield the places where true, false or text was read as a number, and what is wrong.
+def _misread(written: Any, read: Any, place: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the places where text was read as a number or as true, or true as a number, and why.
 
     Pydantic's strict mode would also refuse 1 for 1.0, and lists for tuples.
     """
@@ -54,7 +54,10 @@ def _no_numbers(written: Any, read: Any, place: str = "") -> Iterator[tuple[str,
         inside = ((key, value, get(key, None)) for key, value in written.items())
     elif isinstance(written, list) and isinstance(read, list | tuple):
         inside = ((k, *both) for k, both in enumerate(zip(written, read, strict=False)))
-    elif isinstance(read, int | float) and not isinstance(read, bool):
+    elif isinstance(read, bool):
+        if not isinstance(written, bool):
+            yield place, f"{_EXPECTED}true or false, got {_shown(written)}"
+    elif isinstance(read, int | float):
         if isinstance(written, bool):
             yield place, "true and false are no numbers"
         elif isinstance(written, str):
@@ -62,7 +65,7 @@ def _no_numbers(written: Any, read: Any, place: str = "") -> Iterator[tuple[str,
     for key, value, inner in inside:
         if inner is not None and inner is not value:
             at = f"{place}.{_named(written, key)}" if place else str(key)
-            yield from _no_numbers(value, inner, at)
+            yield from _misread(value, inner, at)
 
 
 def _sentences(error: ValidationError, content: Raw, model: type[BaseModel]) -> str:
@@ -107,6 +110,8 @@ def _sentence(place: str, errors: list[Any], model: type[BaseModel]) -> str:
 def _message(error: Any) -> str:
     if error["type"] in _KINDS:
         return f"{_EXPECTED}{_KINDS[error['type']]}"
+    if error["type"] == "too_long":
+        return f"at most {error['ctx']['max_length']} items are expected, got {len(error['input'])}"
     message: str = error["msg"].removeprefix("Value error, ")
     return message[0].lower() + message[1:]
 

@@ -39,6 +39,7 @@ ITEMS = 1_000_000  # variables, cells, blocks of one file
 LARGEST = {"mm": 1e6, "N": 1e9, "rpm": 1e9, "rad": 1e9, "°C": 1e6}
 SMALLEST = 1e-30  # of what a channel reaches, in any unit: far below what rounding leaves of zero
 SHORTEST_STEP_S, LONGEST_STEP_S = 1e-10, 1e9  # from a sample to the next
+LONGEST_PAUSE = 1e3  # in a recording, of the time without it
 THREADS = "TSAS_THREADS"  # environment variable: how many threads, by default one for each core
 MOST_THREADS = 10_000
 _DOTTED = re.compile(
@@ -241,7 +242,9 @@ def fits(path: object, bytes_: int) -> None:
 def out_of_memory(path: object) -> InputError:
     """Return the error for a file that exhausted the memory."""
     return InputError(
-        f"needs more memory than is free ({size(available())})", where=path, remedy=_remedy(path)
+        f"needs more memory than is free ({size(available())})",
+        where=path,
+        remedy=f"see whether the file is whole; else {_remedy(path)}",
     )
 
 

@@ -216,6 +216,21 @@ def test_a_unit_off_by_a_round_factor_is_named(column, factor, unit):
     assert remark.sentence.endswith(unit) or f"{unit}, or " in remark.sentence
 
 
+@pytest.mark.parametrize(("factor", "told"), [(1e7, True), (1e-7, True), (6.0, True), (2.0, False)])
+def test_tensions_that_differ_by_more_than_any_friction_are_told(factor, told):
+    """Friction cancels in the mean of both directions: what is left is a gain or a unit."""
+    measured = changed(f_in_N=factor * GOOD["f_in_N"], time_s=TIME)
+    apart = [r for _, r in remarks(measured) if r.sentence.endswith("in which friction cancels")]
+    assert bool(apart) == told
+    assert all(r.severity == "warning" and "f_in_N and f_out_N" in r.remedy for r in apart)
+
+
+@pytest.mark.parametrize("time_s", [TIME[::-1], np.zeros(N)])
+def test_of_a_clock_that_does_not_increase_no_unit_is_said(time_s):
+    of_time = {code for code, r in remarks(changed(time_s=time_s)) if r.column == "time_s"}
+    assert of_time == {"time-order"}
+
+
 def test_a_room_in_kelvin_is_named():
     kelvin = changed(temperature_C=np.linspace(294.9, 295.4, N))
     assert found(kelvin, "unit", "temperature_C").sentence.endswith("looks like kelvin")

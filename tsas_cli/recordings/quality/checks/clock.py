@@ -9,8 +9,9 @@ from tsas_cli.numerics.noise import third_differences
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.recordings.run_files import pauses
 from tsas_cli.support.arrays import Floats, Mask
-from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
+from tsas_cli.support.limits import LONGEST_PAUSE, LONGEST_STEP_S, SHORTEST_STEP_S
 from tsas_cli.support.wording import count_of
 
 
@@ -27,6 +28,9 @@ def time_order(trial: RunSignals) -> Findings:
         wrong = (step < SHORTEST_STEP_S) | (step > LONGEST_STEP_S)
         what = f"increases by less than {SHORTEST_STEP_S:g} s or more than {LONGEST_STEP_S:g} s"
         remedy = "check the unit of the time"
+    if not wrong.any():
+        wrong, what = pauses(step), f"pauses {LONGEST_PAUSE:g} times as long as all the rest lasts"
+        remedy = "correct the clock, or split the recording there into two runs"
     if wrong.any():
         row = int(wrong.argmax()) + 1
         before, after = trial.time_s[row - 1], trial.time_s[row]

@@ -39,6 +39,7 @@ _STIFFNESS = {
 _TWICE = 1.2  # factor within which x_in is taken for twice what it is
 _STRETCH = 10.0  # times what the whole tendon stretches by at the largest change of the tension
 _SAME = 1.25  # factor within which a slope agrees with the stated one
+_APART = 5.0  # factor beyond which one of two tensions is wrong
 _FARTHER = 1.2  # travel of the load's end over the drive's, beyond which a scale is wrong
 _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
@@ -53,19 +54,19 @@ def unit(trial: RunSignals) -> Findings:
     tensions (their ratio is averaged geometrically over both directions, which cancels friction);
     the slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval
     with the duration of the strokes; a temperature with that of a room. A slope that is off by no
-    known unit is a wrong gain or a wrong data sheet; a load's end that travels further than the
-    drive's has a wrong scale. A wide dead band also reduces the distal travel, but then the distal
-    path is no scaled copy of the proximal one.
+    known unit is a wrong gain or a wrong data sheet, as are tensions further apart; a load's end
+    that travels further than the drive's has a wrong scale. A wide dead band also reduces the
+    distal travel, but then the distal path is no scaled copy of the proximal one.
     """
     interval = trial.step_s
-    if interval >= _SLOW_S and trial.stroke_s > _LONG_S:
+    if trial.increases and interval >= _SLOW_S and trial.stroke_s > _LONG_S:
         yield error(
             "time_s",
             f"one sample each {interval:.4g} s and {trial.stroke_s:.4g} s per stroke; "
             f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
             "check the unit of time_s and set it at ingest",
         )
-    if interval <= _FAST_S and trial.stroke_s < _SHORT_S:
+    if trial.increases and interval <= _FAST_S and trial.stroke_s < _SHORT_S:
         taken = "microseconds" if interval <= _FAST_S / 1000.0 else "milliseconds"
         yield error(
             "time_s",
@@ -98,9 +99,17 @@ def unit(trial: RunSignals) -> Findings:
             f"x_out_mm moves {farther:.3g} times as far as x_in_mm; a tendon moves its load less",
             "check unit and pulley radius of both; of a joint or a tip, the arm that moves it",
         )
-    for remark in _suspect_unit(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
+    ratio = "f_out_N is {:.4g} times f_in_N"
+    of_tension = list(_suspect_unit(tension, ratio, _TENSION, 1.15))
+    for remark in of_tension:
         if remark.column != "f_out_N" or not _as_stated(stiffness):
             yield remark
+    if tension is not None and abs(math.log(tension)) > math.log(_APART) and not of_tension:
+        yield warning(
+            "f_in_N",
+            f"{ratio.format(tension)} in the mean of both directions, in which friction cancels",
+            "check unit and gain of f_in_N and f_out_N",
+        )
     slope = "the slope of f_out_N over x_out_mm is {:.4g} times load_stiffness_N_per_mm"
     suspected = list(_suspect_unit(stiffness, slope, _STIFFNESS, 1.1))
     yield from suspected
