@@ -144,6 +144,14 @@ def test_the_direction_is_that_of_the_last_motion():
     assert last_direction(x, -1.0).tolist() == [-1.0, -1.0, 1.0, 1.0, -1.0, -1.0]
 
 
+def test_a_last_bit_is_no_motion_and_a_creep_is_one():
+    """The mean of equal values may differ from them: friction would change its sign at a rest."""
+    rest = np.array([1.0, 5.0, np.nextafter(5.0, 0.0), 5.0, np.nextafter(5.0, 9.0), 5.5])
+    assert last_direction(rest).tolist() == [0.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    creep = 5.0 - 4e-10 * np.arange(6)
+    assert last_direction(creep, 1.0).tolist() == [1.0, 1.0, 1.0, -1.0, -1.0, -1.0]
+
+
 MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])
 
 

@@ -29,6 +29,7 @@ from tsas_cli.physics.sensors import true_value
 from tsas_cli.support.arrays import Floats, Indices
 
 NO_TENDON_LAW = TendonLaw()
+ROUNDING = 1e-9  # of a displacement [mm] or a tension [N]: less than that is no motion
 
 
 @dataclass(frozen=True)
@@ -191,10 +192,16 @@ def tendon_end(x: Floats, ripple: Wave, play_mm: float, position: float) -> Floa
 
 @kernel
 def last_direction(x: Floats, before: float = 0.0) -> Floats:
-    """Return the direction of the last motion at each sample; `before` is that at the first one."""
+    """Return the direction of the last motion at each sample; `before` is that at the first one.
+
+    Within the rounding of a rest nothing moves.
+    """
     out = np.full(x.size, before)
+    at = x[0] if x.size else 0.0
     for i in range(1, x.size):
-        out[i] = np.sign(x[i] - x[i - 1]) if x[i] != x[i - 1] else out[i - 1]
+        out[i] = out[i - 1]
+        if abs(x[i] - at) > ROUNDING:
+            out[i], at = np.sign(x[i] - at), x[i]
     return out
 
 
