@@ -180,5 +180,8 @@ def _invalid_call(error: TyperException) -> str:
 
 def _stop(line: str, code: int) -> int:
     if line:
-        print(f"tsas: {line}", file=sys.stderr)
+        try:
+            print(f"tsas: {line}", file=sys.stderr, flush=True)
+        except OSError:  # nobody can read it
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
     return code

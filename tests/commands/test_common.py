@@ -1,4 +1,7 @@
+import pytest
+
 from tsas_cli.commands.common import names, progress, show
+from tsas_cli.support.errors import InputError
 
 TABLES = [
     ("two runs", ("run", "noise"), [("a", "0.1 N"), ("b\x1b[2J", "12.5 N")]),
@@ -32,4 +35,6 @@ def test_a_name_with_a_comma_is_given_in_quotes():
     assert names("a, b ,c") == ["a", "b", "c"]
     assert names('"a,b",5",c d') == ["a,b", '5"', "c d"]
     assert names("") == names("\n") == [""]
+    with pytest.raises(InputError, match="has an open quote"):
+        names('"a,b')
     assert names("a\nb,") == ["a", "b", ""]

@@ -73,8 +73,8 @@ def test_what_is_wrong_is_said(tmp_path, old, new, said):
         ("preload_N = [15.0, 15.0]", "limits.preload_N: expected values that increase"),
         ("preload_N = [15.0, 40.0, 20.0]", "got 15, 40, 20"),
         ("total_bend_rad = [3.14, 1.57]", "limits.total_bend_rad: expected values that increase"),
-        ("preload_N = [0.0, 40.0]", "limits.preload_N.0: expected 1e-06 to 100000 N"),
-        ("preload_N = [-15.0, 40.0]", "limits.preload_N.0: expected 1e-06 to 100000 N"),
+        ("preload_N = [0.0, 40.0]", "limits.preload_N.0: expected 1e-06 to 1e+09 N"),
+        ("preload_N = [-15.0, 40.0]", "limits.preload_N.0: expected 1e-06 to 1e+09 N"),
         ("total_bend_rad = [-1.57]", "limits.total_bend_rad.0: expected 0, or 1e-09 to 1e+06 rad"),
     ],
 )

@@ -194,9 +194,15 @@ def test_estimates_at_their_bounds_can_be_read_again(end):
 
 
 def test_a_missing_model_and_an_empty_folder(tmp_path):
-    for path in (tmp_path, tmp_path / "no.toml"):
-        with pytest.raises(InputError, match="cannot be read"):
-            read_model(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_model(tmp_path / "no.toml")
+    with pytest.raises(
+        InputError, match=r"holds no model\.toml; give a model file, or a folder that"
+    ):
+        read_model(tmp_path)
+    (tmp_path / "model-extended.toml").write_text("", encoding="utf-8")
+    with pytest.raises(InputError, match=r"name one of its models: model-extended\.toml"):
+        read_model(tmp_path)
 
 
 def test_where_a_model_is_from(tmp_path):

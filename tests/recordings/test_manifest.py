@@ -150,6 +150,8 @@ def test_a_path_written_on_windows_works(tmp_path):
         ("format = 1", "format = true", "format: true and false are no numbers"),
         ("preload_N = 25.0", "total_bend_rad = true", "run.a.total_bend_rad: true and false are"),
         ("1.579", "true", "rig.load_stiffness_N_per_mm: true and false are no numbers"),
+        (STARTED, "started = 0001-01-01T00:00:00+14:00", "run.a.started: is no date"),
+        (STARTED, 'started = "2200-01-01"', "run.a.started: is no date"),
         (STARTED, "started = 20240101", "run.a.started: is no date such as .* got 20240101"),
         *(
             (STARTED, f"started = {day}", "run.a.started: is no date")

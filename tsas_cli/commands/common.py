@@ -28,8 +28,13 @@ if TYPE_CHECKING:
 
 def names(listed: str | None) -> list[str] | None:
     """Return the comma-separated names of an option, one with a comma in quotes; or None."""
-    rows = csv.reader((listed or "").splitlines(), skipinitialspace=True)
-    return None if listed is None else [name.strip() for row in rows for name in row] or [""]
+    rows = csv.reader((listed or "").splitlines(), skipinitialspace=True, strict=True)
+    try:
+        return None if listed is None else [name.strip() for row in rows for name in row] or [""]
+    except csv.Error as error:
+        raise InputError(
+            f"the list {listed!r} has an open quote", expected='names, one with a comma as "a,b"'
+        ) from error
 
 
 ENDS = (

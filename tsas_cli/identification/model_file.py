@@ -218,7 +218,16 @@ def read_fitted_to(path: Path) -> FittedTo | None:
 
 def _file_of(path: Path) -> Path:
     """Return a model's file, that in a folder where the path is one."""
-    return path / MODEL_FILE if path.is_dir() else path
+    if not path.is_dir() or (path / MODEL_FILE).exists():
+        return path / MODEL_FILE if path.is_dir() else path
+    models = sorted(file.name for file in path.glob("model*.toml"))
+    raise InputError(
+        f"holds no {MODEL_FILE}",
+        where=path,
+        remedy=f"name one of its models: {', '.join(models)}"
+        if models
+        else "give a model file, or a folder that `tsas calibrate` has written",
+    )
 
 
 def _read(path: Path) -> _ModelTables:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 PARTS = ("controllers", "drive", "effects", "numerics", "physics")  # where kernels live
-PLAIN = os.environ.get("TSAS_PLAIN_PYTHON") == "1"
+PLAIN = "1" in (os.environ.get("TSAS_PLAIN_PYTHON"), os.environ.get("NUMBA_DISABLE_JIT"))
 
 
 def kernel(function: Function) -> Function:

@@ -14,6 +14,7 @@ T = TypeVar("T", bound=BaseModel)
 _MOST_ERRORS = 5  # listed of one file; further ones are counted
 _VALUE_LENGTH = 80  # characters of an invalid value in a message
 _EXPECTED = "input should be "
+_COUNTS = {"too_long": ("at most", "max_length"), "too_short": ("at least", "min_length")}
 _KINDS = {  # of Pydantic's errors
     "float_type": "a number",
     "float_parsing": "a number",
@@ -110,8 +111,9 @@ def _sentence(place: str, errors: list[Any], model: type[BaseModel]) -> str:
 def _message(error: Any) -> str:
     if error["type"] in _KINDS:
         return f"{_EXPECTED}{_KINDS[error['type']]}"
-    if error["type"] == "too_long":
-        return f"at most {error['ctx']['max_length']} items are expected, got {len(error['input'])}"
+    if error["type"] in _COUNTS:
+        bound, limit = _COUNTS[error["type"]]
+        return f"{bound} {error['ctx'][limit]} items are expected, got {len(error['input'])}"
     message: str = error["msg"].removeprefix("Value error, ")
     return message[0].lower() + message[1:]
 

@@ -116,12 +116,19 @@ def export(
     fitted = read_fitted_to(given) if isinstance(given, Path) else None
     errors: Differences = {}
     lost: tuple[str, ...] = ()
+    conditions = {
+        "sheath_length_mm": sheath_length_mm,
+        "total_bend_rad": total_bend_rad,
+        "preload_N": preload_N,
+    }
+    given_anyway = [name for name, value in conditions.items() if value is not None]
+    if kind != "mujoco" and given_anyway:
+        raise InputError(
+            f"{given_anyway[0]} is no part of {kind}",
+            expected="a condition with `--to mujoco` alone",
+            remedy="leave it out: the model holds what was fitted",
+        )
     if kind == "mujoco":
-        conditions = {
-            "sheath_length_mm": sheath_length_mm,
-            "total_bend_rad": total_bend_rad,
-            "preload_N": preload_N,
-        }
         text, errors, lost = _mujoco(found, fitted or FittedTo(), conditions, path.stem)
         text = sealed(text, markup=True)
     else:

@@ -28,14 +28,14 @@ def path_of(given: Thing | str, *kinds: type) -> Thing | Path:
 
     InputError: it is of another kind.
     """
-    named: Thing | Path = Path(given) if isinstance(given, str) else given
+    named: Thing | Path = Path(_not_empty(given)) if isinstance(given, str) else given
     of_kind((Path, NoneType, *kinds), named)
     return _nameable(named)
 
 
 def file_of(given: Named) -> Path:
     """Return a path or its text as a path; InputError where it is of another kind."""
-    return _nameable(Path(of_kind((str, Path), given)))
+    return _nameable(Path(_not_empty(of_kind((str, Path), given))))
 
 
 def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
@@ -45,7 +45,7 @@ def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
 
 def place_of(given: Named | Address) -> Location:
     """Return a local path or an address; InputError where it is of another kind, or no name."""
-    return _nameable(location_of(of_kind((str, Path, Address), given)))
+    return _nameable(location_of(_not_empty(of_kind((str, Path, Address), given))))
 
 
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -56,7 +56,7 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
     if isinstance(given, Dataset):
         dataset = given
     else:
-        place = location_of(of_kind((str, Path, Address, Dataset), given))
+        place = location_of(_not_empty(of_kind((str, Path, Address, Dataset), given)))
         dataset = read_dataset(_nameable(place))
     return dataset if runs is None else dataset.only(listed(runs))
 
@@ -146,6 +146,16 @@ def _kinds(hint: Any) -> tuple[type, ...]:
     if not all(isinstance(kind, type) and kind not in {int, float, Any} for kind in kinds):
         return ()
     return (bool, int, np.bool_) if kinds == (bool,) else kinds
+
+
+def _not_empty(given: Thing) -> Thing:
+    """Return what names something; empty text, as of a variable that is not set, is an InputError.
+
+    It would be the current folder.
+    """
+    if isinstance(given, str) and not given:
+        raise InputError("the path is empty", expected="a file or a folder")
+    return given
 
 
 def _nameable(given: Thing) -> Thing:

@@ -1,6 +1,5 @@
 """What is done to the plant: changes of its rig from the start, or in the middle of a run."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -29,6 +28,7 @@ ONLY_FROM_THE_START = {
     if effect.acts_on == "sensor"
     for p in effect.parameters
 }
+LATEST_S = 1e6  # at which a change may begin
 
 
 @dataclass(frozen=True)
@@ -93,8 +93,10 @@ def _change(option: str, where: str) -> ConditionChange:
         raise InputError(
             f"{option!r} is no change", where=where, expected="NAME=VALUE or NAME=VALUE@SECONDS"
         ) from error
-    if not 0.0 <= from_s < math.inf:
-        raise InputError(f"{option!r} begins at {moment} s", where=where, expected="0 s or later")
+    if not 0.0 <= from_s <= LATEST_S:
+        raise InputError(
+            f"{option!r} begins at {moment} s", where=where, expected=f"0 to {LATEST_S:g} s"
+        )
     if value not in ALLOWED[name]:
         raise InputError(f"{name} of {value:g}", where=where, expected=str(ALLOWED[name]))
     if from_s > 0.0 and name in ONLY_FROM_THE_START:

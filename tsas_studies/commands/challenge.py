@@ -23,7 +23,13 @@ Conditions = Literal["clean", "slow", "realistic"]
 def make(
     out: OutFolder,
     seed: Annotated[
-        int, typer.Option("--seed", min=0, help="0 to 999 for tuning, 10000 to 19999 for scoring.")
+        int,
+        typer.Option(
+            "--seed",
+            min=0,
+            max=19_999,
+            help="0 to 999 for tuning, 10000 to 19999 for scoring.",
+        ),
     ],
     seeds: Annotated[
         int, typer.Option("--seeds", min=1, help="How many seeds, from that one on.")
