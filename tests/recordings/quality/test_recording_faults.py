@@ -50,6 +50,27 @@ def test_a_channel_behind_a_low_pass_filter(column, cut_Hz):
     assert 0.5 * cut_Hz < said_Hz < 2.5 * cut_Hz
 
 
+@pytest.mark.parametrize(
+    ("order", "quiet", "seen"), [(4, 1.0, True), (0, 1.0, False), (0, 0.03, False)]
+)
+def test_a_steep_filter_below_a_fast_motion_is_seen_beside_the_other_tension(order, quiet, seen):
+    """The motion, up to 20 Hz, hides where the noise ends; a quiet sensor is white."""
+    rng = np.random.default_rng(3)
+    time = np.arange(4000) / 250.0
+    way = sum(np.sin(2.0 * np.pi * f * time + f**2) / f for f in np.linspace(0.3, 20.0, 60))
+    force, noise = 30.0 + 4.0 * way, 0.05 * rng.normal(size=(2, time.size))
+    f_in = force + quiet * noise[0]
+    if order:
+        f_in = lfilter(*butter(order, 10.0, fs=250.0), f_in - f_in[0]) + f_in[0]
+    moved = {"x_in_mm": 5.0 + way, "x_out_mm": 5.0 + 0.9 * way}
+    positions = {n: x + 0.002 * rng.normal(size=time.size) for n, x in moved.items()}
+    forces = {"f_in_N": f_in, "f_out_N": 0.8 * force + noise[1]}
+    found = {
+        r.column for c, r in remarks({"time_s": time, **positions, **forces}) if c == "filtered"
+    }
+    assert found == ({"f_in_N"} if seen else set())
+
+
 def test_samples_that_are_lost_and_closed_up():
     lost = 700, 1500
     kept = np.delete(np.arange(N), [*range(lost[0], lost[0] + 12), *range(lost[1], lost[1] + 12)])

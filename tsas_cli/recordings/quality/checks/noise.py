@@ -173,6 +173,8 @@ _FLOOR = 0.1  # of the rounding: below, nothing is rounded
 _EVEN = 5.0  # factor within which the noise below the end of a filter is even,
 _FEWEST_BANDS = 2, 3  # in so many bands above rounding, or above nothing: a motion falls all along
 _MATTERS = 10.0  # times the noise
+_OTHER_TENSION = {"f_in_N": "f_out_N", "f_out_N": "f_in_N"}
+_LESS, _STEEP = 0.1, 100.0  # power beside the other tension's noise; fall from there to the top
 _LOCKED = 0.2  # phase to another channel; that of independent noises is below a tenth
 
 
@@ -189,22 +191,21 @@ def filtered(trial: RunSignals) -> Findings:
     the motion's then, and differ from part to part. Those of a stroke that repeats are the same in
     all parts, but they are lines, with little between them. An unsteady drive moves the tendon at
     random, up to the frequency that it follows; another channel feels that, but not the noise of a
-    sensor. Not reported: noise that grows slower towards low frequencies, a fast amplifier, a
+    sensor. Where a motion hides the end, a tension has far less noise above than the other one, and
+    ever less. Not reported: noise that grows slower towards low frequencies, a fast amplifier, a
     recording without noise.
     """
     segment_s = min(_SEGMENT_S, _OF_A_STROKE * trial.stroke_s)
     for name, values in trial.mechanical.items():
         whole = np.isfinite(values).all() and trial.moves(name) and not is_held(values)
         spectrum = noise_spectrum(trial.time_s, values, segment_s) if whole else None
+        if spectrum is None:
+            continue
+        found = _by_itself(trial, name, spectrum, segment_s)
+        end_Hz, noise = found or _beside_the_other(trial, name, spectrum, segment_s) or (0.0, 0.0)
+        if end_Hz == 0.0:
+            continue
         size = trial.sizes[name]
-        rounding = size.step**2 / 6.0 * trial.step_s  # its power per hertz [unit²/Hz]
-        end_Hz = None if spectrum is None else _end_of_noise(spectrum, rounding)
-        if end_Hz is None or spectrum is None or _are_lines(values, trial.step_s, end_Hz):
-            continue
-        if _is_felt_elsewhere(trial, name, end_Hz, segment_s):
-            continue
-        below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
-        noise = float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
         late_s = trial.time_s - 1.0 / (2.0 * np.pi * end_Hz)  # by a filter that ends there
         change = np.interp(late_s, trial.time_s, values) - values
         wrong = float(np.sqrt(np.mean(change**2)))
@@ -215,6 +216,40 @@ def filtered(trial: RunSignals) -> Findings:
                 f"(the sampling rate is {1.0 / trial.step_s:.4g} Hz)",
                 "record without the filter, or with one that is ten times as fast for all channels",
             )
+
+
+def _by_itself(
+    trial: RunSignals, name: str, spectrum: NoiseSpectrum, segment_s: float
+) -> tuple[float, float] | None:
+    """Return where the noise of a channel ends [Hz] and its size; None where that is not seen."""
+    rounding = trial.sizes[name].step ** 2 / 6.0 * trial.step_s  # its power per hertz [unit²/Hz]
+    end_Hz = _end_of_noise(spectrum, rounding)
+    if end_Hz is None or _are_lines(trial.mechanical[name], trial.step_s, end_Hz):
+        return None
+    if _is_felt_elsewhere(trial, name, end_Hz, segment_s):
+        return None
+    below = spectrum.is_noise & (spectrum.frequency_Hz <= end_Hz)
+    return end_Hz, float(np.sqrt(np.median(spectrum.power[below]) * end_Hz))
+
+
+def _beside_the_other(
+    trial: RunSignals, name: str, spectrum: NoiseSpectrum, segment_s: float
+) -> tuple[float, float] | None:
+    """Return the same of a tension that has far less noise than the other one, and ever less.
+
+    Below the end a motion may hide it; the other sensor's noise is white and tells its level.
+    """
+    values = trial.mechanical.get(_OTHER_TENSION.get(name, ""))
+    if values is None or not np.isfinite(values).all() or is_held(values):
+        return None
+    other = noise_spectrum(trial.time_s, values, segment_s)
+    if other is None:
+        return None
+    (top, middle), (white, other_middle) = _top_and_middle(spectrum), _top_and_middle(other)
+    if other_middle > _WHITE * white or middle > _LESS * white or middle < _STEEP * top:
+        return None
+    end_Hz = float(spectrum.frequency_Hz[spectrum.power > _LESS * white].max(initial=0.0))
+    return end_Hz, float(np.sqrt(white * end_Hz))
 
 
 def _are_lines(values: Floats, step_s: float, end_Hz: float) -> bool:
@@ -242,11 +277,8 @@ def _is_felt_elsewhere(trial: RunSignals, name: str, end_Hz: float, segment_s: f
 
 def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
     """Return the frequency above which there is no noise [Hz]; None where it reaches the top."""
-    share = spectrum.frequency_Hz / spectrum.frequency_Hz[-1]
-    top = float(np.median(spectrum.power[share >= _TOP]))
-    middle = spectrum.power[(share >= _MIDDLE[0]) & (share <= _MIDDLE[1])]
-    white = middle.size == 0 or float(np.median(middle)) < _WHITE * top
-    if white and top > _ROUNDING * rounding:
+    top, middle = _top_and_middle(spectrum)
+    if middle < _WHITE * top and top > _ROUNDING * rounding:
         return None
     stands_out = spectrum.power > _FALLS * top
     highest = float(spectrum.power[stands_out & spectrum.is_noise].max(initial=0.0))
@@ -258,3 +290,11 @@ def _end_of_noise(spectrum: NoiseSpectrum, rounding: float) -> float | None:
         return None  # what is left of a smooth motion
     level = float(np.median(spectrum.power[noisy]))
     return float(spectrum.frequency_Hz[spectrum.is_noise & (spectrum.power > 0.5 * level)].max())
+
+
+def _top_and_middle(spectrum: NoiseSpectrum) -> tuple[float, float]:
+    """Return the power at the highest frequencies, and where white noise is as large, or 0."""
+    share = spectrum.frequency_Hz / spectrum.frequency_Hz[-1]
+    middle = spectrum.power[(share >= _MIDDLE[0]) & (share <= _MIDDLE[1])]
+    top = float(np.median(spectrum.power[share >= _TOP]))
+    return top, float(np.median(middle)) if middle.size else 0.0
