@@ -219,17 +219,14 @@ def flatten_rests(
 def straighten(beside: Floats, level: float, near: float) -> None:
     """Let a signal run to a rest's level one way, in place, over the samples that are near it.
 
-    `beside` begins at the rest. What overshoots the level, or reverses before it, is noise, and
-    where it stays near it again, the rest goes on.
+    `beside` begins at the rest. What overshoots the level, or reverses before it, is noise.
     """
     away = np.flatnonzero(np.abs(beside - level) > near)
     if away.size:
         farthest = np.maximum if beside[away[0]] < level else np.minimum
         nearest = np.minimum if beside[away[0]] < level else np.maximum
-        towards = nearest(farthest.accumulate(beside[: away[0]][::-1])[::-1], level)
-        stays = np.flatnonzero(towards[1:] == towards[:-1])
-        towards[: stays[-1] + 2 if stays.size else 0] = level
-        beside[: away[0]] = towards
+        towards = farthest.accumulate(beside[: away[0]][::-1])[::-1]
+        beside[: away[0]] = nearest(towards, level)
 
 
 def still_parts(smooth: Floats, sd: Floats, reach: int) -> list[tuple[int, int]]:
