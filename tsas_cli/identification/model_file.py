@@ -218,8 +218,10 @@ def read_fitted_to(path: Path) -> FittedTo | None:
 
 def _file_of(path: Path) -> Path:
     """Return a model's file, that in a folder where the path is one."""
-    if not path.is_dir() or (path / MODEL_FILE).exists():
-        return path / MODEL_FILE if path.is_dir() else path
+    if not path.is_dir():
+        return path
+    if (path / MODEL_FILE).exists():
+        return path / MODEL_FILE
     models = sorted(file.name for file in path.glob("model*.toml"))
     raise InputError(
         f"holds no {MODEL_FILE}",

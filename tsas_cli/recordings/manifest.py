@@ -34,16 +34,16 @@ _PATH_LENGTH = 1000  # characters of a path in the dataset
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 
-FIRST_YEAR, LAST_YEAR = 1900, 2199  # of a recording
+YEARS = range(1900, 2200)  # of a recording
 
 
 def _as_date(value: object) -> object:
     """Return a date, or text that begins with an ISO 8601 date; refuse Pydantic's epoch seconds."""
     if isinstance(value, str):
         value = re.sub(r"^(\d{4})(\d\d)(\d\d)(?!\d)", r"\1-\2-\3", value)
-        if re.match(r"(19|20|21)\d\d-\d\d-\d\d", value):
+        if re.match(r"\d{4}-\d\d-\d\d", value) and int(value[:4]) in YEARS:
             return value
-    elif isinstance(value, date) and FIRST_YEAR <= value.year <= LAST_YEAR:
+    elif isinstance(value, date) and value.year in YEARS:
         return value
     raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
 
