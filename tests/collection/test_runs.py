@@ -235,16 +235,19 @@ def test_an_index_that_is_damaged_is_made_again(rigs, cache):
 def test_an_odd_manifest_is_reported_and_the_rest_is_answered(rigs):
     manifest = rigs / "two" / "dataset.toml"
     whole = manifest.read_text()
+    digits = "holds a value that cannot be represented (an integer has thousands of digits)"
     for line, why in (
-        ("started = 0001-01-01T00:00:00+12:00", "date value out of range"),
-        (f"operator = 0x{'f' * 6000}", "an integer has thousands of digits"),
+        (
+            "started = 0001-01-01T00:00:00+12:00",
+            "run.r0.started: is no date such as 2026-03-02 or ",
+        ),
+        (f"operator = 0x{'f' * 6000}", digits),
     ):
         manifest.write_text(whole.replace("id = ", f"{line}\nid = ", 1))
         result = tsas.runs()
         assert [row["folder"] for row in result.summary["runs"]] == ["one/a", "one/a"]
-        assert result.summary["problems"] == [
-            f"two/dataset.toml: holds a value that cannot be represented ({why})"
-        ]
+        (problem,) = result.summary["problems"]
+        assert problem.startswith(f"two/dataset.toml: {why}")
 
 
 @pytest.mark.parametrize("year", [1600, 2400])

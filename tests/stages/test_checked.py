@@ -12,6 +12,7 @@ from tests.reporting.made_folders import page_from
 from tests.rigs import dataset_of, recorded
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import DatasetSource, OfDataset
+from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause
 from tsas_cli.stages.before_fit import unrecorded
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -117,6 +118,27 @@ def test_of_many_runs_the_number_is_said(values, said):
     ]
     source = DatasetSource(name="bench", hashes={})
     assert OfDataset(stage="check", dataset=source, warnings=found).warned() == [said]
+
+
+@pytest.mark.parametrize(
+    ("named", "shift", "too"),
+    [
+        ("load_damping", "before", True),
+        ("load_damping", "after", False),
+        ("backlash", "before", False),
+    ],
+)
+def test_a_tension_that_a_named_load_lets_come_early_is_no_second_fault(named, shift, too):
+    late = f"f_out_N comes 9 ms (95 %: 7 to 11) {shift} x_out_mm"
+    file = DiagnosisFile(
+        dataset=DatasetSource(name="bench", hashes={}),
+        verdict="named",
+        reason="",
+        named=(NamedCause(effect=named, gain_percent=50.0),),
+        warnings=(Finding("warning", "f_out_N", late, "", code="delay", run="a"),),
+    )
+    said = f"The checks warn of run a: {late} (`delay`)."
+    assert file.warned() == [f"{said} {named} does this too." if too else said]
 
 
 ALL = ("time_s", "x_in_mm", "x_out_mm", "f_in_N", "f_out_N")

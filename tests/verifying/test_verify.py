@@ -121,6 +121,8 @@ def test_raw_recordings_that_have_moved_are_found_where_one_says():
     assert "archive/a.csv" in {one.file for one in result.files}
     Path("archive/a.csv").write_text("something else")
     assert [one.file for one in tsas.verify("result", raw="archive").wrong] == ["raw/a.csv"]
+    with pytest.raises(InputError, match="nowhere: is no folder"):
+        tsas.verify("result", raw=["archive", "nowhere"])
 
 
 def test_a_moved_project_fits_as_before(chain, tmp_path):

@@ -42,6 +42,9 @@ VERDICTS: dict[Verdict, str] = {
     "undecided": "Cannot tell",
 }
 INCOMPLETE = frozenset[Verdict]({"partly", "described", "stand_in", "unexplained"})
+# Loads whose tension comes before their displacement, and how the check `delay` says that.
+TENSION_LEADS = {"load_damping", "load_hysteresis", "load_inertia", "load_relaxation"}
+EARLY = "before x_out_mm (`delay`)"
 UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 
 
@@ -274,3 +277,11 @@ class DiagnosisFile(OfDataset, Findings):
     not_sought: tuple[str, ...] = ()  # codes of faults of the recordings
     solver: str = ""
     segments: dict[str, tuple[PhaseSegment, ...]] = {}
+
+    def warned(self) -> list[str]:
+        """Return a sentence for each kind of warning, with the cause of one that is named."""
+        leads = sorted(self.effects & TENSION_LEADS)
+        return [
+            f"{said} {leads[0]} does this too." if leads and EARLY in said else said
+            for said in super().warned()
+        ]

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 from tsas_cli.records.result import Result, Table, heading
 from tsas_cli.stages.given import Named, file_of, paths_of
+from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.verifying.verify import Verified, verify_all
 
@@ -60,9 +61,13 @@ def verify(
     Raises
     ------
     InputError
-        There is nothing that tsas has written.
+        There is nothing that tsas has written, or no folder that `raw` names.
     """
-    files = verify_all(file_of(path), paths_of(raw, least=0), step)
+    folders = paths_of(raw, least=0)
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError("is no folder", where=folder, expected="one with raw recordings")
+    files = verify_all(file_of(path), folders, step)
     found = Counter[str](one.state for one in files)
     summary = heading("verify") | {
         "path": str(path),

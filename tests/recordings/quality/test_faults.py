@@ -256,7 +256,7 @@ def test_a_load_that_travels_further_than_its_drive_has_a_wrong_scale():
 def test_a_delay_is_reported_with_an_interval_that_holds_it(shift_s):
     late = np.interp(TIME - shift_s, TIME, GOOD["f_out_N"])
     sentence = found(changed(f_out_N=late), "delay", "f_out_N").sentence
-    assert ("after" if shift_s > 0 else "before") in sentence
+    assert sentence.endswith("after x_out_mm" if shift_s > 0 else "before x_out_mm")
     low, high = sentence.split("95 %: ")[1].split(")")[0].split(" to ")
     assert float(low) - 0.1 <= 1e3 * abs(shift_s) <= float(high) + 0.1
 
