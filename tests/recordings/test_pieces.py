@@ -35,3 +35,20 @@ def test_a_value_that_no_rig_has_is_named_with_its_row_in_the_run(dataset, monke
     with pytest.raises(InputError, match=r"row 2100: x_in_mm is 1e\+10; expected"):
         list(reading.pieces(opened, table.column_names))
     assert len(list(reading.pieces(opened, table.column_names, strict=False))) == 3
+
+
+@pytest.mark.parametrize(("pause_s", "refused"), [(100.0, False), (1e5, True)])
+def test_a_pause_in_the_last_few_rows_is_one_beside_the_whole_run(
+    dataset, monkeypatch, pause_s, refused
+):
+    """The last piece has two rows, 0.02 s without the pause; the run has 30 s."""
+    time_s = np.arange(3002) / 100.0 + pause_s * (np.arange(3002) == 3001)
+    values = np.ones(time_s.size)
+    table = pa.table({"time_s": time_s, "x_in_mm": values, "f_in_N": values})
+    monkeypatch.setattr(reading, "MOST_ROWS", 1000)
+    opened = open_run(dataset, rewrite(dataset, table))
+    if refused:
+        with pytest.raises(InputError, match="row 3001: the recording pauses for"):
+            list(reading.pieces(opened, table.column_names))
+    else:
+        assert sum(p.rows for p in reading.pieces(opened, table.column_names)) == time_s.size

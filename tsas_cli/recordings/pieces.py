@@ -77,7 +77,7 @@ def pieces(
     time does not increase.
     """
     batches = run.file.iter_batches(min(_BATCH_ROWS, MOST_ROWS), columns=list(names))
-    start, last_s = 0, np.empty(0)
+    start, last_s, began_s = 0, np.empty(0), None
     with reading(run.path):
         for table in in_batches(batches, MOST_ROWS, overlap=overlap):
             columns = {  # copies, as kernels compile anew for read-only arrays
@@ -87,7 +87,8 @@ def pieces(
                 check_magnitude(name, values, run.path, first_row=start)
             if strict and TIME in columns:
                 time_s = np.concatenate((last_s, columns[TIME]))
-                check_time(time_s, run.path, first_row=start - last_s.size)
+                began_s = time_s[0] if began_s is None else began_s
+                check_time(time_s, run.path, first_row=start - last_s.size, began_s=began_s)
                 last_s = columns[TIME][MOST_ROWS - overlap - 1 : MOST_ROWS - overlap].copy()
             yield Piece(start, columns)
             start += table.num_rows - overlap

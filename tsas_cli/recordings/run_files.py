@@ -223,10 +223,13 @@ def _check_sizes(columns: dict[str, Floats], path: Location) -> None:
             )
 
 
-def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:
+def check_time(
+    time_s: Floats, path: Location, *, first_row: int = 0, began_s: float | None = None
+) -> None:
     """Refuse time that does not strictly increase, or increases by implausible steps.
 
-    `first_row` is the number of the first sample.
+    `first_row` is the number of the first sample, `began_s` the start of the run, of which these
+    are a piece; None at its start.
     """
     with np.errstate(over="ignore"):  # an infinite step is refused below
         step = np.diff(time_s)
@@ -238,30 +241,40 @@ def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:
             expected="strictly increasing time",
             remedy="`tsas check` describes it; correct it before ingest",
         )
-    implausible = (step < limits.SHORTEST_STEP_S) | (step > limits.LONGEST_STEP_S)
-    if implausible.any():
-        row = int(implausible.argmax()) + 1
-        raise InputError(
-            f"time_s increases by {step[row - 1]:.6g} s",
-            where=f"{path}, row {first_row + row}",
-            expected=f"steps from {limits.SHORTEST_STEP_S:g} s to {limits.LONGEST_STEP_S:g} s",
-            remedy="check the unit of the time, and ingest again",
-        )
+    for wrong, what, expected, remedy in (
+        (
+            implausible(step),
+            "time_s increases by",
+            f"steps from {limits.SHORTEST_STEP_S:g} s to {limits.LONGEST_STEP_S:g} s",
+            "check the unit of the time, and ingest again",
+        ),
+        (
+            pauses(time_s, began_s),
+            "the recording pauses for",
+            f"at most {limits.LONGEST_PAUSE:g} times all the rest of it",
+            "correct the clock, or split the recording there into two runs",
+        ),
+    ):
+        if wrong.any():
+            row = int(wrong.argmax()) + 1
+            raise InputError(
+                f"{what} {step[row - 1]:.6g} s",
+                where=f"{path}, row {first_row + row}",
+                expected=expected,
+                remedy=remedy,
+            )
 
-    paused = pauses(step)
-    if paused.any():
-        row = int(paused.argmax()) + 1
-        raise InputError(
-            f"the recording pauses for {step[row - 1]:.6g} s",
-            where=f"{path}, row {first_row + row}",
-            expected=f"at most {limits.LONGEST_PAUSE:g} times all the rest of it",
-            remedy="correct the clock, or split the recording there into two runs",
-        )
+
+def implausible(step: Floats) -> Mask:
+    """Return which steps of the time no recording has."""
+    return np.asarray((step < limits.SHORTEST_STEP_S) | (step > limits.LONGEST_STEP_S))
 
 
-def pauses(step: Floats) -> Mask:
-    """Return which step of the time is longer by far than all others together."""
-    rest = step.sum() - step
+def pauses(time_s: Floats, began_s: float | None = None) -> Mask:
+    """Return which step of the time is longer by far than all others since the run began."""
+    with np.errstate(over="ignore", invalid="ignore"):  # an infinite step is implausible
+        step = np.diff(time_s)
+        rest = time_s[-1:] - (time_s[:1] if began_s is None else began_s) - step
     return np.asarray((rest > 0.0) & (step > limits.LONGEST_PAUSE * rest))
 
 

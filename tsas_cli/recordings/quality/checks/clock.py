@@ -9,7 +9,7 @@ from tsas_cli.numerics.noise import third_differences
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import Finding, Findings, NotChecked, error, warning
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.run_files import pauses
+from tsas_cli.recordings.run_files import implausible, pauses
 from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.limits import LONGEST_PAUSE, LONGEST_STEP_S, SHORTEST_STEP_S
 from tsas_cli.support.wording import count_of
@@ -25,11 +25,14 @@ def time_order(trial: RunSignals) -> Findings:
     wrong, what = step <= 0, "does not increase"
     remedy = "correct the clock or the order of the rows at the source"
     if not wrong.any():
-        wrong = (step < SHORTEST_STEP_S) | (step > LONGEST_STEP_S)
+        wrong = implausible(step)
         what = f"increases by less than {SHORTEST_STEP_S:g} s or more than {LONGEST_STEP_S:g} s"
         remedy = "check the unit of the time"
     if not wrong.any():
-        wrong, what = pauses(step), f"pauses {LONGEST_PAUSE:g} times as long as all the rest lasts"
+        wrong, what = (
+            pauses(trial.time_s),
+            f"pauses {LONGEST_PAUSE:g} times as long as all the rest lasts",
+        )
         remedy = "correct the clock, or split the recording there into two runs"
     if wrong.any():
         row = int(wrong.argmax()) + 1
