@@ -42,7 +42,7 @@ HELD_BACK = (0.1, 1.5)  # the share that a saturated sensor holds back, with a s
 
 
 def candidates(
-    bench: Bench, trial: HypothesisFit, reads: Sequence[ReadRun], left: Beside, run: Indices
+    bench: Bench, trial: HypothesisFit, reads: Sequence[ReadRun], left: Beside
 ) -> list[Candidate]:
     """Return all faults with the squares that each takes away, the largest first."""
     shapes = [shapes_of(read) for read in reads]
@@ -51,9 +51,9 @@ def candidates(
         *_of_clocks(shapes, left),
         *(c for constant_s in CONSTANTS_S for c in of_amplifiers(reads, left, constant_s)),
         *_of_saturation(reads, left),
-        *_of_manifest(bench, trial, left, run),
+        *_of_manifest(bench, trial, left),
         *_of_hum(reads, left),
-        *(c for late_s in LATE_S for c in _of_shifts(reads, left, run, late_s)),
+        *(c for late_s in LATE_S for c in _of_shifts(reads, left, late_s)),
     ]
     return sorted(found, key=lambda c: -c.reduction)
 
@@ -175,9 +175,7 @@ def _of_all(
     yield from one(code, None, channels, np.concatenate(parts), left)
 
 
-def _of_manifest(
-    bench: Bench, trial: HypothesisFit, left: Beside, run: Indices
-) -> Iterator[Candidate]:
+def _of_manifest(bench: Bench, trial: HypothesisFit, left: Beside) -> Iterator[Candidate]:
     """Yield a stiffness, or a length, of one run's own, unless that of all is at a bound."""
     free = next((j for j, u in enumerate(trial.unknowns) if u.name == STIFFNESS), None)
     if free is None:
@@ -188,8 +186,8 @@ def _of_manifest(
         return
     else:
         slope = trial.solution.jacobian[:, free]
-    for k in range(int(run.max()) + 1):
-        yield from one("run-length", k, (), -slope[run == k], left.in_run(k))
+    for k, rows in enumerate(left.runs):
+        yield from one("run-length", k, (), -slope[rows], left.in_run(k))
 
 
 def _of_hum(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
@@ -202,15 +200,12 @@ def _of_hum(reads: Sequence[ReadRun], left: Beside) -> Iterator[Candidate]:
         yield Candidate("hum", None, (name,), frequency, float(along @ amounts))
 
 
-def _of_shifts(
-    reads: Sequence[ReadRun], left: Beside, run: Indices, late_s: float
-) -> Iterator[Candidate]:
+def _of_shifts(reads: Sequence[ReadRun], left: Beside, late_s: float) -> Iterator[Candidate]:
     """Yield channels of a run that come late by about that, all along or since a moment, or lag."""
-    squares = np.bincount(run, left.residual[: run.size] ** 2)
     for k, read in enumerate(reads):
-        if squares[k] < LEAST_SHARE * left.squares:
-            continue
         here = left.in_run(k)
+        if here.squares < LEAST_SHARE * left.squares:
+            continue
         late = {name: read.since(name, read.late(name, late_s)) for name in read.errors.samples}
         for channels in _groups(tuple(late)):
             columns = _sum(late, channels)

@@ -63,7 +63,7 @@ def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | No
     choices: list[FoundFault] = []
     if left.squares > (1.0 + LEAST_EXCESS) * run.size:
         reads = runs_at(bench, trial)
-        found = [c for c in candidates(bench, trial, reads, left, run) if c.code not in accepted]
+        found = [c for c in candidates(bench, trial, reads, left) if c.code not in accepted]
         closer = [c for c in _closer(found, reads, left) if c.code not in accepted]
         usual = _usual(fits, left.residual) if _stands_out(closer) else run.size
         choices.append(_judged(closer, left.squares, usual))

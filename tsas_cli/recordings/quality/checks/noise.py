@@ -202,10 +202,10 @@ def filtered(trial: RunSignals) -> Findings:
         if spectrum is None:
             continue
         found = _by_itself(trial, name, spectrum, segment_s)
-        end_Hz, noise = found or _beside_the_other(trial, name, spectrum, segment_s) or (0.0, 0.0)
-        if end_Hz == 0.0:
+        found = found or _beside_the_other(trial, name, spectrum, segment_s)
+        if found is None:
             continue
-        size = trial.sizes[name]
+        (end_Hz, noise), size = found, trial.sizes[name]
         late_s = trial.time_s - 1.0 / (2.0 * np.pi * end_Hz)  # by a filter that ends there
         change = np.interp(late_s, trial.time_s, values) - values
         wrong = float(np.sqrt(np.mean(change**2)))
@@ -248,8 +248,10 @@ def _beside_the_other(
     (top, middle), (white, other_middle) = _top_and_middle(spectrum), _top_and_middle(other)
     if other_middle > _WHITE * white or middle > _LESS * white or middle < _STEEP * top:
         return None
-    end_Hz = float(spectrum.frequency_Hz[spectrum.power > _LESS * white].max(initial=0.0))
-    return end_Hz, float(np.sqrt(white * end_Hz))
+    louder = spectrum.frequency_Hz[spectrum.power > _LESS * white]
+    if not louder.size:
+        return None
+    return float(louder[-1]), float(np.sqrt(white * louder[-1]))
 
 
 def _are_lines(values: Floats, step_s: float, end_Hz: float) -> bool:
