@@ -7,12 +7,12 @@ import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tsas_cli.commands.bar import Bar
 from tsas_cli.commands.completion import run_ids
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -20,8 +20,6 @@ from tsas_cli.support.stopping import EXIT_CODE, asked_first
 from tsas_cli.support.text_table import table_text
 
 if TYPE_CHECKING:
-    from rich.progress import Progress
-
     from tsas_cli.records.result import Result
     from tsas_cli.reporting.stream.live import LiveStream
 
@@ -37,10 +35,6 @@ def names(listed: str | None) -> list[str] | None:
         ) from error
 
 
-ENDS = (
-    "Ctrl-C: the search ends after this step, and what it has found is written; "
-    "Ctrl-C again stops at once and writes nothing"
-)
 Live = Annotated[
     bool, typer.Option("--live", help="Show each run in the viewer as soon as it is computed.")
 ]
@@ -70,60 +64,6 @@ Force = Annotated[bool, typer.Option("--force", help="Replace an existing output
 Rrd = Annotated[bool, typer.Option("--rrd", help="Also write DIR/stream.rrd for tsas view.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
-
-
-class Bar(Steps, logging.Handler):
-    """A progress bar, whose total grows with the announced steps; above it stands what is logged.
-
-    The remaining time is that of the steps that were announced together, at their pace: those
-    before may have been of another kind.
-    """
-
-    def __init__(self, shown: "Progress", label: str) -> None:
-        logging.Handler.__init__(self)
-        self.shown, self.label, self.total, self.done = shown, label, 0, 0
-        self.before, self.since_s = 0, 0.0  # steps, and time, before those that are under way
-        self.task = shown.add_task(label, total=None, left="")
-
-    def ahead(self, pieces: int) -> None:
-        """Add steps to the total."""
-        self.before, self.since_s = self.done, self._elapsed_s()
-        self.total += pieces
-        self._show()
-
-    def __call__(self) -> None:
-        """Count one completed step."""
-        self.done += 1
-        self._show()
-
-    def doing(self, what: str) -> None:
-        """Show what is done from now on."""
-        self.shown.update(self.task, description=printable(f"{self.label}: {what}"))
-
-    def say(self, sentence: str) -> None:
-        """Print a sentence above the bar."""
-        self.shown.console.print(printable(sentence), markup=False, highlight=False)
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Print what the package logs."""
-        self.say(record.getMessage())
-
-    def end(self) -> None:
-        """Ask a search to end at its next step."""
-        self.ended = True
-        self.say(ENDS)
-
-    def _elapsed_s(self) -> float:
-        return self.shown.tasks[0].elapsed or 0.0
-
-    def _show(self) -> None:
-        """Draw the bar, with the remaining time at the pace so far."""
-        rest, left = self.total - self.done, ""
-        if self.done > self.before and rest > 0:
-            pace_s = (self._elapsed_s() - self.since_s) / (self.done - self.before)
-            left = f"about {timedelta(seconds=round(pace_s * rest))} left"
-            left += " of these" if self.before else ""
-        self.shown.update(self.task, total=self.total or None, completed=self.done, left=left)
 
 
 def run(

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from tsas_cli.recordings.validation import parse
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, heading, notes
 from tsas_cli.stages.given import Named, file_of, one_of, path_of
+from tsas_cli.stages.mjcf import mjcf
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw, json_text, new_file
@@ -32,13 +32,6 @@ from tsas_cli.support.replacing import sealed
 MARKS = {"json": b'"stage": "export"', "csv": b"name,run,value", "mujoco": b"tsas export"}
 STROKE_MM = 10.0  # where the model's file does not say what it was fitted to
 STROKES, SAMPLES = 4, 400  # of the motion by which models are compared; samples of a stroke
-STEP_S = 1e-4
-LEAST_MASS_KG = 0.01  # of a point, which has to have one
-LOAD_DAMPING_N_S_PER_M = 5.0  # where the model has none: else the load spring rings
-_PER_M = 1e3  # of something per mm
-_NO_PUSH_M = -1e3  # a length so short that the tendon never pushes
-# Default friction constraints creep: these hold within a step or two.
-_HOLDS = f'solreffriction="{2.0 * STEP_S:g} 1" solimpfriction="0.999 0.9999 0.001"'
 _ALWAYS_LOST = (
     "friction that grows with the tension (it is constant, that at the mean tension)",
     "friction along the sheath (it acts on the tendon's middle)",
@@ -121,10 +114,10 @@ def export(
         "total_bend_rad": total_bend_rad,
         "preload_N": preload_N,
     }
-    given_anyway = [name for name, value in conditions.items() if value is not None]
-    if kind != "mujoco" and given_anyway:
+    stated = [name for name, value in conditions.items() if value is not None]
+    if kind != "mujoco" and stated:
         raise InputError(
-            f"{given_anyway[0]} is no part of {kind}",
+            f"{stated[0]} is no part of {kind}",
             expected="a condition with `--to mujoco` alone",
             remedy="leave it out: the model holds what was fitted",
         )
@@ -183,7 +176,7 @@ def _mujoco(
     ratio, radius = (fitted.ranges.get(n) for n in ("gear_ratio", "turntable_radius_mm"))
     # Tension per torque of the motor [1/m], 1 where the gear is not known.
     gear = 1.0 if ratio is None or radius is None else 1e3 * ratio[1] / radius[1]
-    return _mjcf(name, lumped, said, gear=gear), errors, lost
+    return mjcf(name, lumped, said, gear=gear), errors, lost
 
 
 def _condition(name: str, given: float | None, fitted: FittedTo) -> float | None:
@@ -239,67 +232,3 @@ def _effects_left_out(effects: Effects) -> Sequence[str]:
         and e.acts_on != "sensor"
         and getattr(effects, e.name) != getattr(neutral, e.name)
     ]
-
-
-def _mjcf(name: str, lumped: Lumped, comments: Sequence[str], *, gear: float) -> str:
-    """Return a model file of MuJoCo, in N, m, kg and s.
-
-    `gear` is the tension at the drive [N] per unit of control. Joints drive, sheath and load are
-    x_in, the tendon in the middle of the sheath, and x_out, 0 at the preload; each tendon's force
-    is the tension, that of `proximal` f_in, of `distal` f_out.
-    """
-    drive = _joint(
-        "drive",
-        lumped.drive_friction_N,
-        lumped.drive_damping_N_s_per_mm * _PER_M,
-        f' stiffness="{lumped.beside_N_per_mm * _PER_M:.9g}"' if lumped.beside_N_per_mm else "",
-    )
-    sheath = _joint("sheath", lumped.sheath_friction_N, lumped.sheath_damping_N_s_per_mm * _PER_M)
-    load = _joint(
-        "load",
-        lumped.load_friction_N,
-        lumped.load_damping_N_s_per_mm * _PER_M or LOAD_DAMPING_N_S_PER_M,
-        f' stiffness="{lumped.load_N_per_mm * _PER_M:.9g}"'
-        f' springref="{-lumped.preload_N / lumped.load_N_per_mm / _PER_M:.9g}"',
-    )
-    said = "\n".join(f"  {line.replace('--', '- -')}" for line in comments)
-    return f"""<mujoco model={quoteattr(name)}>
-  <!--
-{said}
-  -->
-  <option timestep="{STEP_S:g}" gravity="0 0 0" integrator="implicitfast"/>
-  <worldbody>
-    {_body("drive", 0.0, drive, lumped.drive_mass_kg)}
-    {_body("sheath", 0.1, sheath, 0.0)}
-    {_body("load", 0.2, load, lumped.load_mass_kg)}
-  </worldbody>
-  <tendon>
-    {_tendon("proximal", "drive", "sheath", lumped.proximal_N_per_mm, lumped.preload_N)}
-    {_tendon("distal", "sheath", "load", lumped.distal_N_per_mm, lumped.preload_N)}
-  </tendon>
-  <actuator>
-    <motor name="drive" joint="drive" gear="{gear:.9g}"/>
-  </actuator>
-</mujoco>
-"""
-
-
-def _joint(name: str, friction_N: float, damping_N_s_per_m: float, more: str = "") -> str:
-    friction = f' frictionloss="{friction_N:.9g}" {_HOLDS}' if friction_N else ""
-    damping = f' damping="{damping_N_s_per_m:.9g}"' if damping_N_s_per_m else ""
-    return f'<joint name="{name}" type="slide" axis="1 0 0"{friction}{damping}{more}/>'
-
-
-def _body(name: str, x_m: float, joint: str, mass_kg: float) -> str:
-    mass = max(mass_kg, LEAST_MASS_KG)
-    geom = f'<geom type="sphere" size="0.005" mass="{mass:.9g}" contype="0" conaffinity="0"/>'
-    return f'<body name="{name}" pos="{x_m:g} 0 0">{joint}{geom}</body>'
-
-
-def _tendon(name: str, near: str, far: str, stiffness_N_per_mm: float, preload_N: float) -> str:
-    rest_m = -preload_N / stiffness_N_per_mm / _PER_M
-    return (
-        f'<fixed name="{name}" stiffness="{stiffness_N_per_mm * _PER_M:.9g}" '
-        f'springlength="{_NO_PUSH_M:g} {rest_m:.9g}">'
-        f'<joint joint="{near}" coef="1"/><joint joint="{far}" coef="-1"/></fixed>'
-    )

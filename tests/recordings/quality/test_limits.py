@@ -7,7 +7,7 @@ import pytest
 
 from tests.recordings.quality.bench import trial
 from tests.recordings.quality.even_runs import FINE, WAY, WHITE, N, X, are, fine, of
-from tsas_cli.recordings.quality.checks import extremes, motion, pairs, signs
+from tsas_cli.recordings.quality.checks import delay, extremes, motion, pairs, signs
 from tsas_cli.recordings.quality.finding import Finding
 
 
@@ -164,12 +164,12 @@ def test_a_delay_is_what_follows_the_speed_beside_a_bent_spring_and_friction(del
     v = np.gradient(x, t)
     x -= x[np.abs(v) > 0.3 * np.sqrt(np.mean(v**2))].mean()
     y = 3.0 + 2.0 * x + 0.1 * x**2 + 0.4 * np.sign(v) - 2.0 * delay_s * v
-    assert pairs._remaining_delay(t, x, y) == pytest.approx(delay_s, abs=1e-9)
+    assert delay._remaining_delay(t, x, y) == pytest.approx(delay_s, abs=1e-9)
     loud = np.random.default_rng(3).standard_normal(600) * np.std(y)
-    assert pairs._remaining_delay(t, x, y + 0.03 * loud) == pytest.approx(delay_s, abs=0.01)
-    assert np.isnan(pairs._remaining_delay(t, x, y + 0.06 * loud))
+    assert delay._remaining_delay(t, x, y + 0.03 * loud) == pytest.approx(delay_s, abs=0.01)
+    assert np.isnan(delay._remaining_delay(t, x, y + 0.06 * loud))
     ramp = 2.0 * t  # its speed is the constant
-    assert np.isnan(pairs._remaining_delay(t, ramp, 3.0 * ramp))
+    assert np.isnan(delay._remaining_delay(t, ramp, 3.0 * ramp))
 
 
 @pytest.mark.parametrize(("held", "found"), [(19, 0), (20, 1)])

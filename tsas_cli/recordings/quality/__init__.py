@@ -24,6 +24,7 @@ from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.quality.checks import (
     clipping,
     clock,
+    delay,
     extremes,
     motion,
     noise,
@@ -74,7 +75,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     ),
     QualityCheck(pairs.unit, of_long="strokes"),
     QualityCheck(pairs.duplicate_channel),
-    QualityCheck(pairs.delay, needs=("x_out_mm", "f_out_N"), given=("on_spring", "increases")),
+    QualityCheck(delay.delay, needs=("x_out_mm", "f_out_N"), given=("on_spring", "increases")),
     QualityCheck(motion.few_reversals, needs=("x_in_mm",), of_long="decimated"),
     QualityCheck(
         motion.no_steady_motion, needs=("x_in_mm",), given=("strokes",), of_long="strokes"
