@@ -161,7 +161,7 @@ ROUGH = {"hum": 0.1, "channel_delay": 2e-3, "run-lag": 1e-4}
 def test_a_fault_explains_all_that_it_does_and_its_amount_is_told(law):
     trial = trial_of(read_wrongly(LAWS[law]) + 2e-3 * JACOBIAN[:, 0])
     left = beside(trial, TOLERATED, RUN)
-    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)[0]
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left)[0]
     assert (best.code, best.run, best.channels) == law[:3]
     assert best.amount == pytest.approx(law[3], rel=0.02)
     edges, first_s, last_s = law[4:] or (0, None, None)
@@ -174,7 +174,7 @@ def test_a_length_of_one_run_is_its_stiffness():
     """Stiffer by a tenth than the model, that yields too much there; or softer in the other one."""
     trial = trial_of(-0.1 * JACOBIAN[:, 1] * (RUN == 1))
     left = beside(trial, TOLERATED, RUN)
-    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)[0]
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left)[0]
     assert (best.code, best.channels) == ("run-length", ())
     assert best.amount == pytest.approx(0.1 if best.run else -0.1)
     assert best.reduction == pytest.approx(left.squares)
@@ -185,7 +185,7 @@ def test_a_stiffness_that_is_not_free_is_told_by_a_difference_and_none_at_a_boun
     names = (NAMES[0], name, NAMES[2], NAMES[3])
     trial = trial_of(-0.1 * JACOBIAN[:, 1] * (RUN == 1), names, (1, 2))
     left = beside(trial, TOLERATED, RUN)
-    best = candidates(BENCH, trial, runs_at(BENCH, trial), left, RUN)
+    best = candidates(BENCH, trial, runs_at(BENCH, trial), left)
     lengths = [(c.run, c.amount) for c in best if c.code == "run-length"][:1]
     assert lengths == ([] if name == NAMES[1] else [(1, pytest.approx(0.1))])
 
