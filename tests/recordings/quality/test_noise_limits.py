@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.even_runs import FINE, N, are, of
-from tsas_cli.recordings.quality.checks import noise
+from tsas_cli.recordings.quality.checks import filtering, noise
 from tsas_cli.recordings.quality.samples import NoiseSpectrum
 
 
@@ -57,15 +57,15 @@ def test_a_line_without_anything_beside_it_is_none(at, found):
 )
 def test_noise_ends_where_it_falls_thirtyfold_after_two_even_bands(bands, top, rounding, found):
     power = np.where(np.arange(1, 101) <= bands, 1.0, top)
-    assert (noise._end_of_noise(spectrum(power), rounding) or 0) == found
+    assert (filtering._end_of_noise(spectrum(power), rounding) or 0) == found
 
 
 def test_a_spectrum_that_is_white_at_the_top_has_no_end():
     power = np.where(np.arange(1, 101) <= 20, 99.0, 1.0)
     power[29:50] = 2.4
-    assert noise._end_of_noise(spectrum(power), 0.4) is None
+    assert filtering._end_of_noise(spectrum(power), 0.4) is None
     power[29:50] = 2.6  # it still falls there
-    assert noise._end_of_noise(spectrum(power), 0.4) == 20.0
+    assert filtering._end_of_noise(spectrum(power), 0.4) == 20.0
 
 
 @pytest.mark.parametrize(
