@@ -10,6 +10,8 @@ from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
 from tsas_cli.diagnosis.visibility import TINY, LinearisedRuns, Part
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.numerics.least_squares import Solution
 
 BLOCKS, EACH = 40, 200
 
@@ -62,6 +64,23 @@ def _convincing(signal, rng):
     return gain(*squares).convincing
 
 
+STILL = HypothesisFit(
+    (),
+    (),
+    Solution(
+        np.zeros(0),
+        np.zeros(0, bool),
+        np.zeros(BLOCKS * EACH),
+        np.zeros((BLOCKS * EACH, 0)),
+        converged=True,
+        message="nothing is free",
+        evaluations=1,
+    ),
+    (BLOCKS * EACH,),
+    on_mesh=True,
+)
+
+
 class Answers:
     """A bench whose residuals with a cause are given."""
 
@@ -76,7 +95,7 @@ class Answers:
 
 def looked_at(with_it):
     whole = part()
-    look = LinearisedRuns(Answers(with_it), None, None, whole.block, np.zeros(BLOCKS * EACH))
+    look = LinearisedRuns(Answers(with_it), STILL, None, whole.block)
     return Part(look, whole.rows, whole.block, whole.basis)
 
 

@@ -50,7 +50,7 @@ def joined_runs(
 ) -> FurtherRuns:
     """Return present and proposed runs in one fit of the nominal parameters.
 
-    `free` are the parameters of effects that are free in the fit, with their initial values;
+    `free` are the parameters of effects that are free beside them, with their values;
     `fixed` has the values of parameters that are not identifiable.
 
     InputError: none of the present runs reaches full slip.
@@ -64,9 +64,7 @@ def joined_runs(
             expected="strokes that stretch the tendon and move the load",
             remedy="plan a larger amplitude_mm",
         )
-    bench = bench_of(solve_fit(problem))
-    named = sorted({name.split(".")[0] for name in free or {}})
-    look = linearised_runs(bench, bench.fit(named, free or {}, on_mesh=True))
+    look = linearised_runs(bench_of(solve_fit(problem)), free or {})
     added = {k: by_id[r.run.id] for k, r in enumerate(problem.runs) if r.run.id in by_id}
     left_out = tuple(s for s in problem.left_out if not any(i in s for i in by_id))
     return FurtherRuns(look, there, added, left_out)

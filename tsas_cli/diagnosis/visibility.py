@@ -9,7 +9,7 @@ by noise.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 
@@ -22,10 +22,12 @@ from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import Effect
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.fit import jacobian
-from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.fit_problem import rig_at, unknown_of
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector
+from tsas_cli.numerics.least_squares import Solution
 from tsas_cli.support.arrays import Floats, Indices
 
 SAME = 1e-3  # share of a signature's squares below which it is imitated; kinks leave a little
@@ -38,14 +40,13 @@ class LinearisedRuns:
     """The runs of a bench, some of which are planned, and the signatures of effects in them.
 
     Linearised at the values of `trial`. `run` and `block` are the numbers of each residual's run
-    and block, (n,), `without` the residuals with no effect added. `signatures` is a cache.
+    and block, (n,). `signatures` is a cache.
     """
 
     bench: Bench
     trial: HypothesisFit
     run: Indices
     block: Indices
-    without: Floats
     signatures: dict[tuple[str, float, tuple[float, ...]], Floats] = field(default_factory=dict)
 
     def part(self, runs: Sequence[int]) -> "Part":
@@ -66,22 +67,37 @@ class LinearisedRuns:
         key = (cause.name, size, tuple(cause.shape.values()))
         if key not in self.signatures:
             at = cause.shape | {cause.name: cause.parameter.neutral + size}
-            change = (self.bench.errors_at(self.trial, at) - self.without) / size
+            change = (self.bench.errors_at(self.trial, at) - self.trial.solution.residual) / size
             finite = bool(np.isfinite(change).all())
             self.signatures[key] = change if finite else np.zeros_like(change)
         return self.signatures[key]
 
 
-def linearised_runs(bench: Bench, trial: HypothesisFit) -> LinearisedRuns:
-    """Return the runs of a bench linearised at a trial on the mesh."""
-    slopes = _slopes(bench, trial)
-    linear = replace(trial, solution=replace(trial.solution, jacobian=slopes))
+def linearised_runs(bench: Bench, effects: Mapping[str, float]) -> LinearisedRuns:
+    """Return the runs of a bench linearised at its initial values, on the mesh of the signatures.
+
+    `effects` are the values of effects' parameters that are free too.
+    """
+    further = [unknown_of(name, QUANTITIES[name].scaled(v)) for name, v in effects.items()]
+    unknowns = (*bench.free, *further)
+    values = np.array([u.initial for u in unknowns])
+    at_bound = np.array([not u.lower < u.initial < u.upper for u in unknowns])
+
+    def residuals(k: int, at: Floats) -> Floats:
+        return bench.coarse[k].residuals(rig_at(bench.rigs[k], k, unknowns, at))
+
+    without = [residuals(k, values) for k in range(len(bench.rigs))]
+    sizes = tuple(map(len, without))
+    residual, slopes = np.concatenate(without), jacobian(unknowns, len(sizes), values, residuals)
+    message = "linearised at the initial values"
+    solution = Solution(
+        values, at_bound, residual, slopes, converged=True, message=message, evaluations=1
+    )
     return LinearisedRuns(
         bench,
-        linear,
-        np.repeat(np.arange(len(trial.sizes)), trial.sizes),
+        HypothesisFit((), unknowns, solution, sizes, on_mesh=True),
+        np.repeat(np.arange(len(sizes)), sizes),
         folds_of(blocks_of(bench.closed, bench.rigs)).block,
-        bench.errors_at(linear, {}),
     )
 
 
@@ -212,16 +228,6 @@ def _left(signatures: list[Floats], imitations: list[Imitation]) -> list[Floats]
             return []
         out.append(left)
     return out
-
-
-def _slopes(bench: Bench, trial: HypothesisFit) -> Floats:
-    """Return the Jacobian of a trial on the mesh of the signatures."""
-    return jacobian(
-        trial.unknowns,
-        len(bench.rigs),
-        trial.solution.values,
-        lambda k, v: bench.coarse[k].residuals(rig_at(bench.rigs[k], k, trial.unknowns, v)),
-    )
 
 
 def _imitations(effect: Effect, own: Callable[[Amplitude], Floats]) -> list[Imitation]:
