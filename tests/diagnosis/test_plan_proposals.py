@@ -33,6 +33,13 @@ def test_the_score_is_the_mean_logarithm_by_which_sizes_fall():
     ]
 
 
+def test_what_was_hidden_is_said_with_the_size_of_the_first_table():
+    """Hidden at eleven times the size found, it counts as never named, but is named from there."""
+    before, after = [seen(PLAY, 0.1, presliding=1.1)], [seen(PLAY, 0.1)]
+    (found,) = p._proposal(CANDIDATES[0], before, after).better
+    assert (found.before, found.after) == (1.1, 0.1)
+
+
 def test_what_falls_by_less_than_a_fifth_is_not_worth_saying():
     found = p._proposal(CANDIDATES[0], [seen(PLAY, 1.2)], [seen(PLAY, 1.01)])
     assert found.better == ()

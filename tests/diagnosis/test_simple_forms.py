@@ -21,7 +21,7 @@ def test_a_constant_has_no_further_form():
 
 def test_an_exponential_approach_is_said_with_its_travel_whether_it_rises_or_decays():
     rises = 2.0 * (1.0 - np.exp(-TRAVEL / 0.25))
-    assert exponential(TRAVEL, rises).startswith(", as 1 − exp(−travel/0.25 mm) to within ")
+    assert exponential(TRAVEL, rises) == ", as 1 − exp(−travel/0.25 mm)"
     assert exponential(TRAVEL, 0.3 - 0.1 * rises).startswith(", as 1 − exp(−travel/0.25 mm)")
 
 
@@ -31,6 +31,6 @@ def test_what_yields_at_once_is_no_exponential():
 
 
 def test_a_power_of_the_speed_is_said_with_its_exponent():
-    assert power(SPEEDS, SPEEDS**-0.2) == ", as |v|^-0.2 to within 0 % of that"
+    assert power(SPEEDS, SPEEDS**-0.2) == ", as |v|^-0.2"
     assert power(SPEEDS, np.array([1.0, 1.5, 1.0])) == ""
     assert power(SPEEDS, np.array([1.0, 0.5, 0.0])) == ""

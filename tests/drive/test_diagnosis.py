@@ -42,7 +42,7 @@ def test_a_delay_is_named_with_its_gain_and_what_is_left(diagnosed):
     assert (found.verdict, found.nominal) == ("named", STIFF_NAME)
     (cause,) = found.named
     assert (cause.effect, cause.kind, cause.rivals) == ("channel_delay", "pure delay", ())
-    assert cause.title == TITLE["channel_delay"]
+    assert cause.title == "Pure delay of the motor"
     assert list(cause.parameters) == ["motor_lag_s", "delay_s"]
     assert cause.parameters["delay_s"].interval_high == 0.7
     percent = 100.0 * (1.0 - math.sqrt(1.95 / 17.0))

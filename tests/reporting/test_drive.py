@@ -40,3 +40,12 @@ def test_the_plots_show_powers_of_ten_and_both_curves(made):
     assert "mathdefault" not in bode
     assert "var(--measured)" in bode
     assert "var(--simulated)" in bode
+
+
+def test_values_come_first_and_what_was_tried_is_folded(made):
+    summary, text = made
+    assert text.index("gain_mm_per_s_rpm") < text.index("What was tried</h3></summary>")
+    assert text.index("What was tried</h3></summary>") < text.index("Structures of G(s)")
+    assert ">x_in against measurement [mm]<" in text
+    assert f"Next: {summary['diagnosis']['next_experiment']}" in text
+    assert "A diamond" not in text

@@ -197,6 +197,29 @@ def test_a_click_or_a_key_on_the_legend_hides_a_curve_and_shows_it_again(made, t
     assert shown() == [True, True]
 
 
+def test_a_legend_hides_a_mean_with_its_bars_and_points(made, tab):
+    one = tab(made("pipeline") + "#diagnosis-maps", DESK)
+    one.evaluate(UNFOLD)
+    plot = one.locator(".plot:has(svg[aria-label^='Mean residual'])").first
+    curve = plot.locator("[id*=axes_] > g [style*='stroke: var(--before)']").first
+    plot.scroll_into_view_if_needed()
+    plot.get_by_role("button", name="nominal model").click()
+    parts = plot.locator("[id*=axes_] > g").locator("[style*='stroke: var(--before)']")
+    assert parts.count() > 2
+    expect(curve).not_to_be_visible()
+    assert not any(parts.nth(k).is_visible() for k in range(parts.count()))
+
+
+def test_curves_without_a_legend_show_their_values_too(made, tab):
+    one = tab(made("tracking"), DESK)
+    plot = one.locator("#tracking-effort .plot").first
+    plot.scroll_into_view_if_needed()
+    plot.locator(".reset").wait_for(state="attached")
+    box = plot.bounding_box()
+    plot.hover(position={"x": box["width"] / 2, "y": box["height"] / 4})
+    expect(one.locator(".tip")).to_contain_text("time")
+
+
 def test_a_part_of_a_loop_is_enlarged_with_ticks_of_its_own_and_back(made, tab):
     one = tab(made("pipeline"), DESK)
     plot, move = plot_of(one)

@@ -160,15 +160,13 @@ def _proposals(
 def _proposal(
     candidate: CandidateRun, before: Sequence[Visibility], after: Sequence[Visibility]
 ) -> FurtherRun:
-    falls = {}
+    falls, improved = {}, []
     for b, a in zip(before, after, strict=True):
         largest = b.cause.largest
         falls[b.cause.name] = math.log(min(b.counted, largest) / min(a.counted, largest))
-    better = sorted(
-        (Better(b.cause, b.counted, a.counted) for b, a in zip(before, after, strict=True)),
-        key=lambda pair: -falls[pair.cause.name],
-    )
-    improved = [p for p in better if p.before > LEAST_FACTOR * p.after]
+        if b.counted > LEAST_FACTOR * a.counted:
+            improved.append(Better(b.cause, b.named, a.named))
+    improved.sort(key=lambda pair: -falls[pair.cause.name])
     return FurtherRun(candidate, sum(falls.values()) / len(falls), tuple(improved), _groups(after))
 
 

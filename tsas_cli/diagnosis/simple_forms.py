@@ -42,4 +42,5 @@ def _clause(form: str, curve: Floats, values: Floats) -> str:
     span, error = float(np.ptp(curve)), float(np.abs(values - curve).max())
     if span == 0.0 or error > CLOSE * span:
         return ""
-    return f", {form} to within {100.0 * error / span:.0f} % of that"
+    percent = f"{100.0 * error / span:.0f}"
+    return f", {form}" if percent == "0" else f", {form} to within {percent} % of that"

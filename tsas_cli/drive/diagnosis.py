@@ -148,10 +148,11 @@ def _cause(
         for other in rivals(search, final, term)
     )
     gained, low, high = _gain_percent(search, fewer, final)
+    kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
     return DriveCause(
         effect=effect,
-        title=TITLES[effect],
-        kind=" and ".join(KIND[term] for term in sorted(own) if term in KIND),
+        title=f"{kind.capitalize()} of the motor" if kind else TITLES[effect],
+        kind=kind,
         rivals=tuple(instead),
         parameters={
             name: Value.model_validate(estimates[name], from_attributes=True)

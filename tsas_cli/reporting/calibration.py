@@ -18,8 +18,8 @@ _PARAMETERS_TITLE = "Parameters"
 _TRANSFER_TITLE = "Tension passed on"
 _TRANSFER = (
     "While the whole tendon slips, the tension at the drive is a ratio times the tension at the "
-    "load plus an intercept. The capstan alone gives two ratios whose product is 1, and no "
-    "intercepts."
+    "load plus an intercept. The capstan alone gives the ratios e^(μθ) and e^(−μθ), and no "
+    "intercepts; wrap is μθ."
 )
 _INTERCEPTS = (
     "Intercepts of opposite sign in the two directions are friction that does not depend on the "

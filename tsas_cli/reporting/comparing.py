@@ -26,7 +26,7 @@ from tsas_cli.reporting.numbers import plain, with_spread
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 
 _MOST = 8  # strips of a picture
-_SAID = 3  # findings that stand in the summary
+_SAID = 5  # findings that stand in the summary
 _VALUES = (
     "B − A has a 95 % interval where both values were fitted, to different recordings: it goes as "
     "far as the two intervals in quadrature, each side on its own. Where it does not hold 0, the "

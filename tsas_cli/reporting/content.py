@@ -37,11 +37,13 @@ def table_of(
     caption: str, header: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
 ) -> Table:
     """Return a table without its empty columns; numbers are aligned to the right."""
+    if "_" not in caption.partition(" ")[0]:
+        caption = caption[:1].upper() + caption[1:]
     cells = tuple(rows)
     kept = [k for k in range(len(header)) if any(row[k] not in {"", ABSENT} for row in cells)]
     shown = tuple(tuple(row[k] for k in kept) for row in cells)
     return Table(
-        caption[:1].upper() + caption[1:],
+        caption,
         tuple(header[k] for k in kept),
         shown,
         frozenset(k for k in range(1, len(kept)) if all(_NUMBER.match(row[k]) for row in shown)),
@@ -89,7 +91,8 @@ class Fact:
 class Glance:
     """The first screen: the kind of answer, the answer in a few words, the numbers behind it.
 
-    `numbers` says what the facts are; `pictures` stand right under the answer.
+    `next_experiment` and `pictures` stand right under the answer; `numbers` says what the facts
+    are.
     """
 
     kind: str
@@ -97,6 +100,7 @@ class Glance:
     numbers: str = ""
     facts: tuple[Fact, ...] = ()
     pictures: tuple[Picture, ...] = ()
+    next_experiment: str = ""
 
 
 @dataclass(frozen=True)

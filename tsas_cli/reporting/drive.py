@@ -22,13 +22,12 @@ def section(inputs: Inputs) -> Section | None:
     drive = inputs.get(DriveFile)
     if drive is None:
         return None
-    printed = tuple(table_of(*table) for table in tables(drive, "The identified drive"))
-    evidence = (drive.diagnosis.evidence.sentence, f"Next: {drive.diagnosis.next_experiment}")
+    structures, identified, *more = (table_of(*it) for it in tables(drive, "The identified drive"))
+    evidence, tried = (drive.diagnosis.evidence.sentence,), (structures, *more)
     parts = (
-        Section("drive-numbers", "What was found, in numbers", tables=printed),
         Section("drive-response", "Frequency response and poles", pictures=_response(drive)),
         Section("drive-left", "What is left", pictures=tuple(_residuals(inputs, drive))),
-        Section("drive-next", "Evidence and next experiment", evidence),
+        Section("drive-tried", "What was tried", evidence, tables=tried, folded=True),
     )
     return Section(
         "drive",
@@ -36,6 +35,7 @@ def section(inputs: Inputs) -> Section | None:
         tuple(_intro(drive)),
         points=drive.cannot_tell,
         equations=(drive.structure.equation, drive.inverse),
+        tables=(identified,),
         parts=parts,
     )
 
@@ -122,12 +122,13 @@ def _response(drive: DriveFile) -> tuple[Picture, ...]:
         axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.8)
         axes.set(xlabel="real part [1/s]", ylabel="imaginary part [Hz]")
 
+    diamond = " A diamond is 1/delay." if any(p.kind != "pole" for p in drive.poles) else ""
     poles = picture(
         draw_poles,
         key="drive-poles",
         alt=f"Poles of the fitted transfer function in the complex plane: one at 0{places}.",
         caption="Poles of G(s), the integrator's at 0; between the dashed lines the input shows "
-        "them. A diamond is 1/delay.",
+        f"them.{diamond}",
         height_in=4.0,
     )
     return bode, poles

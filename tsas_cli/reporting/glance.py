@@ -21,7 +21,7 @@ from tsas_cli.support.wording import listed
 _REDUCTION = "normalised residual"
 _NO_CAUSE = {
     "sufficient": "The nominal model explains these recordings",
-    "described": "A law of unnamed origin describes what the model misses",
+    "described": "A law of unnamed origin predicts better than the nominal model",
     "stand_in": "No known effect explains what the model misses",
     "unexplained": "No known effect explains what the model misses",
     "undecided": "These recordings lead to no verdict",
@@ -69,7 +69,8 @@ def _of_diagnosis(
     kind = VERDICTS[diagnosis.verdict]
     if len(named) == 1 and shown and shown[0].label == _REDUCTION:
         kind += f": {_REDUCTION} on held-out data {shown[0].value}"
-    return Glance(kind, verdict, numbers if shown else "", shown)
+    numbers = numbers if shown else ""
+    return Glance(kind, verdict, numbers, shown, next_experiment=diagnosis.next_experiment)
 
 
 def _errors(channels: Mapping[str, HeldOut], *, extended: bool) -> Iterator[Fact]:
@@ -88,7 +89,7 @@ def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
     for cause in named:
         low, high = cause.gain_interval_percent or (None, None)
         gain, interval = with_interval(cause.gain_percent, low, high)
-        by = f" by {within(title_of(cause.effect))}" if len(named) > 1 else ""
+        by = f" by {within(cause.title or title_of(cause.effect))}" if len(named) > 1 else ""
         if interval == ABSENT:
             yield Fact(f"{_REDUCTION}{by}", f"{plain(cause.gain_percent, 3)} % lower")
         else:

@@ -82,7 +82,7 @@ def _sentences(inputs: Inputs) -> Iterator[str]:
     severities = [finding.severity for finding in inputs.check.findings]
     counts = {name: severities.count(name) for name in ("error", "warning", "note")}
     counted = ", ".join(count_of(n, name) for name, n in counts.items() if n)
-    yield f"The checks report {counted}." if counted else "The checks found nothing."
+    yield f"The checks {f'report {counted}: see Recordings' if counted else 'found nothing'}."
     of_data = [stage for stage, _ in inputs.given if isinstance(stage, OfDataset)]
     yield from dict.fromkeys(sentence for stage in of_data for sentence in stage.accepted())
     calibration = inputs.get(CalibrationFile)

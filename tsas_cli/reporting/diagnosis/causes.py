@@ -5,7 +5,7 @@ A stand-in says what it does not prove.
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -73,27 +73,20 @@ def _gain(cause: NamedCause) -> Iterator[str]:
 def law_parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
     """Yield a part for each law, and its parameters, folded."""
     for law in diagnosis.laws:
-        rivals = f" Just as well do: {listed(law.rivals)}." if law.rivals else ""
+        said = [law.sentence]
+        if law is diagnosis.laws[0]:
+            said.append("It describes what no proven cause explains; it is no cause.")
+        if law.rivals:
+            said.append(f"Just as well do: {listed(law.rivals)}.")
+        where = "; ".join(curve.where for curve in _curves(law))
+        caption = f"{where[:1].upper()}{where[1:]}. Bands: 95 % intervals, cut at the frame."
+        drawn = picture(partial(_draw_law, law=law), key=law.law, alt=law.sentence, caption=caption)
         yield Section(
             anchor("diagnosis", law.law),
             law.title,
-            (law.sentence, f"It describes what no proven cause explains; it is no cause.{rivals}"),
+            tuple(said),
             equations=(law.equation,),
-            pictures=(
-                picture(
-                    partial(_draw_law, law=law),
-                    key=law.law,
-                    alt=law.sentence,
-                    caption="After a reversal, at the mean tension; and along the stroke. "
-                    "Bands: 95 % intervals, cut at the frame.",
-                ),
-            ),
-            closing=(
-                (
-                    f"On held-out data the RMS of {law.channel} falls from "
-                    f"{plain(law.rmse_before, 3)} to {plain(law.rmse_after, 3)} {law.unit}."
-                ),
-            ),
+            pictures=(drawn,) if where else (),
         )
         yield Section(
             anchor("parameters", law.law),
@@ -103,19 +96,37 @@ def law_parts(diagnosis: DiagnosisFile, inputs: Inputs) -> Iterator[Section]:
         )
 
 
-def _draw_law(figure: Any, law: DescribedLaw) -> None:
-    """Draw what a law does after a reversal and along the stroke, without what does nothing."""
+class _Curve(NamedTuple):
+    """A curve of a law: where it holds, its axis and marker, its points, shape (n,)."""
+
+    where: str
+    label: str
+    marker: str
+    x: Numbers
+    y: Numbers
+    margin: Numbers
+
+
+def _curves(law: DescribedLaw) -> list[_Curve]:
+    """Return what a law does after a reversal and along the stroke, without what does nothing."""
     reversal = law.travel_mm, law.after_reversal, law.after_reversal_margin
     stroke = law.place_mm, law.along_stroke, law.along_stroke_margin
-    curves = [("travel since reversal [mm]", "", reversal), ("displacement [mm]", "o", stroke)]
-    spans = [float(np.ptp(curve[1])) if curve[1] else 0.0 for _, _, curve in curves]
-    shown = [c for c, span in zip(curves, spans, strict=True) if span > NOTHING * max(spans)]
-    for axes in figure.subplots(1, 2):
-        axes.set_visible(bool(shown))
-        if shown:
-            label, marker, curve = shown.pop(0)
-            axes.set(xlabel=label, ylabel=law.what)
-            _with_band(axes, *curve, marker)
+    after, along = "after a reversal, at the mean tension", "along the stroke"
+    both = (
+        _Curve(after, "travel since reversal [mm]", "", *reversal),
+        _Curve(along, "displacement [mm]", "o", *stroke),
+    )
+    spans = [float(np.ptp(curve.y)) if curve.y else 0.0 for curve in both]
+    return [c for c, span in zip(both, spans, strict=True) if span > NOTHING * max(spans)]
+
+
+def _draw_law(figure: Any, law: DescribedLaw) -> None:
+    """Draw the curves of a law beside each other; one alone takes half the width."""
+    for axes, curve in zip(figure.subplots(1, 2), [*_curves(law), None, None], strict=False):
+        axes.set_visible(curve is not None)
+        if curve is not None:
+            axes.set(xlabel=curve.label, ylabel=law.what)
+            _with_band(axes, curve.x, curve.y, curve.margin, curve.marker)
 
 
 def _with_band(axes: Any, x: Numbers, y: Numbers, margin: Numbers, marker: str) -> None:

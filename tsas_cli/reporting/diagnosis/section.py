@@ -20,7 +20,7 @@ _ATTAINABLE = (
     "Attainable is what a flexible regression on the recorded signals leaves, whatever the cause; "
     "a dash where that is no less."
 )
-_NO_LESS = "A flexible regression on the recorded signals leaves no less: no more is attainable."
+_NO_LESS = "A flexible regression on the recorded signals leaves no less."
 _LEAD = 2  # sentences of a verdict above its list; one more is a paragraph with them
 _TRIED = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals
@@ -64,8 +64,6 @@ def section(inputs: Inputs) -> Section:
 
 def closing(diagnosis: DiagnosisFile) -> Iterator[Section]:
     """Yield the parts that close the diagnosis."""
-    if diagnosis.next_experiment:
-        yield Section("diagnosis-next", "Next experiment", (diagnosis.next_experiment,))
     if diagnosis.cannot_tell:
         yield Section("diagnosis-unknown", "Cannot tell", points=diagnosis.cannot_tell)
     if left := tuple(_left(diagnosis)):

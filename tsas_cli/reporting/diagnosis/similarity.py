@@ -1,4 +1,4 @@
-"""Which effects these inputs distinguish, before any is fitted."""
+"""Which effects look alike with these inputs, before any is fitted."""
 
 from collections.abc import Iterator
 
@@ -15,8 +15,8 @@ _ALIKE = 0.95  # less than a third of one is then left that the other cannot imi
 _VISIBLE = 5.0  # standard deviations of noise
 _WHAT = (
     "What an effect would do to the channels, less what the nominal parameters can do, is its "
-    f"signature. Effects whose signatures have a similarity of {_ALIKE} or more, of at most 1, are "
-    "indistinguishable here:"
+    f"signature. In each group any two have a similarity of {_ALIKE} or more, of at most 1, at "
+    "small sizes and for some values of their parameters:"
 )
 
 
@@ -30,12 +30,12 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     hidden = listed([f"`{name}`" for name in names[~visible]])
     groups = tuple(_alike(names[visible], similarity[np.ix_(visible, visible)])) or ("none",)
     shown = (f"These inputs hardly show {hidden} at a size that is plausible.",) if hidden else ()
-    title = "Which effects these inputs distinguish"
+    title = "Which effects look alike with these inputs"
     return Section("diagnosis-similarity", title, (_WHAT,), points=groups, closing=shown)
 
 
 def _alike(names: npt.NDArray[np.object_], similarity: Floats) -> Iterator[str]:
-    """Yield each group in which all are indistinguishable, with its similarity."""
+    """Yield each group in which all look alike, with its similarity."""
     from scipy.cluster.hierarchy import fcluster, linkage
 
     if names.size < 2:

@@ -12,7 +12,9 @@ const make = (name, attributes) => {
   return it;
 };
 const pair = (text) => text.split(" ").map(Number);
-const look = ({style}) => [style.stroke, style.strokeDasharray, style.fill].join();
+// A curve, its bars and its points look alike: points have a fill too.
+const look = ({style: {stroke, strokeDasharray, fill}}) =>
+  stroke && stroke !== "none" ? [stroke, strokeDasharray].join() : `fill ${fill}`;
 const coordinates = (path) => path.getAttribute("d").match(/-?\d+(\.\d+)?/g).map(Number);
 const split = (label) => /^(.*) \[(.*)\]$/.exec(label)?.slice(1) ?? [label, ""];
 
@@ -140,7 +142,7 @@ class Plot {
     key.setAttribute("aria-pressed", shown);
     for (const it of entry) it.style.opacity = shown ? "" : 0.35;
     for (const part of this.axes.flatMap(({parts}) => parts))
-      for (const it of part.querySelectorAll("[clip-path]"))
+      for (const it of part.querySelectorAll("[clip-path], [clip-path] use"))
         if (look(it) === which) it.style.display = shown ? "" : "none";
   }
   at(event) {
@@ -163,7 +165,8 @@ class Plot {
   over(place) {
     this.marks.replaceChildren();
     tip.hidden = true;
-    const visible = (one) => one.curves.filter((curve) => curve.look in this.names && !this.hidden.has(curve.look));
+    const bare = !Object.keys(this.names).length; // without a legend every curve counts
+    const visible = (one) => one.curves.filter((curve) => (bare || curve.look in this.names) && !this.hidden.has(curve.look));
     const found = place ? visible(place.axes).map((curve) => this.nearest(place, curve)) : [];
     const best = found.reduce((a, b) => (b.far < a.far ? b : a), {far: NEAR});
     if (!best.curve) return;

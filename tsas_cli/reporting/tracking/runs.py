@@ -15,7 +15,6 @@ from tsas_cli.reporting.drawing import bound, legend, line, picture, stacked
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.names import X_IN
 from tsas_cli.reporting.numbers import plain, spanned
-from tsas_cli.reporting.simulation import rms
 from tsas_cli.support.arrays import Floats
 
 _OUTSIDE = 0.02
@@ -143,10 +142,7 @@ def _error(condition: RunsUnderCondition, key: str) -> Picture:
     band = _OUTSIDE * float(np.ptp(condition.runs[0].columns[WANTED]))
     return _picture(
         condition,
-        [
-            TimeCurve(f"{run.name}, RMSE {plain(rms(run.error), 3)} N", run.name, run.error)
-            for run in condition.runs
-        ],
+        [TimeCurve(run.name, run.name, run.error) for run in condition.runs],
         partial(draw_panels, label="error [N]", band=band),
         key=key,
         what=("Tracking error", "newton"),

@@ -34,10 +34,10 @@ _ADAPTED = (
 )
 _PORTRAITS = (
     "The rate of the error e = x_inv − x_in of the drive over the error, both by the filter of the "
-    "sliding modes ({:g} Hz). A turn of the wanted force throws a controller off, over a dead "
-    "band; what it does until it is back at the cross is the loop. Each panel has scales of its "
-    "own."
+    "sliding modes ({:g} Hz). At each reversal of the wanted force the drive crosses a dead band; "
+    "the loop is how the error returns to zero, the cross. Each panel has scales of its own."
 )
+_EXTREMES = {"lowest [N]", "highest [N]"}
 _SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
 
 
@@ -74,6 +74,7 @@ def section(inputs: Inputs) -> Section | None:
         "Phase portraits",
         (_PORTRAITS.format(tracking.settings.loop.filter_Hz),),
         pictures=tuple(_picture(condition, tracking.settings) for condition in conditions),
+        folded=True,
     )
     adapted = adaptation_part(conditions, tracking.settings.controllers.adaptive)
     return Section(
@@ -82,7 +83,7 @@ def section(inputs: Inputs) -> Section | None:
         tuple(_intro(tracking, conditions)),
         points=tracking.notes,
         tables=(_scores(tracking),),
-        parts=tuple(filter(None, (force, error, portrait, adapted, effort))),
+        parts=tuple(filter(None, (force, error, effort, portrait, adapted))),
     )
 
 
@@ -130,12 +131,18 @@ def _name(model: ModelFile) -> str:
 
 
 def _scores(tracking: TrackingFile) -> Table:
-    """Return the scores, with their spread where there is more than one seed."""
+    """Return the scores, with their spread where there is more than one seed.
+
+    The plots show the lowest and highest errors, without which the table is no wider than the page.
+    """
     header, rows = tracking.scores(with_spread)
     for cells, result in zip(rows, tracking.results, strict=True):
         at_limit = result.scores.at_limit_percent
         cells.append(with_spread(at_limit) if at_limit.mean else ABSENT)
-    return table_of(f"Scores{over_seeds(*tracking.seeds)}", [*header, "at its limit [%]"], rows)
+    header.append("at its limit [%]")
+    kept = [k for k, name in enumerate(header) if name not in _EXTREMES]
+    shown = [[row[k] for k in kept] for row in rows]
+    return table_of(f"Scores{over_seeds(*tracking.seeds)}", [header[k] for k in kept], shown)
 
 
 def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:
@@ -214,6 +221,7 @@ def adaptation_part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -
         (_ADAPTED,),
         tables=(table,),
         pictures=tuple(_estimates_picture(condition, run, law) for condition, run in runs),
+        folded=True,
     )
 
 
