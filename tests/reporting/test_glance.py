@@ -142,7 +142,7 @@ def test_a_law_of_unnamed_origin_shows_its_gain(dataset, tmp_path):
     with by_hand.edited(folder / "diagnosis.json") as content:
         content["verdict"] = "described"
     it = of(folder)
-    assert it.verdict == "A law of unnamed origin predicts better than the nominal model"
+    assert it.verdict == "A law of unnamed origin predicts better"
     assert it.numbers.endswith("nominal → extended model")
     assert facts(it)["tension at the drive"][0] == "0.620"
     text = by_hand.page_from(folder)

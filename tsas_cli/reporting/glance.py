@@ -21,7 +21,7 @@ from tsas_cli.support.wording import listed
 _REDUCTION = "normalised residual"
 _NO_CAUSE = {
     "sufficient": "The nominal model explains these recordings",
-    "described": "A law of unnamed origin predicts better than the nominal model",
+    "described": "A law of unnamed origin predicts better",
     "stand_in": "No known effect explains what the model misses",
     "unexplained": "No known effect explains what the model misses",
     "undecided": "These recordings lead to no verdict",

@@ -2,7 +2,7 @@
 
 What one sees: a residual of f_in that repeats with the displacement of the drive: with its place,
 and with the travel since its reversals; f_out and x_out have none of it.
-Equation: f_in = T + (1 + speed(ln|v|) + place(x))·(Σ (friction_k + share_k·T)·s_k +
+Equation: f_in = T + max(0, 1 + speed(ln|v|) + place(x))·(Σ (friction_k + share_k·T)·s_k +
 Σ (gap_friction_k + gap_share_k·T)·g_k) + curve(x), T the tension of the tendon, s_k the stop
 operator of width travel·4^(1−k) on the displacement of the motor where its angle was recorded, else
 of the drive, g_k that of width travel·2^(1−k) whose spring is loose over half of it, v the speed of
@@ -140,7 +140,7 @@ DRIVE_LAW = Effect(
     title="Force at the drive, of unnamed origin",
     acts_on="drive",
     closed_form=True,
-    equation="f_in = T + (1 + speed(ln|v|) + place(x))·(Σ (friction_k + share_k·T)·s_k + "
+    equation="f_in = T + max(0, 1 + speed(ln|v|) + place(x))·(Σ (friction_k + share_k·T)·s_k + "
     "Σ (gap_friction_k + gap_share_k·T)·g_k) + curve(x)",
     doc=__doc__,
     parameters=(

@@ -2,9 +2,9 @@
 
 What one sees: f_in over f_out, a ratio, differs with the speed of the drive, from place to place,
 or with the travel since its reversals, at any tension.
-Equation: μ → μ·(1 + Σ start_k·exp(−τ/w_k) + curve(x) + speed(ln|v|)), τ the travel of the tendon's
-end at the drive since its last reversal, w_k = travel·4^(1−k), x its displacement, v its speed; not
-below 0. μ is the friction far from a reversal at the low end and at low speed, where both curves
+Equation: μ → μ·max(0, 1 + Σ start_k·exp(−τ/w_k) + curve(x) + speed(ln|v|)), τ the travel of the
+tendon's end at the drive since its last reversal, w_k = travel·4^(1−k), x its displacement, v its
+speed. μ is the friction far from a reversal at the low end and at low speed, where both curves
 are 0. The paper's μ is constant.
 Mistaken for: a cause. A law describes what no proven cause explains: breakaway, ageing, rolling
 strands, coatings, other laws of speed, and whatever else the friction depends on.
@@ -81,7 +81,7 @@ TENDON_LAW = Effect(
     title="Friction in the sheath, of unnamed origin",
     acts_on="tendon",
     closed_form=False,
-    equation="μ → μ·(1 + Σ start_k·exp(−τ/w_k) + curve(x) + speed(ln|v|))",
+    equation="μ → μ·max(0, 1 + Σ start_k·exp(−τ/w_k) + curve(x) + speed(ln|v|))",
     doc=__doc__,
     parameters=(
         Parameter("travel_mm", "mm", 1.0, 1.0, 1e-6, 1e4, given=True),

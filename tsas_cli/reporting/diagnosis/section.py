@@ -26,7 +26,7 @@ _TRIED = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals
 _HYPOTHESES = (
     "Each of these was fitted together with all parameters of the nominal model. Reduction: by how "
-    "much the normalised residual on held-out data falls; what is named was fitted again for it. "
+    "much the normalised residual on held-out data falls; figures above are of a further fit. "
     "Test statistic: how many standard deviations the reduction is above what chance gives."
 )
 _NOTHING_TRIED = "Screening left no effect that could explain enough of the error to be fitted."
