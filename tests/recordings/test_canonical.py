@@ -51,6 +51,11 @@ def test_the_files_own_unit_counts_where_the_map_says_none():
         ask(force={"source": "f"})
 
 
+def test_all_columns_without_a_unit_are_named_at_once():
+    with pytest.raises(InputError, match=r"columns.x_in_mm, f_in_N: .* no unit for x, f; set it"):
+        ask(place={"source": "x"}, force={"source": "f"})
+
+
 def test_a_column_that_is_called_like_a_channel_has_its_unit():
     columns = ask(
         {"time_s": [0, 1, 2], "x_out_mm": [1, 2, 3]},

@@ -54,6 +54,12 @@ def canonical_columns(
         raise InputError(count_of(rows, "row"), where=path, expected="at least two samples")
     before = before or PrecedingRows()
     columns, offsets = dict[str, Floats](), dict(before.offsets)
+    if unitless := {n: c.source for n, c in mapping.columns.items() if not _unit(c, table)}:
+        raise InputError(
+            f"the file states no unit for {', '.join(map(str, unitless.values()))}",
+            where=f"{map_path}, columns.{', '.join(unitless)}",
+            remedy='set it in the map: unit = "…"',
+        )
     for name, column in mapping.columns.items():
         where = f"{map_path}, columns.{name}"
         with np.errstate(over="ignore"):  # infinite values are refused below, with their row
@@ -85,18 +91,10 @@ def _converted(
     """Return a column in its canonical unit; `first` is the number of its first row, from 0."""
     values: Floats
     if column.rate_Hz is not None:
-        values, unit = np.arange(first, first + rows) / column.rate_Hz, "s"
+        values = np.arange(first, first + rows) / column.rate_Hz
     else:
         values = table.columns[column.source]
-        unit = column.unit or table.units.get(column.source, "")
-        if not unit and column.source in BY_NAME:  # which ends with its unit
-            unit = BY_NAME[str(column.source)].unit
-    if not unit:
-        raise InputError(
-            f"the file states no unit for {column.source}",
-            where=where,
-            remedy='set it in the map: unit = "…"',
-        )
+    unit = _unit(column, table)
     if column.source in table.typed and unit != table.units[column.source]:
         raise InputError(
             f"the map sets unit {unit} for {column.source}, whose data type implies its unit",
@@ -112,6 +110,15 @@ def _converted(
         where=where,
     )
     return values * (column.sign * slope) + column.sign * intercept
+
+
+def _unit(column: ColumnMap, table: ColumnTable) -> str:
+    """Return the unit of a column in its file, empty text without one."""
+    if column.rate_Hz is not None:
+        return "s"
+    source = column.source
+    named = BY_NAME[str(source)].unit if source in BY_NAME else ""  # the name ends with its unit
+    return column.unit or table.units.get(source, "") or named
 
 
 def _differs_from_row_before(columns: Mapping[str, Floats], last: Mapping[str, float]) -> Mask:

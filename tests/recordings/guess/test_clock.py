@@ -75,3 +75,11 @@ def test_a_tension_by_its_name_that_rises_evenly_is_a_clock(path, name):
     write_run(path, time_s=name, x_in_mm="x_in_mm", f_in_N="f_in_N")
     assert sources(path)["time_s"] == name
     assert "f_out_N" not in sources(path)
+
+
+def test_a_clock_in_an_unknown_form_is_named_in_the_question(path):
+    some = zip(run()["x_in_mm"], run()["f_in_N"], strict=True)
+    rows = [f"3/3/2026 2:05:06.{i:03} PM,{x},{f}" for i, (x, f) in enumerate(some)]
+    path.write_text("\n".join(["Time,x_in [mm],f_in [N]", *rows]))
+    question = propose([path]).questions["columns.time_s.rate_Hz"]
+    assert "Time cannot be used as the clock: column Time holds '3/3/2026" in question

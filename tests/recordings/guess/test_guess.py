@@ -127,6 +127,7 @@ def test_a_force_that_one_cell_spoils_is_asked_for_by_its_name(path):
     question = propose([path]).questions["columns.f_in_N.source"]
     assert question.startswith("is it force in [N], which cannot be used: ")
     assert "ERR" in question
+    assert "Then correct the file. Or is it in another file" in question
     assert "note" not in question
 
 

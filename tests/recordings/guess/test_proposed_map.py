@@ -138,3 +138,28 @@ def test_thousands_are_asked_about_and_no_column_is_left_out(path):
     assert "are thousands separated in it?" in proposal.questions["read.decimal"]
     assert "f_in_N" in sources(path)
     assert not proposal.looked_at.left_out
+
+
+def test_a_table_above_the_recording_is_skipped(path):
+    write_csv(path, [*run().items()])
+    path.write_text('Sample,A 1\nRate,10 mm/min\n"",Most [N]\n1,52.1\n\n' + path.read_text())
+    assert propose([path]).read["skip_lines"][0] == 4
+    assert set(sources(path)) == set(CHANNELS)
+
+
+def test_where_a_displacement_may_be_of_the_load_the_motor_may_be_the_drive(path):
+    r = run()
+    columns = [("t_s", r["time_s"]), ("motor_deg", r["x_in_mm"]), ("slide_mm", r["x_out_mm"])]
+    write_csv(path, [*columns, ("f_in_N", r["f_in_N"]), ("f_out_N", r["f_out_N"])])
+    proposal = propose([path])
+    question = proposal.questions["columns.x_in_mm.source"]
+    assert 'columns.x_out_mm; then x_in_mm may be "motor_deg", with pulley_radius_mm' in question
+    assert "No column looks like" not in map_text(proposal)
+
+
+def test_the_name_is_that_of_the_folder_with_all_files(tmp_path):
+    files = [tmp_path / "bench" / run_id / "a.csv" for run_id in "12"]
+    for path in files:
+        path.parent.mkdir(parents=True)
+        write_csv(path, [*run().items()])
+    assert (propose(files).name, propose(files[:1]).name) == ("bench", "1")

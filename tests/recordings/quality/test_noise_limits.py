@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.recordings.quality.even_runs import FINE, N, are, of
-from tsas_cli.recordings.quality.checks import filtering, noise
+from tsas_cli.recordings.quality.checks import bursts, filtering, noise
 from tsas_cli.recordings.quality.samples import NoiseSpectrum
 
 
@@ -76,5 +76,5 @@ def test_noise_bursts_by_four_times_in_two_blocks_and_few_of_all(times, blocks, 
     size = np.ones(N)
     size[160 : 160 + 16 * blocks + 3] = times
     loud = (-1.0) ** np.arange(N) * size
-    told = of(noise.bursts, sizes={"f_in_N": replace(FINE, noise=1.0)}, f_in_N=loud)
+    told = of(bursts.bursts, sizes={"f_in_N": replace(FINE, noise=1.0)}, f_in_N=loud)
     are(told, found, "rises to 4.1 times its level in 1 burst, the first at 1.6 s")

@@ -155,6 +155,13 @@ def test_bursts_are_counted():
     assert remark.first_s == pytest.approx(2.5, abs=0.1)
 
 
+def test_samples_on_lines_between_recorded_ones_have_no_bursts():
+    seeds = (columns(Bench(rate_Hz=200.0, step_N=0.01, seed=seed))["f_out_N"] for seed in (1, 6))
+    for coarse in seeds:
+        on_lines = np.interp(TIME, TIME[::5], coarse[::5])
+        assert "bursts" not in [code for code, _ in remarks(GOOD | {"f_out_N": on_lines})]
+
+
 def test_many_outliers():
     rng = np.random.default_rng(3)
     off = (rng.random(N) < 0.03) * rng.choice((-1.5, 1.5), N)

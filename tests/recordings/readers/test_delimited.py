@@ -94,7 +94,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("t,f\n10:00:00,1\nsoon,2\n", ("row 3", "column t holds 'soon'")),
         ("t,f\n" + "0,1\n" * 20_000 + "1,fast\n", ("row 20002", "column f", "'fast'")),
         ("t,f\n0,1\n1,2,3\n", ("row 3", "3 fields", "expected 2")),
-        ("t,f\n0,1\n1\n", ("row 3", "1 field;", "expected 2")),
+        ("t,f\n0,1\n1\n", ("row 3", "1 field;", "expected 2", "delete what is no part")),
         ("t;f\n0.5;1.5\n0.75;2.5\n1.25;2,5\n", ("row 4", "column f", "'2,5'")),
         ("t,f,g\n0,1\n1,2\n", ("row 2", "3 column names and 2 fields")),
         ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),
@@ -142,6 +142,11 @@ def test_an_encoding_that_reads_no_text_is_told(ask, bytes_in, encoding, message
         ask("t;f\n0;1\n1;2\n", "t", bytes_in=bytes_in, encoding=encoding)
 
 
+def test_text_of_an_encoding_that_is_not_recognised_is_to_be_saved_as_utf_8(ask):
+    with pytest.raises(InputError, match="in the encoding cp1252; save it as UTF-8"):
+        ask("t;最大\n0;1\n1;2\n", "t", bytes_in="shift_jis", encoding="cp1252")
+
+
 def test_what_is_no_text_table_is_not_said_to_be_one(tmp_path):
     pq.write_table(pa.table({"t": [0.0, 1.0]}), tmp_path / "a.csv")
     for encoding in ("utf-8", "cp1252"):
@@ -159,6 +164,7 @@ def test_what_is_no_text_table_is_not_said_to_be_one(tmp_path):
         ),
         (["2026-03-29T01:59:59+01:00", "2026-03-29T03:00:00+02:00", "NaN"], [0, 1, np.nan]),
         (["2026/03/03 10:00:00 UTC", "", "2026/03/03 10:00:02 UTC"], [0, np.nan, 2]),
+        (["03.03.2026 23:59:59,5", "04.03.2026 00:00:00", "04.03.2026 00:00:01"], [0, 0.5, 1.5]),
         (["10:00:00", "10:00:00.125", "10:00:01"], [36000, 36000.125, 36001]),
         (["23:59:59.5", "00:00:00", "0:00:01"], [86399.5, 86400, 86401]),
     ],

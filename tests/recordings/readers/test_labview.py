@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from nptdms import ChannelObject, RootObject, TdmsWriter
 
+from tests.recordings.guess.rig_files import CHANNELS, run, sources
+from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.readers import names, read
 from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
@@ -88,3 +90,12 @@ def test_tdms_with_clocks_of_its_channels(tmp_path):
     np.testing.assert_allclose(table.columns["time"], 0.125 * np.arange(1, 6))
     np.testing.assert_allclose(table.columns["a/f"], np.arange(1, 6))
     np.testing.assert_allclose(table.columns["b/x"], np.arange(5) / 2)
+
+
+def test_the_clock_of_lvm_is_no_displacement(tmp_path):
+    head = HEAD.format(point=".", x="One") + "Channels\t4\nY_Unit_Label\tmm\tmm\tN\tN\n"
+    names = "\t".join(["X_Value", *CHANNELS[1:]])
+    rows = ("\t".join(map(str, row)) for row in zip(*run().values(), strict=True))
+    (tmp_path / "a.lvm").write_text("\n".join([f"{head}***End_of_Header***\n{names}", *rows]))
+    assert sources(tmp_path / "a.lvm")["time_s"] == "X_Value"
+    assert propose([tmp_path / "a.lvm"]).doubt == ""

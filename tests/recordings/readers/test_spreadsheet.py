@@ -79,3 +79,7 @@ def test_dates_and_times_of_day_become_seconds(write, style):
 
 def test_a_book_without_numbers_is_told(write):
     assert "no sheet holds numbers" in refusal(names, write(Words=[["a", "b"]]), ReadOptions())
+
+
+def test_a_sheet_whose_numbers_are_text_is_found(write):
+    assert tables(write(Notes=NOTES, Log=[LOG[0], ["0,1", "1.5e1"]])) == ["Log"]

@@ -30,8 +30,9 @@ def channels(columns: Sequence[FileColumn], unusable: Mapping[str, str]) -> list
     ends = assign(displacements, tensions)
     signed = signs(ends.assigned)
     found = {n: _channel(n, c, ends, signed.get(n, (1, ""))) for n, c in ends.assigned.items()}
-    found |= _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
-    found |= _missing(found, free, others.get("motor_angle_rad", []), ends)
+    motor = others.get("motor_angle_rad", [])
+    found |= _open_channels(ends, motor) | {n: _one(n, c) for n, c in others.items()}
+    found |= _missing(found, free, motor, ends)
     found |= _unrecorded(found, [c for c in moving if c.words.is_reference], unusable)
     return [found[name] for name in NAMES if name in found]
 
@@ -101,8 +102,11 @@ def _motion(column: FileColumn, ends: Assignment) -> list[str]:
     return evidence
 
 
-def _open_channels(ends: Assignment) -> dict[str, Proposed]:
-    """Return the channels whose column is open; for a single column, one of the two ends."""
+def _open_channels(ends: Assignment, motor: Sequence[FileColumn]) -> dict[str, Proposed]:
+    """Return the channels whose column is open; for a single column, one of the two ends.
+
+    Where a displacement may be that of the load, the motor's angle may be x_in.
+    """
     found: dict[str, Proposed] = {}
     for name, candidates in ends.open.items():
         other = {"x_out_mm": "x_in_mm", "f_out_N": "f_in_N"}.get(name)
@@ -113,6 +117,9 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
         if len(candidates) == 1:
             at_load = name.replace("_in_", "_out_")
             question = f"is {shown} at the drive? If at the load, name this table columns.{at_load}"
+            if name == "x_in_mm" and motor:
+                angles = " or ".join(c.shown for c in motor)
+                question += f"; then x_in_mm may be {angles}, with pulley_radius_mm beside it"
         found[name] = _open(name, (ends.reason, *_orders(candidates, ends)), question, candidates)
     return found
 
@@ -184,7 +191,7 @@ def _correct(name: str, unusable: Mapping[str, str]) -> str:
     """Return the question whether a channel is a column that cannot be used."""
     kinds = ("displacement", "angle") if name == "x_in_mm" else ("force", "torque")
     return "".join(
-        f"is it {source}, which cannot be used: {reason}? Then correct the file. "
+        f"is it {source}, which cannot be used: {reason}? Then correct the file. Or "
         for source, reason in unusable.items()
         if words_of(source).quantity in kinds
     )

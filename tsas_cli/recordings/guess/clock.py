@@ -1,6 +1,6 @@
 """The clock among the columns of a file, and its unit."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +9,7 @@ from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.guess.columns import Certainty, FileColumn, Proposed, with_unit
 from tsas_cli.recordings.guess.looks import increases, is_even
+from tsas_cli.recordings.guess.words import words_of
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.arrays import Floats
@@ -21,8 +22,11 @@ _EPOCH_S = (9.4e8, 4.1e9)  # 2000 to 2099, since 1970
 _MOST_REPEATS = 0.9  # of the rows: what stays for longer numbers strokes or runs
 
 
-def clock(columns: Sequence[FileColumn]) -> Proposed:
-    """Return the proposed time of a file, or an open question."""
+def clock(columns: Sequence[FileColumn], unusable: Mapping[str, str]) -> Proposed:
+    """Return the proposed time of a file, or an open question.
+
+    `unusable` are the columns that hold no numbers, and why.
+    """
     named = [c for c in columns if c.quantity == "time"]
     if len(named) > 1:
         named = [c for c in named if c.kind == "time" and increases(c.values)] or named
@@ -45,9 +49,15 @@ def clock(columns: Sequence[FileColumn]) -> Proposed:
     why = tuple(f"{c.shown} counts samples" for c in counters) or (
         "no column is named as a time, and none increases evenly",
     )
-    questions = {
-        "rate_Hz": "how many samples a second? Or name the clock: source and unit instead."
-    }
+    asked = "how many samples a second? Or name the clock: source and unit instead."
+    named_so = {s: said for s, said in unusable.items() if words_of(s).quantity == "time"}
+    for source, said in named_so.items():
+        why = (f"{source} is named as a time: {said}",)
+        asked = (
+            f"{source} cannot be used as the clock: {said}. Write seconds or 2026-03-03 14:05:06.7 "
+            f"there. If there is none: {asked}"
+        )
+    questions = {"rate_Hz": asked}
     return Proposed(TIME, {"rate_Hz": QUESTION}, "open", why, questions)
 
 

@@ -1,5 +1,6 @@
 """A map proposed for raw files."""
 
+import os
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -72,7 +73,7 @@ def propose(files: Sequence[Path]) -> MapProposal:
         except InputError as error:
             different[path] = error.what
     columns, doubt = with_trusted_names(columns_of(opened))
-    time = clock(columns)
+    time = clock(columns, opened.left_out)
     rest = [c for c in columns if c.source != time.entry.get("source")]
     if time.entry.get("source") == QUESTION:
         rest = [c for c in rest if not like_a_clock(c)]
@@ -80,8 +81,7 @@ def propose(files: Sequence[Path]) -> MapProposal:
     used = {channel.entry.get("source") for channel in found}
     used |= {source for channel in found for source in channel.candidates}
     return MapProposal(
-        re.sub(r"[^\w-]+", "-", opened.path.absolute().parent.name or opened.path.stem).strip("-")
-        or "rig",
+        _name([opened.path, *matching]),
         opened,
         tuple(matching),
         different,
@@ -94,6 +94,12 @@ def propose(files: Sequence[Path]) -> MapProposal:
         _load(columns, found) | _id([opened.path, *matching]),
         doubt,
     )
+
+
+def _name(paths: Sequence[Path]) -> str:
+    """Return a dataset's name: that of the folder which holds all files."""
+    folder = os.path.commonpath([path.absolute().parent for path in paths])
+    return re.sub(r"[^\w-]+", "-", Path(folder).name or paths[0].stem).strip("-") or "rig"
 
 
 def _first_that_opens(files: Sequence[Path]) -> tuple[Opened, dict[Path, str]]:

@@ -128,6 +128,9 @@ def _run(proposal: MapProposal) -> Iterator[str]:
             yield f'# from = "{group}"'
             yield f'# unit = "{unit}"'
     there = {channel.name for channel in proposal.channels}
+    there |= {  # a single column is asked about at the drive, and may be at the load
+        c.name.replace("_in_", "_out_") for c in proposal.channels if len(c.candidates) == 1
+    }
     for column in COLUMNS[:5]:
         if column.name not in there:
             yield from _comment(f"No column looks like {column.name} ({column.meaning}).")

@@ -19,7 +19,7 @@ Meaning = TypeVar("Meaning", NamedQuantity, End)
 # one (Eingangskraft, displacement1).
 _QUANTITIES: dict[NamedQuantity, str] = {
     "time": "time t zeit temps timestamp tijd tiempo elapsed clock sec seconds sekunden "
-    "secondes 时间",
+    "secondes xvalue 时间",
     "counter": "sample samples index idx count row nr no messpunkt 序号",
     "displacement": "x s displacement disp displ position pos travel stroke encoder enc lvdt "
     "crosshead extension verschiebung auslenkung hub weg pfad deplacement course excursion "
@@ -115,6 +115,7 @@ def _parts(name: str) -> list[str]:
     plain = "".join(c for c in unicodedata.normalize("NFKD", name) if not unicodedata.combining(c))
     plain = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", plain)
     plain = re.sub(r"(?i)\b(load|back|front|end)[\s_-]?(cell|end|effector)", r"\1\2", plain)
+    plain = re.sub(r"(?i)\bx_value\b", "xvalue", plain)  # of LabVIEW
     words = []
     for part in re.findall(r"[^\W\d_]+", plain.lower()):
         compounds = (  # fin, xout, posref

@@ -22,6 +22,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, RigSheet
 from tsas_cli.recordings.pieces import long_run, pieces
 from tsas_cli.recordings.quality.checks import (
+    bursts,
     clipping,
     clock,
     delay,
@@ -57,7 +58,7 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(rows.lost_samples, needs=("x_in_mm",), given=("increases", "strokes")),
     QualityCheck(noise.outlier),
     QualityCheck(rows.jump),
-    QualityCheck(noise.bursts),
+    QualityCheck(bursts.bursts),
     QualityCheck(noise.hum, given=("increases",)),
     QualityCheck(rows.repeated_rows),
     QualityCheck(repeats.repeated_buffer),

@@ -18,6 +18,7 @@ from tsas_cli.recordings.readers.layout import (
     fields,
     grouped,
     number,
+    wrong_count,
 )
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
@@ -30,8 +31,6 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.recordings.readers.timebase import Seconds, is_stamp
 from tsas_cli.support import limits
 from tsas_cli.support.arrays import Floats
-from tsas_cli.support.errors import InputError
-from tsas_cli.support.wording import count_of
 
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
@@ -116,11 +115,7 @@ def _line_by_line(
                 continue
             cells = fields(line, layout.delimiter)
             if len(cells) != len(layout.names):
-                raise InputError(
-                    count_of(len(cells), "field"),
-                    where=f"{path}, row {row}",
-                    expected=f"{len(layout.names)}, as in the rows above",
-                )
+                raise wrong_count(cells, len(layout.names), path, row)
             yield [
                 _cell(cells[i], source, options, layout, path, row)
                 if i not in layout.stamps

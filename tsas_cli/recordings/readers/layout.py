@@ -59,7 +59,7 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     else a unit in brackets at the end of a name counts.
 
     InputError: the file is not text in its encoding, holds no row of numbers, has more or fewer
-    names than fields in its first row, or its commas are ambiguous.
+    names than fields in a row, or its commas are ambiguous.
     """
     comments, lines = _head(path, options)
     if not lines:
@@ -85,10 +85,23 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     names = _fitted(names, rows[0], path, first_line)
     units = [cell.strip("[]()") for cell in units] or [unit_in(name) for name in names]
     units += [""] * (len(names) - len(units))
+    for (line, _), row in zip(lines[-len(rows) :], rows, strict=True):
+        if len(row) != len(names):
+            raise wrong_count(row, len(names), path, line)
     stamps = frozenset(i for i, cell in enumerate(rows[0]) if is_stamp(cell))
     units = ["s" if i in stamps else unit for i, unit in enumerate(units)]
     return Layout(
         delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line, stamps
+    )
+
+
+def wrong_count(row: Sequence[str], names: int, path: Path, line: int) -> InputError:
+    """Return the error for a row with more or fewer fields than the table has names."""
+    return InputError(
+        count_of(len(row), "field"),
+        where=f"{path}, row {line}",
+        expected=f"{names}, as in the rows above",
+        remedy="correct the row, or delete what is no part of the table",
     )
 
 
@@ -184,13 +197,12 @@ def _not_text(path: Path, encoding: str) -> InputError:
     likely = encoding_of(path)
     with path.open("rb") as stream:
         is_binary = likely not in {"utf-16", "utf-32"} and b"\0" in stream.read(1 << 20)
-    return InputError(
-        f"is not text in the encoding {encoding}",
-        where=path,
-        remedy=f"is this a text table? its name ends in {path.suffix}"
-        if is_binary or likely == encoding
-        else f'set it in the map: encoding = "{likely}" under [read]',
-    )
+    remedy = f'set it in the map: encoding = "{likely}" under [read]'
+    if is_binary:
+        remedy = f"is this a text table? its name ends in {path.suffix}"
+    elif likely == encoding:
+        remedy = "save it as UTF-8, or set its encoding under [read] of the map"
+    return InputError(f"is not text in the encoding {encoding}", where=path, remedy=remedy)
 
 
 def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:

@@ -1,5 +1,6 @@
 """Sheets of Excel and OpenDocument files, converted to text tables."""
 
+import re
 import zipfile
 from datetime import date, datetime, time, timedelta
 from pathlib import Path
@@ -9,6 +10,7 @@ from tsas_cli.recordings.guards import Expanded, foreign
 from tsas_cli.recordings.readers.table import ReadOptions, optional
 from tsas_cli.support.errors import InputError, nearest
 
+_NUMBER = re.compile(r"[+-]?\d*[.,]?\d+([eE][+-]?\d+)?")  # as text
 _FAULTS = ("#N/A", "#DIV/0!", "#VALUE!", "#REF!", "#NUM!", "#NAME?", "#NULL!")  # of a formula
 
 
@@ -67,7 +69,10 @@ def _sheets(path: Path) -> dict[str, list[list[Any]]]:
 
 def _has_numbers(rows: list[list[Any]]) -> bool:
     numbers = (float, int, date, time, timedelta)
-    return any(sum(isinstance(cell, numbers) for cell in row) > 1 for row in rows)
+    return any(
+        sum(isinstance(c, numbers) or bool(_NUMBER.fullmatch(str(c))) for c in row) > 1
+        for row in rows
+    )
 
 
 def _text(cell: Any) -> str:

@@ -13,7 +13,8 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
 _DATE = re.compile(
-    r"\d{4}[-/]\d\d[-/]\d\d([T ]+\d\d:\d\d(:\d\d([.,]\d{1,9})?)?( ?(Z|UTC|[+-]\d\d:?\d\d))?)?"
+    r"(\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})"
+    r"([T ]+\d\d:\d\d(:\d\d([.,]\d{1,9})?)?( ?(Z|UTC|[+-]\d\d:?\d\d))?)?"
 )
 _TIME = re.compile(r"\d{1,4}:\d\d:\d\d([.,]\d{1,9})?")
 _DAY_S = 86400.0
@@ -125,7 +126,7 @@ def on_one_clock(
 
 
 def is_stamp(text: object) -> bool:
-    """Return whether a cell is a date, by ISO 8601, or a time as hh:mm:ss."""
+    """Return whether a cell is a date, by ISO 8601 or as DD.MM.YYYY, or a time as hh:mm:ss."""
     return isinstance(text, str) and (_DATE.fullmatch(text) or _TIME.fullmatch(text)) is not None
 
 
@@ -141,6 +142,7 @@ def from_text(cells: Sequence[str | None]) -> npt.NDArray[Any]:
     form = _DATE if filled.empty or _DATE.fullmatch(filled.iloc[0]) else _TIME
     if not all(form.fullmatch(cell) for cell in filled):
         raise ValueError("another form of date or time")
+    plain = plain.str.replace(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", regex=True)
     plain = plain.str.replace(",", ".").str.replace("/", "-").str.replace(" UTC", "Z")
     if form is _TIME:
         return pd.to_timedelta(plain).to_numpy(dtype="timedelta64[ns]")

@@ -98,7 +98,8 @@ def exchanged(trial: RunSignals) -> Findings:
             "f_in_N",
             f"at the same f_out_N, f_in_N is {-excess:.3g} N lower in contraction than in "
             "loosening; friction makes it higher",
-            "exchange the columns of f_in_N and f_out_N at ingest, or check the sign of x_in_mm",
+            "exchange the columns of f_in_N and f_out_N at ingest, or check the sign of x_in_mm, "
+            "and offset_s where two files were joined",
         )
     if not trial.on_spring or "x_out_mm" not in trial.mechanical:
         return
