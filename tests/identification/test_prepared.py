@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.identification import prepared as p
+from tsas_cli.numerics.noise import recorded
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
 
@@ -142,12 +143,12 @@ def test_what_drives_a_tendon_and_its_load():
 
 def test_what_was_laid_between_samples_is_nothing_recorded():
     values = np.interp(np.arange(60), np.arange(0, 60, 3), np.random.default_rng(2).random(20))
-    found = p._recorded(values)
+    found = recorded(values)
     assert np.isnan(found).any()
     kept = np.isfinite(found)
     np.testing.assert_array_equal(found[kept], values[kept])
     white = np.random.default_rng(2).random(60)
-    np.testing.assert_array_equal(p._recorded(white), white)
+    np.testing.assert_array_equal(recorded(white), white)
 
 
 @pytest.mark.parametrize(("other", "drives"), [(0.19, True), (0.21, False)])

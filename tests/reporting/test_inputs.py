@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,16 @@ def test_a_channel_has_one_noise_level_over_all_runs(dataset):
     assert inputs.noise["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(levels))))
     assert inputs.noise["f_in_N"] == pytest.approx(NOISE, rel=0.05)
     assert "x_out_mm" not in inputs.noise
+
+
+def test_samples_between_recorded_ones_make_no_channel_less_noisy(dataset):
+    inputs, resampled = read_inputs([dataset]), []
+    for recording in inputs.recordings:
+        rows, f_in = np.arange(recording.time_s.size), recording.columns["f_in_N"]
+        columns = {**recording.columns, "f_in_N": np.interp(rows, rows[::5], f_in[::5])}
+        resampled.append(replace(recording, columns=columns))
+    inputs = replace(inputs, dataset=tuple(resampled))
+    assert inputs.noise["f_in_N"] == pytest.approx(NOISE, rel=0.15)
 
 
 def test_a_parameter_concerns_the_page_unless_its_channel_was_not_recorded(dataset):

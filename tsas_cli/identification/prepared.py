@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
-from tsas_cli.numerics.noise import Noise, interpolated, noise_of
+from tsas_cli.numerics.noise import Noise, noise_of, recorded
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
@@ -164,7 +164,7 @@ def prepare(
     for name in driving:
         if np.isfinite(columns[name]).sum() < 2:
             raise is_empty(run, name)
-    columns = {n: _recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
+    columns = {n: recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
     copied_rows = copied.mask(0, time_s.size)
     columns |= {
         n: np.where(copied_rows, math.nan, v) for n, v in columns.items() if n not in driving
@@ -257,11 +257,6 @@ def nothing_to_compare(run: Run, columns: Sequence[str]) -> InputError:
         expected=f"one of {', '.join(CHANNELS)} besides the driving columns",
         remedy=f"there are: {', '.join(columns)}",
     )
-
-
-def _recorded(values: Floats) -> Floats:
-    """Return a channel with NaN in place of interpolated samples, which carry no information."""
-    return np.where(interpolated(values), math.nan, values)
 
 
 def _in_gap(time_s: Floats, values: Floats) -> Mask:

@@ -197,3 +197,8 @@ def interpolated(values: Floats) -> Mask:
     between[recorded] = False
     between[[0, -1]] = False  # no recorded sample bounds them
     return between
+
+
+def recorded(values: Floats) -> Floats:
+    """Return a channel with NaN in place of interpolated samples, which carry no information."""
+    return np.where(interpolated(values), math.nan, values)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from tsas_cli.identification.prepared import CHANNELS
-from tsas_cli.numerics.noise import noise_of
+from tsas_cli.numerics.noise import noise_of, recorded
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.quality import check_dataset
@@ -101,8 +101,10 @@ class Inputs:
         for recording in self.recordings:
             for name in CHANNELS:
                 values = recording.get(name)
-                level = math.nan if values is None else noise_of(values, recording.time_s).sd
-                if values is not None and level > 0.0:
+                if values is None:
+                    continue
+                level = noise_of(recorded(values), recording.time_s).sd
+                if level > 0.0:
                     squares.setdefault(name, []).append((level**2, values.size))
         return {
             name: math.sqrt(sum(square * n for square, n in levels) / sum(n for _, n in levels))

@@ -160,6 +160,10 @@ def test_samples_on_lines_between_recorded_ones_have_no_bursts():
     for coarse in seeds:
         on_lines = np.interp(TIME, TIME[::5], coarse[::5])
         assert "bursts" not in [code for code, _ in remarks(GOOD | {"f_out_N": on_lines})]
+    noisy = GOOD["f_in_N"].copy()
+    noisy[1500:1900:5] += np.random.default_rng(0).standard_normal(80)
+    loud = np.interp(TIME, TIME[::5], noisy[::5])
+    assert told(GOOD | {"f_in_N": loud}, "bursts").first_s == pytest.approx(8.0, abs=0.5)
 
 
 def test_many_outliers():

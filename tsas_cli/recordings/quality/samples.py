@@ -24,7 +24,6 @@ _STEEPER = 10.0  # than those: a motion that reverses within a few samples has s
 _COMMON = 0.02  # of all samples: more frequent deviations are the signal
 _FEWEST = 16  # samples for an estimate of the noise
 _FEWEST_CHANGES = 20
-_ON_LINES = 0.7  # of the samples: from three of them between two that were recorded
 _BLOCK = 16  # rows
 
 
@@ -105,16 +104,6 @@ def is_held(values: Floats) -> bool:
     """Return whether a channel changes in every second row at most."""
     rows = rows_between_changes(values)
     return rows.size >= _FEWEST_CHANGES and bool(np.quantile(rows, 0.05) >= 2.0)
-
-
-def is_on_lines(values: Floats) -> bool:
-    """Return whether most samples lie on lines between others, as of a slow channel resampled.
-
-    What is left of their noise is rounding.
-    """
-    bend = np.abs(np.diff(values, 2))
-    straight = (bend < 1e-12 * np.abs(values).max()) & (np.diff(values)[1:] != 0.0)
-    return bool(straight.mean() > _ON_LINES)
 
 
 def smallest_change(values: Floats) -> float:

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from tsas_cli.numerics.noise import interpolated
 from tsas_cli.recordings.quality.finding import Findings, NotChecked, warning
-from tsas_cli.recordings.quality.samples import is_held, is_on_lines
+from tsas_cli.recordings.quality.samples import is_held
 from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.wording import count_of
 
@@ -25,12 +26,14 @@ def bursts(trial: RunSignals) -> Findings:
     if float(trial.repeats.mean()) > _REPEATS:
         yield NotChecked("rows repeat")
         return
-    turns = np.array([stroke.stop for stroke in trial.strokes], int) // _BLOCK
-    corners = np.concatenate((turns - 1, turns, turns + 1))
+    stops = np.array([stroke.stop for stroke in trial.strokes], int)
     for name, values in trial.noisy.items():
-        third = np.diff(values, 3)
+        rows = np.flatnonzero(~interpolated(values))
+        turns = np.searchsorted(rows, stops) // _BLOCK
+        corners = np.concatenate((turns - 1, turns, turns + 1))
+        third = np.diff(values[rows], 3)
         third = third[: third.size // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
-        if not third.size or is_held(values) or is_on_lines(values):
+        if not third.size or is_held(values):
             continue
         level = np.median(np.abs(third), axis=1)
         alternates = np.mean(third[:, 1:] * third[:, :-1] < 0.0, axis=1) > 0.5  # noise, no motion
@@ -41,7 +44,7 @@ def bursts(trial: RunSignals) -> Findings:
             (a, b) for a, b in edges.reshape(-1, 2) if b - a >= _IN_A_ROW and not beside[a:b].all()
         ]
         if bursts and float(loud.mean()) < _MOST:
-            start = _BLOCK * int(bursts[0][0])
+            start = rows[_BLOCK * int(bursts[0][0])]
             more = float(np.median(level[loud]) / np.median(level))
             yield warning(
                 name,
