@@ -27,7 +27,7 @@ from tsas_cli.diagnosis.proof import (
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, gain_anywhere, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
-from tsas_cli.diagnosis.rivals import rivals_within
+from tsas_cli.diagnosis.rivals import leaving_noise, rivals_within
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
@@ -44,7 +44,7 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
 
 SEED = 1  # of the resampling of blocks
-MOST_RIVALS = 2  # of an effect that fails, which are tried in its place
+MOST_INSTEAD = 2  # effects that are tried in the place of one that fails
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class Proven:
 def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
-    The one that fails and gains least gives way to a rival that explains all, or is left out, and
+    The one that fails and gains least gives way to another that explains all, or is left out, and
     the others are fitted again, until none fails. What is negligible is no stand-in; nor, where
     nothing is left without it, what may be zero or gains too little.
     """
@@ -80,7 +80,7 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     proven = whole = _judged(search, stand_ins, step)
     while failing := [cause for cause in proven.causes if cause.failed]:
         weakest = min(failing, key=lambda cause: cause.gain_percent)
-        instead = _with_a_rival(search, weakest, stand_ins, step)
+        instead = _with_another(search, proven, weakest, step)
         if instead is not None:
             proven = instead
             break
@@ -103,23 +103,26 @@ def proven_effects(search: Hypotheses, step: Steps) -> Proven:
     return replace(proven, stand_ins=stand_ins, whole=whole)
 
 
-def _with_a_rival(
-    search: Hypotheses, failing: FoundCause, stand_ins: tuple[FoundCause, ...], step: Steps
+def _with_another(
+    search: Hypotheses, proven: Proven, failing: FoundCause, step: Steps
 ) -> Proven | None:
-    """Return the effects with a rival in the place of one that fails.
+    """Return the effects with another in the place of one that fails, None where none is better.
 
-    None where one of them is not proven then by the catalogue's law, or more than noise is left.
+    It is a rival, or leaves noise alone. All of them have to be proven then by the catalogue's law,
+    and to leave noise alone, or less than the failing one does.
     """
     if may_be_anywhere((failing.effect, *failing.rivals)):
         return None
-    for other in failing.rivals[:MOST_RIVALS]:
+    others = (*failing.rivals, *leaving_noise(search, search.named, failing.effect))
+    for other in tuple(dict.fromkeys(others))[:MOST_INSTEAD]:
         rivals = {name: r for name, r in search.rivals.items() if name != failing.effect}
         rivals[other] = tuple(name for name in failing.rivals if name != other)
         instead = replace(search, named=frozenset(rivals), rivals=rivals)
-        proven = _judged(instead, stand_ins, step)
-        doubtful = any(cause.failed or cause.law_differs for cause in proven.causes)
-        if proven.after.complete and not doubtful:
-            return proven
+        found = _judged(instead, proven.stand_ins, step)
+        doubtful = any(cause.failed or cause.law_differs for cause in found.causes)
+        less = found.after.complete or found.after.mean_square < proven.after.mean_square
+        if less and not doubtful:
+            return found
     return None
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names, judged_sets
+from tsas_cli.diagnosis.remainder import MOST_SLOW
 from tsas_cli.diagnosis.search import add, is_by_tolerances, significant_effects
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.load_friction import LOAD_FRICTION
@@ -99,6 +100,22 @@ def rivals_within(found: Hypotheses, named: Names, name: str) -> tuple[str, ...]
         if as_good and found.trials[others, mesh].solution.converged:
             out += instead
     return tuple(dict.fromkeys(out))
+
+
+def leaving_noise(found: Hypotheses, named: Names, name: str) -> tuple[str, ...]:
+    """Return the effects that leave noise alone in the place of one of a set, the best first.
+
+    Of the fits that a search has made, for one that is not proven: that others leave more than it
+    does is then nothing against them.
+    """
+    left = {}
+    for (others, mesh), squares in found.squares.items():
+        instead = others - named
+        if len(instead) == 1 and others == named - {name} | instead:
+            mean_square = float(squares.sum()) / found.folds.block.size
+            if mean_square < 1.0 + MOST_SLOW and found.trials[others, mesh].solution.converged:
+                left[next(iter(instead))] = mean_square
+    return tuple(sorted(left, key=left.__getitem__))
 
 
 def is_presliding(fits: Fits, named: Names) -> bool:
