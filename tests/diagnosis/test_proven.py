@@ -70,17 +70,18 @@ def test_an_effect_that_is_negligible_stands_in_for_nothing(
 
 
 @pytest.mark.parametrize(
-    ("proven", "law", "complete", "named", "rivals"),
+    ("proven", "law", "complete", "left", "named", "rivals"),
     [
-        ({"load_ripple"}, "", True, "load_ripple", ("free_tendon", "friction_drift")),
-        ({"free_tendon"}, "", True, "free_tendon", ("load_ripple", "friction_drift")),
-        ({"friction_drift"}, "", True, None, ()),  # fits worse than the first two
-        ({"load_ripple"}, "", False, None, ()),  # more than noise is left
-        ({"load_ripple"}, "over the speed", True, None, ()),
+        ({"load_ripple"}, "", True, 2.0, "load_ripple", ("free_tendon", "friction_drift")),
+        ({"free_tendon"}, "", True, 2.0, "free_tendon", ("load_ripple", "friction_drift")),
+        ({"friction_drift"}, "", True, 2.0, None, ()),  # fits worse than the first two
+        ({"load_ripple"}, "", False, 2.0, None, ()),  # no less is left than by the one that fails
+        ({"load_ripple"}, "", False, 1.9, "load_ripple", ("free_tendon", "friction_drift")),
+        ({"load_ripple"}, "over the speed", True, 1.9, None, ()),
     ],
 )
 def test_an_effect_that_fails_gives_way_to_a_rival_that_is_proven(
-    monkeypatch, proven, law, complete, named, rivals
+    monkeypatch, proven, law, complete, left, named, rivals
 ):
     def judged(search, fits, found):
         causes = [
@@ -91,7 +92,8 @@ def test_an_effect_that_fails_gives_way_to_a_rival_that_is_proven(
             )
             for name in search.rivals
         ]
-        after = SimpleNamespace(complete=complete)
+        mean_square = 2.0 if "backlash" in search.named else left
+        after = SimpleNamespace(complete=complete, mean_square=mean_square)
         return p.Proven(search, fits, tuple(causes), found, (), {}, after, after, None)
 
     monkeypatch.setattr(p, "_judged", judged)

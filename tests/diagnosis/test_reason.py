@@ -138,6 +138,13 @@ def test_what_several_stand_ins_fail_to_prove_is_said_once():
     assert said.count("not proven") == 1
 
 
+def test_a_stand_in_takes_its_share_beside_those_that_were_left_out_after_it():
+    failing = [cause(PLAY, failed=("fails",)), cause(MASS, failed=("is no more than a tolerance",))]
+    said = reason_of("stand_in", [], failing, START, left(16.0, "time_s"))
+    assert f"{TITLE[PLAY].capitalize()} takes 50 % off it beside {TITLE[MASS]}, but is not" in said
+    assert f"{TITLE[MASS].capitalize()} takes 50 % off it, but is not" in said
+
+
 def test_a_law_that_differs_is_said_of_its_effect():
     causes = [cause(MASS, law="over the speed: mass_kg 1 (low) and 2 (high) kg")]
     said = reason_of("partly", causes, [], START, left(2.0, "time_s"))

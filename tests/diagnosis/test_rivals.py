@@ -21,7 +21,13 @@ from tests.diagnosis.searched import (
     tolerances_take,
 )
 from tsas_cli.diagnosis import rivals as rivals_module
-from tsas_cli.diagnosis.rivals import exchanged, is_presliding, rivals_of, rivals_within
+from tsas_cli.diagnosis.rivals import (
+    exchanged,
+    is_presliding,
+    leaving_noise,
+    rivals_of,
+    rivals_within,
+)
 
 
 @pytest.fixture
@@ -42,10 +48,8 @@ def test_rivals_convince_too_and_are_not_surely_worse(made, monkeypatch):
     assert rivals_of(worse, names(A), A) == ()
 
 
-@pytest.mark.parametrize(("mesh", "rivals"), [(False, (C,)), (True, ())])
-def test_what_did_as_well_in_the_search_is_a_rival_when_others_are_left_out(mesh, rivals):
-    """Of twice the noise's squares, half are structure: a twentieth may be chance."""
-    squares = {names(A): 2.0, names(C): 2.09, names(D): 2.11, names(A, C): 1.0, names(): 1.5}
+def searched(squares, mesh=False):
+    """Return the fits of a search with these mean squares, and what all of them are."""
     found = SimpleNamespace(
         squares={
             (of, mesh and of != names(A)): np.full(BLOCKS, value * SIZE / BLOCKS)
@@ -55,9 +59,26 @@ def test_what_did_as_well_in_the_search_is_a_rival_when_others_are_left_out(mesh
     )
     of = SimpleNamespace(solution=SimpleNamespace(converged=True))
     found.trials = dict.fromkeys(found.squares, of)
+    return found, of
+
+
+@pytest.mark.parametrize(("mesh", "rivals"), [(False, (C,)), (True, ())])
+def test_what_did_as_well_in_the_search_is_a_rival_when_others_are_left_out(mesh, rivals):
+    """Of twice the noise's squares, half are structure: a twentieth may be chance."""
+    squares = {names(A): 2.0, names(C): 2.09, names(D): 2.11, names(A, C): 1.0, names(): 1.5}
+    found, of = searched(squares, mesh)
     assert rivals_within(found, names(A), A) == rivals
     of.solution.converged = False
     assert rivals_within(found, names(A), A) == ()
+
+
+def test_what_leaves_noise_in_the_place_of_another_is_found_best_first():
+    squares = {names(A): 1.0, names(C): 2.9, names(D): 1.1, names(): 16.0}
+    found, of = searched(squares | {names(C, D): 1.0})
+    assert leaving_noise(found, names(A), A) == (D, C)
+    assert leaving_noise(searched(squares | {names(C): 3.1})[0], names(A), A) == (D,)
+    of.solution.converged = False
+    assert leaving_noise(found, names(A), A) == ()
 
 
 @pytest.mark.parametrize(("part", "rivals"), [(0.29, ()), (0.31, (C,))])

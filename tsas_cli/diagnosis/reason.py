@@ -117,12 +117,15 @@ def _nearest(nearest: tuple[str, Reduction] | None) -> list[str]:
 
 
 def _stand_ins(stand_ins: Sequence[FoundCause]) -> Iterator[str]:
+    """Yield what the effects that are not proven take away, each beside those after it."""
     for failed in dict.fromkeys(cause.failed[0] for cause in stand_ins):
         alike = [cause for cause in stand_ins if cause.failed[0] == failed]
         names = listed([_title(cause.effect) for cause in alike])
         gains = listed([f"{cause.gain_percent:.0f}" for cause in alike])
         take, are, each = ("take", "are", "each") if alike[1:] else ("takes", "is", "it")
-        yield f"{names} {take} {gains} % off it, but {are} not proven: {each} {failed}."
+        later = [_title(cause.effect) for cause in stand_ins[stand_ins.index(alike[-1]) + 1 :]]
+        beside = f" beside {listed(later)}" if later else ""
+        yield f"{names} {take} {gains} % off it{beside}, but {are} not proven: {each} {failed}."
 
 
 def _law(law: Law) -> str:
