@@ -57,6 +57,12 @@ def test_a_size_of_which_nothing_is_known_is_not_listed(known):
     assert ("nothing is known" in said) != known
 
 
+def test_an_effect_of_whose_size_nothing_is_known_is_refused_whatever_its_shape_tells():
+    share = estimate("force_sensor_hysteresis.f_in_share", 0.28, 0.0, 0.5)
+    (said,) = failures("force_sensor_hysteresis", [share], CLEAR, SAME, SAME)
+    assert said == "may not be there: nothing is known of its size"
+
+
 def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
     sum_known = np.array([[1.0, -0.99], [-0.99, 1.0]])
     two = (

@@ -107,8 +107,8 @@ def failures(
         for name, e in sizes.items()
         if _reaches_a_limit(e, parameters[name])
     ]
-    if zero:
-        known = {n: e for n, e in sizes.items() if not _is_unknown(e, parameters[n])}
+    known = {n: e for n, e in sizes.items() if not _is_unknown(e, parameters[n])}
+    if zero or (sizes and not known):
         values = [f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in known.items()]
         out.append(f"may not be there: {', '.join(values) or 'nothing is known of its size'}")
     out += [
