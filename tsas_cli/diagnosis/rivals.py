@@ -1,5 +1,6 @@
 """The effects that a search finds, exchanged for better or simpler ones, with their rivals."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY
@@ -88,17 +89,14 @@ def rivals_within(found: Hypotheses, named: Names, name: str) -> tuple[str, ...]
 
     For a set that is left when others are not proven: what does as well beside those is known.
     """
-    out: list[str] = []
-    for (others, mesh), squares in found.squares.items():
-        instead = others - named
-        alike = len(instead) == 1 and others == named - {name} | instead
-        if not alike or (named, mesh) not in found.squares:
+    out = []
+    for other, mesh, squares in _in_its_place(found, named, name):
+        if (named, mesh) not in found.squares:
             continue
         least = float(found.squares[named, mesh].sum())
         structure = max(1.0 - found.folds.block.size / least, 0.0)
-        as_good = float(squares.sum()) <= (1.0 + MODEL_ERROR * structure) * least
-        if as_good and found.trials[others, mesh].solution.converged:
-            out += instead
+        if squares <= (1.0 + MODEL_ERROR * structure) * least:
+            out.append(other)
     return tuple(dict.fromkeys(out))
 
 
@@ -108,14 +106,24 @@ def leaving_noise(found: Hypotheses, named: Names, name: str) -> tuple[str, ...]
     Of the fits that a search has made, for one that is not proven: that others leave more than it
     does is then nothing against them.
     """
-    left = {}
+    left = {
+        other: squares
+        for other, _, squares in _in_its_place(found, named, name)
+        if squares < (1.0 + MOST_SLOW) * found.folds.block.size
+    }
+    return tuple(sorted(left, key=left.__getitem__))
+
+
+def _in_its_place(found: Hypotheses, named: Names, name: str) -> Iterator[tuple[str, bool, float]]:
+    """Yield each effect that a search has fitted in the place of one of a set.
+
+    With whether on the mesh, and the held-out squares that are left; a fit has to have converged.
+    """
     for (others, mesh), squares in found.squares.items():
         instead = others - named
-        if len(instead) == 1 and others == named - {name} | instead:
-            mean_square = float(squares.sum()) / found.folds.block.size
-            if mean_square < 1.0 + MOST_SLOW and found.trials[others, mesh].solution.converged:
-                left[next(iter(instead))] = mean_square
-    return tuple(sorted(left, key=left.__getitem__))
+        in_place = len(instead) == 1 and others == named - {name} | instead
+        if in_place and found.trials[others, mesh].solution.converged:
+            yield next(iter(instead)), mesh, float(squares.sum())
 
 
 def is_presliding(fits: Fits, named: Names) -> bool:
