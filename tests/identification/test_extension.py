@@ -99,7 +99,7 @@ def bench(monkeypatch):
     def make(closed=(True, True)):
         drives = dict(zip(("drive a", "drive b"), closed, strict=True))
         monkeypatch.setattr(e, "is_closed", lambda rig, drive: drives[drive])
-        monkeypatch.setattr(e, "meshed", lambda run, nodes: Run(f"{run.name} {nodes}"))
+        monkeypatch.setattr(e, "meshed", lambda run, nodes, *_: Run(f"{run.name} {nodes}"))
         sought = (zero_of(0), Unknown("preload_N", 0, 9.0, 0.0, 99.0, 1.0), zero_of(1))
         errors = (Run("a", "drive a"), Run("b", "drive b"))
         problem = FitProblem(

@@ -21,7 +21,7 @@ from tsas_cli.support.arrays import Floats
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
 MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
-COARSE_NODES = 12  # of the slip chain, in screening
+COARSE_NODES, COARSE_PER_MEAN = 12, 2.0  # of the slip chain
 PROBED = (0.1, 0.3)  # of its plausible size, where a size that ended at its bound is tried again
 
 
@@ -31,9 +31,10 @@ class Bench:
 
     `free` are the free parameters of the base fit, with its estimates as initial values, `rigs`
     those of its runs. The residuals of the runs, with the weights and samples of the base fit, are
-    `closed` by the solver that each rig needs, `meshed` and `coarse` by the slip chain. `priors`
-    are those of effects' parameters that have one (`Unknown.prior`); `tolerance` is the share of
-    the squares for the last step of a fit, in proportion to their mean beyond the noise.
+    `closed` by the solver that each rig needs, `meshed` by the slip chain, `coarse` by one of which
+    only differences are meaningful. `priors` are those of effects' parameters that have one
+    (`Unknown.prior`); `tolerance` is the share of the squares for the last step of a fit, in
+    proportion to their mean beyond the noise.
     """
 
     base: FittedModel
@@ -89,23 +90,28 @@ class Bench:
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
         tolerance = self.tolerance_at(1.0 if near is None else near.mean_square)
-        errors = self.meshed if mesh else self.closed
+        fine, coarse = (self.meshed, self.coarse) if mesh else (self.closed, self.closed)
 
-        def residuals(k: int, values: Floats) -> Floats:
+        def residuals(errors: Sequence[RunErrors], k: int, values: Floats) -> Floats:
             return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, values))
 
         solved = partial(
-            solve, runs=runs, residuals=residuals, tolerance=tolerance, values_only=values_only
+            solve,
+            runs=runs,
+            residuals=partial(residuals, fine),
+            differing=partial(residuals, coarse),
+            tolerance=tolerance,
+            values_only=values_only,
         )
         solution = solved(unknowns, known=None if near is None else near.slopes_of(unknowns))
         inside = off_bounds(
             unknowns,
             solution,
-            lambda values: np.concatenate(each(lambda k: residuals(k, values), range(runs))),
+            lambda values: np.concatenate(each(lambda k: residuals(fine, k, values), range(runs))),
         )
         if inside is not None:
             solution = solved(inside, known=solution.jacobian)
-        sizes = tuple(run.count for run in errors)
+        sizes = tuple(run.count for run in fine)
         return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
 
     def tolerance_at(self, mean_square: float) -> float:
@@ -115,8 +121,7 @@ class Bench:
     def errors_at(self, trial: HypothesisFit, changes: Mapping[str, float]) -> Floats:
         """Return all residuals at a trial's values with some effects' parameters set.
 
-        For screening: on a coarse mesh, where one is needed, so that only differences between two
-        such results are meaningful.
+        For screening: on the coarse mesh, where one is needed.
         """
         unknowns = [*trial.unknowns, *(unknown_of(name) for name in changes)]
         scaled = [QUANTITIES[name].scaled(value) for name, value in changes.items()]
@@ -214,7 +219,7 @@ def bench_of(base: FittedModel) -> Bench:
         tuple(replace(unknowns[j], initial=float(base.values[j])) for j in base.chosen),
         errors,
         tuple(meshed(e, NODES) for e in errors),
-        tuple(meshed(e, COARSE_NODES) for e in errors),
+        tuple(meshed(e, COARSE_NODES, COARSE_PER_MEAN) for e in errors),
         not all(closed),
     )
 
@@ -227,7 +232,7 @@ def reweighted_bench(bench: Bench, trial: HypothesisFit) -> Bench:
         bench,
         closed=errors,
         meshed=tuple(meshed(e, NODES) for e in errors),
-        coarse=tuple(meshed(e, COARSE_NODES) for e in errors),
+        coarse=tuple(meshed(e, COARSE_NODES, COARSE_PER_MEAN) for e in errors),
     )
 
 

@@ -127,6 +127,7 @@ def solve(
     residuals: Residuals,
     *,
     tolerance: float,
+    differing: Residuals | None = None,
     at_once: bool = True,
     known: Floats | None = None,
     values_only: bool = False,
@@ -135,8 +136,10 @@ def solve(
 
     Priors of the unknowns count too, and are no rows of the solution. `tolerance` is the share of
     the squares below which a reduction ends the search; `at_once` whether simulations are long
-    enough to run on threads. `known` are slopes near the initial values, shape (n, p), with NaN in
-    the columns of other unknowns; with `values_only` the Jacobian of the solution is as rough.
+    enough to run on threads. The Jacobian is that of `differing`, residuals of a coarser simulation
+    whose differences are nearly those of `residuals`, where there is one. `known` are slopes near
+    the initial values, shape (n, p), with NaN in the columns of other unknowns; with `values_only`
+    the Jacobian of the solution is as rough.
     """
     prior = np.diag([u.prior for u in unknowns])[[u.prior > 0.0 for u in unknowns]]
 
@@ -145,8 +148,8 @@ def solve(
         return np.concatenate([*of_runs, prior @ values])
 
     def slopes(values: Floats, known: Floats | None = None) -> Floats:
-        J = jacobian(unknowns, runs, values, residuals, at_once=at_once, known=known)
-        return np.vstack((J, prior))
+        J = jacobian(unknowns, runs, values, differing or residuals, at_once=at_once, known=known)
+        return np.vstack((J, prior)) if len(prior) else J
 
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])

@@ -16,9 +16,11 @@ import numpy as np
 from tsas_cli.identification.end_errors import REVERSAL_SD, advanced, beside, reversed_at_rest
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_simulation import (
+    PER_MEAN,
     Predictions,
     RunSimulation,
     mean_edges,
+    points,
     predict_driven,
     predictor,
     run_simulation,
@@ -26,6 +28,7 @@ from tsas_cli.identification.run_simulation import (
 )
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.numerics.noise import Noise
+from tsas_cli.numerics.pieces import scaled_without_shape, sums_of
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats, Indices, Mask
@@ -40,7 +43,6 @@ class ReversalShapes(NamedTuple):
 
     shape: Floats  # (n,), in units of the residuals' standard deviations
     starts: Indices  # of the strokes, (m,)
-    counts: Indices  # of their samples, (m,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +88,8 @@ class RunErrors:
 
     def _weighted(self, name: str, difference: Floats) -> Floats:
         """Return a channel's weighted residuals, from predicted minus measured at all samples."""
-        errors, turns = (difference / self.weights[name])[self.samples[name]], self.turns[name]
-        projection = np.add.reduceat(turns.shape * errors, turns.starts)
-        return np.asarray(errors - turns.shape * np.repeat(projection, turns.counts))
+        at, weights = self.samples[name], self.weights[name]
+        return scaled_without_shape(difference, weights, at, *self.turns[name])
 
     def by_driven_ends(self, rig: Rig) -> dict[str, Floats]:
         """Return what noise of the driven ends does to each channel, at the samples of the fit."""
@@ -116,9 +117,9 @@ class RunErrors:
         """
         out = {}
         for name, errors in self.errors(rig).items():
-            shape, starts, _ = self.turns[name]
-            size = np.sqrt(np.add.reduceat(shape**2, starts))
-            along = np.add.reduceat(shape * errors, starts)
+            shape, starts = self.turns[name]
+            size = np.sqrt(sums_of(shape**2, starts))
+            along = sums_of(shape * errors, starts)
             out[name] = np.divide(along, size, out=np.zeros(size.size), where=size > 0.0)
         return out
 
@@ -138,7 +139,7 @@ class RunErrors:
         parts = []
         for name, each in errors.items():
             edges, roots = _edges_and_roots(each.size, self.run.noises[name].correlation)
-            parts.append(np.add.reduceat(each, edges) / roots)
+            parts.append(sums_of(each, edges) / roots)
         return np.concatenate(parts)
 
     def over_noise(self, name: str, errors: Floats, chosen: Mask) -> Floats:
@@ -199,9 +200,13 @@ def reweighted(errors: RunErrors, rig: Rig) -> RunErrors:
     return _weighted(errors.run, errors.samples, errors.simulation, errors.predict, rig)
 
 
-def meshed(errors: RunErrors, nodes: int) -> RunErrors:
-    """Return the residuals of the same run with the same weights, always predicted by a chain."""
-    simulation = replace(errors.simulation, nodes=nodes)
+def meshed(errors: RunErrors, nodes: int, per_mean: float = PER_MEAN) -> RunErrors:
+    """Return the residuals of the same run with the same weights, always predicted by a chain.
+
+    It has so many nodes, and simulates so many samples for each mean that enters the fit.
+    """
+    at = points(errors.run, per_mean)
+    simulation = replace(errors.simulation, nodes=nodes, points=at)
     return replace(errors, simulation=simulation, predict=predictor(simulation))
 
 
@@ -259,10 +264,10 @@ def _reversal_shapes(change: Floats, at: Indices, reversals: Indices) -> Reversa
     starts = np.unique([0, *starts[starts < at.size]])
     counts = np.diff(starts, append=at.size)
     shape = change[at]
-    size = np.add.reduceat(shape**2, starts)
+    size = sums_of(shape**2, starts)
     share = 1.0 - 1.0 / np.sqrt(1.0 + REVERSAL_SD**2 * size)
     scale = np.sqrt(np.divide(share, size, out=np.zeros(size.size), where=size > 0.0))
-    return ReversalShapes(shape * np.repeat(scale, counts), starts, counts)
+    return ReversalShapes(shape * np.repeat(scale, counts), starts)
 
 
 def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:

@@ -24,7 +24,8 @@ from tsas_cli.support.arrays import Floats, Indices
 
 MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
-PER_STROKE = 300  # simulated samples, at least
+PER_MEAN = 4.0  # simulated samples
+PER_STROKE = 75.0  # times as many, at least
 SHARP = 4  # strides after a reversal in which every sample is simulated
 
 
@@ -33,15 +34,16 @@ def mean_edges(size: int) -> Indices:
     return np.arange(0, size, max(1, -(-size // MOST_MEANS)))
 
 
-def points(run: Prepared) -> Indices:
+def points(run: Prepared, per_mean: float = PER_MEAN) -> Indices:
     """Return the samples simulated by a chain: some of each stroke, and all after a reversal.
 
-    They are four times as many as means, or more for many strokes. The model depends on the path
-    alone, and its prediction has a kink at a reversal.
+    They are several times as many as means, or more for many strokes. The model depends on the
+    path alone, and its prediction has a kink at a reversal.
     """
     n = run.time_s.size
     reversals = run.conditioned[run.drive_column].reversals
-    stride = max(1, n // max(4 * MOST_MEANS, PER_STROKE * (reversals.size - 1)))
+    wanted = per_mean * max(MOST_MEANS, PER_STROKE * (reversals.size - 1))
+    stride = max(1, int(n // wanted))
     followed = np.arange(n) % stride == 0
     for reversal in reversals:  # the last sample is one of them
         followed[reversal : reversal + SHARP * stride] = True

@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -28,7 +28,12 @@ def seldom_kernel(function: Function) -> Function:
     return _compiled(function, inlined=False)
 
 
-def _compiled(function: Function, *, inlined: bool) -> Function:
+def summing_kernel(function: Function) -> Function:
+    """Compile a numeric function whose sums may be taken in any order, several at a time."""
+    return _compiled(function, inlined=True, fastmath={"reassoc", "contract", "nsz"})
+
+
+def _compiled(function: Function, *, inlined: bool, fastmath: Collection[str] = ()) -> Function:
     if PLAIN:
         return function
     import numba
@@ -36,7 +41,11 @@ def _compiled(function: Function, *, inlined: bool) -> Function:
     folder = cache_folder()
     numba.config.CACHE_DIR = folder or ""  # type: ignore[attr-defined] # numba sets it by name
     compiler = numba.njit(
-        cache=folder is not None, error_model="numpy", nogil=True, forceinline=inlined
+        cache=folder is not None,
+        error_model="numpy",
+        nogil=True,
+        forceinline=inlined,
+        fastmath=set(fastmath),
     )
     compiled = compiler(function)
     if folder is not None:

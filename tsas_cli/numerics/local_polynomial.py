@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.compiled import kernel, summing_kernel
 from tsas_cli.support.arrays import Floats, Indices
 
 HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450, 700, 1000])  # samples
@@ -51,7 +51,7 @@ def best_half_windows(
     return half
 
 
-@kernel
+@summing_kernel
 def quadratic_fit(
     time_s: Floats, values: Floats, i: int, first: int, last: int
 ) -> tuple[float, float, float, float]:
@@ -89,7 +89,7 @@ def quadratic_fit(
     return values[i] + value, slope / unit, a / determinant, d / determinant / unit**2
 
 
-@kernel
+@summing_kernel
 def quartic_fit(
     time_s: Floats, values: Floats, i: int, first: int, last: int
 ) -> tuple[float, float]:
@@ -98,19 +98,27 @@ def quartic_fit(
     At least nine samples; the variance is for noise of variance one.
     """
     unit = 0.5 * (time_s[last] - time_s[first])
-    moments = np.zeros(9)
-    weighted = np.zeros(5)
+    t1 = t2 = t3 = t4 = t5 = t6 = t7 = t8 = y0 = y1 = y2 = y3 = y4 = 0.0
     for j in range(first, last + 1):
         t = (time_s[j] - time_s[i]) / unit
         y = values[j] - values[i]
-        power = 1.0
-        for k in range(9):
-            moments[k] += power
-            if k < 5:
-                weighted[k] += power * y
-            power *= t
+        tt = t * t
+        t1 += t
+        t2 += tt
+        t3 += tt * t
+        t4 += tt * tt
+        t5 += tt * tt * t
+        t6 += tt * tt * tt
+        t7 += tt * tt * tt * t
+        t8 += tt * tt * tt * tt
+        y0 += y
+        y1 += t * y
+        y2 += tt * y
+        y3 += tt * t * y
+        y4 += tt * tt * y
+    moments = np.array([last - first + 1.0, t1, t2, t3, t4, t5, t6, t7, t8])
     weights = first_row_of_inverse(moments)
-    return values[i] + float(np.sum(weights * weighted)), weights[0]
+    return values[i] + float(np.sum(weights * np.array([y0, y1, y2, y3, y4]))), weights[0]
 
 
 @kernel
