@@ -78,6 +78,7 @@ def in_channel_units(
         rigs=tuple(with_values(rig, given) for rig in bench.rigs),
         closed=tuple(_over_rms(run, rms) for run in bench.closed),
         meshed=tuple(_over_rms(run, rms) for run in bench.meshed),
+        coarse=tuple(_over_rms(run, rms) for run in bench.coarse),
     )
 
 
@@ -114,7 +115,6 @@ def priors_of(bench: Bench, without: HypothesisFit, folds: Folds) -> dict[str, f
 def _over_rms(run: RunErrors, rms: Mapping[str, float]) -> RunErrors:
     weights = {name: np.full(run.run.time_s.size, rms[name]) for name in run.samples}
     turns = {
-        name: ReversalShapes(np.zeros(at.size), np.array([0]), np.array([at.size]))
-        for name, at in run.samples.items()
+        name: ReversalShapes(np.zeros(at.size), np.array([0])) for name, at in run.samples.items()
     }
     return replace(run, weights=weights, turns=turns)
