@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from tests.recordings.quality.bench import Bench, columns, remarks
+from tests.recordings.quality.bench import Bench, columns, motion, remarks
 
 BENCH = Bench(rate_Hz=200.0, step_mm=0.002, step_N=0.01)
 GOOD = columns(BENCH)
@@ -153,6 +153,40 @@ def test_bursts_are_counted():
     remark = told(GOOD | {"f_in_N": noisy}, "bursts")
     assert "3 bursts" in remark.sentence
     assert remark.first_s == pytest.approx(2.5, abs=0.1)
+
+
+def wound_up(along, size, period_mm=0.8):
+    """Return the sawtooth of a force that is wound up over a way, and slips [N]."""
+    return size * (np.mod(along, period_mm) / period_mm - 0.5)
+
+
+def test_a_tendon_that_sticks_and_slips():
+    """Every 0.8 mm it has wound up 4 N, whichever way the drive goes."""
+    x_in, speed = motion(BENCH, TIME), np.gradient(motion(BENCH, TIME))
+    jumps = np.sign(speed) * wound_up(np.cumsum(np.abs(speed)), 4.0)
+    remark = told(GOOD | {"f_in_N": GOOD["f_in_N"] + jumps}, "stick-slip")
+    slips = np.abs(speed).sum() / 0.8
+    assert number(remark, "drops ", " times") == pytest.approx(slips, rel=0.1)
+    assert number(remark, "by ", " N") == pytest.approx(4.0, rel=0.15)
+    assert remark.first_s == pytest.approx(TIME[np.argmax(x_in > 0.8)], abs=0.05)
+
+
+@pytest.mark.parametrize(
+    "added",
+    [
+        -wound_up(GOOD["x_in_mm"], 4.0),  # one that reverses with the drive: a gear, at a place
+        3.0 * np.sin(GOOD["x_in_mm"] / 0.13),  # a ripple
+        np.where(np.abs(TIME - 8.0) < 0.1, -4.0, 0.0),  # one drop
+    ],
+)
+def test_what_rises_as_steeply_as_it_falls_or_drops_once_is_no_stick_slip(added):
+    changed = GOOD | {"f_in_N": GOOD["f_in_N"] + added}
+    assert "stick-slip" not in [code for code, _ in remarks(changed)]
+
+
+def test_a_force_that_follows_small_reversals_of_the_drive_is_no_stick_slip():
+    nested = columns(Bench("nested", rate_Hz=200.0))
+    assert "stick-slip" not in [code for code, _ in remarks(nested)]
 
 
 def test_samples_on_lines_between_recorded_ones_have_no_bursts():

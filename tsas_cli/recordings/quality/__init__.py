@@ -35,6 +35,7 @@ from tsas_cli.recordings.quality.checks import (
     repeats,
     rows,
     signs,
+    stick_slip,
 )
 from tsas_cli.recordings.quality.finding import Finding, NotChecked, QualityCheck
 from tsas_cli.recordings.quality.samples import Size, span_of, step_of
@@ -74,6 +75,9 @@ RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     QualityCheck(signs.exchanged, needs=("x_in_mm", "f_in_N", "f_out_N"), of_long="strokes"),
     QualityCheck(
         motion.interference, needs=("x_in_mm",), given=("on_spring", "increases", "unbatched")
+    ),
+    QualityCheck(
+        stick_slip.stick_slip, needs=("x_in_mm", "f_in_N"), given=("increases",), of_long="strokes"
     ),
     QualityCheck(pairs.unit, of_long="strokes"),
     QualityCheck(pairs.duplicate_channel),
