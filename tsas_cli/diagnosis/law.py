@@ -75,11 +75,12 @@ class _Predicting(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """The chosen laws with their bench, and the other sets that do as well."""
+    """The chosen laws with their bench, other sets that do as well, and sets of fewer laws."""
 
     bench: Bench
     best: _Predicting
     rivals: tuple[str, ...]
+    fewer: tuple[tuple[str, ...], ...]
 
 
 def describe(
@@ -102,7 +103,7 @@ def describe(
     if unproven is not None:
         step.doing("fits the laws beside effects that are not proven")
         found = _beside(found, unproven, folds)
-    bench, best, rivals = found
+    bench, best, rivals, _ = found
     solution = best.trial.solution
     covariance, _ = jackknife(
         solution.jacobian * ~solution.at_bound, solution.residual, folds.block
@@ -140,6 +141,7 @@ def _found(
     scatter = scatter_is_no_effect(start, folds.run)
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
     found: list[_Predicting] = []
+    fits: list[HypothesisFit] = []
     for names in sets:
         step.doing(f"fits laws of unnamed origin: {' + '.join(names)}")
         mesh = start.on_mesh or bench.on_mesh(names)
@@ -148,7 +150,13 @@ def _found(
             held_out[mesh] = without, refitted(bench, without, folds, scatter=scatter)
         without, before = held_out[mesh]
         bench = replace(bench, priors=priors_of(bench, without, folds))
-        fitted = bench.fit([*sorted(start.effects), *names], near=without, on_mesh=mesh)
+        near = min(
+            (f for f in fits if f.on_mesh == mesh and {*names} > {*f.effects} - {*start.effects}),
+            key=lambda f: f.mean_square,
+            default=without,
+        )
+        fitted = bench.fit([*sorted(start.effects), *names], near=near, on_mesh=mesh)
+        fits.append(fitted)
         step()
         fewer = [f.trial.mean_square for f in found if len(f.names) < len(names)]
         enough = LEAST_TAKEN * _excess(noise, before)
@@ -170,20 +178,34 @@ def _found(
     rivals = [f for f in as_good if len(f.names) == len(best.names) and f is not best]
     step.doing(f"fits {' + '.join(best.names)} with a lower cost of its parameters")
     bench, best = _at_lower_cost(bench, best, folds, scatter=scatter)
-    return _Found(bench, best, tuple("+".join(f.names) for f in rivals))
+    fewer_laws = tuple(f.names for f in found if len(f.names) < len(best.names))
+    return _Found(bench, best, tuple("+".join(f.names) for f in rivals), fewer_laws)
 
 
 def _beside(found: _Found, unproven: HypothesisFit, folds: Folds) -> _Found:
-    """Return the laws beside the effects of a trial too, where that predicts better."""
-    bench, best, _ = found
-    names = [*sorted(unproven.effects), *best.names]
-    mesh = best.trial.on_mesh or bench.on_mesh(names)
-    initial = unproven.values() | best.trial.values()
-    fitted = bench.fit(names, initial, near=best.trial, on_mesh=mesh)
-    after = refitted(bench, fitted, folds, scatter=scatter_is_no_effect(best.trial, folds.run))
+    """Return the laws beside the effects of a trial too, where that predicts better.
+
+    Where fewer laws fit as well there, it is these: they predict other loads better.
+    """
+    bench, best = found.bench, found.best
+
+    def fit(names: tuple[str, ...]) -> HypothesisFit:
+        together = [*sorted(unproven.effects), *names]
+        mesh = best.trial.on_mesh or bench.on_mesh(together)
+        initial = unproven.values() | best.trial.values()
+        return bench.fit(together, initial, near=best.trial, on_mesh=mesh)
+
+    fits = {names: fit(names) for names in (*found.fewer, best.names)}
+    enough = (1.0 + AS_WELL) * fits[best.names].mean_square
+    names = next(names for names, fitted in fits.items() if fitted.mean_square <= enough)
+    scatter = scatter_is_no_effect(best.trial, folds.run)
+    after = refitted(bench, fits[names], folds, scatter=scatter)
     if _worse(best.before, after) or not gain(best.after.squares, after.squares).convincing:
         return found
-    return found._replace(best=best._replace(trial=fitted, after=after))
+    rivals = found.rivals if names == best.names else ()
+    return found._replace(
+        best=best._replace(names=names, trial=fits[names], after=after), rivals=rivals
+    )
 
 
 def _at_lower_cost(

@@ -97,10 +97,15 @@ def test_the_scatter_of_times_is_what_a_fast_motion_has_more_noise_by():
 def test_a_run_is_torn_where_the_drive_goes_ten_times_and_another_three_times_as_far(
     by, other, found
 ):
-    """As the least of the twenty largest steps, those of the tear among them."""
+    """As the least of the twenty largest jumps, those of the tear among them."""
     far = np.arange(N) > 150
-    even = 0.1 * np.arange(N)
-    columns = {"x_in_mm": even + (0.1 * by - 0.1) * far, "f_in_N": even + (0.1 * other - 0.1) * far}
+    jerky = 0.1 * (np.arange(N) // 2) + np.arange(
+        N
+    )  # each change differs from those beside it by 0.1
+    columns = {
+        "x_in_mm": jerky + 0.1 * (1.0 - by) * far,
+        "f_in_N": jerky + 0.1 * (1.0 - other) * far,
+    }
     assert rows._torn(fine(**columns), list(columns)) == found
 
 

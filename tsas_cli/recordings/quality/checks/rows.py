@@ -41,8 +41,8 @@ def lost_samples(trial: RunSignals) -> Findings:
     moves one channel alone, and a tendon that slips moves no drive. Reported where x_in and another
     channel jump by the same time from one row to the next, far beyond the noise, and by more than
     from the row before and to the row after. A drive that starts, brakes, or sticks and slips takes
-    several rows. A reversal among the lost samples leaves no such slope:
-    there both change by many times what they do anywhere else.
+    several rows. Where the slope changes among the lost samples, both jump by many times what they
+    do anywhere else.
     """
     interval = np.diff(trial.time_s)
     even = float(np.mean(np.abs(interval / trial.step_s - 1.0) < _EVEN))
@@ -80,21 +80,29 @@ def lost_samples(trial: RunSignals) -> Findings:
             yield warning(
                 None,
                 f"x_in_mm and other channels jump from one row to the next at "
-                f"{trial.time_s[at]:.5g} s, as if samples were lost there, a reversal among them",
+                f"{trial.time_s[at]:.5g} s, as if samples were lost there",
                 "write down the time of each sample, and end the run before that time",
                 float(trial.time_s[at]),
             )
 
 
 def _torn(trial: RunSignals, moving: Sequence[str]) -> list[int]:
-    """Return the rows after which x_in and another channel change as nowhere else in the run."""
-    far = {}
-    for name in moving:
-        steps = np.where(trial.repeats[:-1], 0.0, trial.steps(name))
-        usual = max(float(np.sort(steps)[-_OTHERS:][0]), trial.sizes[name].step)
-        far[name] = steps > (_TORN if name == "x_in_mm" else _WITH_IT) * usual
-    drive = far.pop("x_in_mm")
-    return [int(row) for row in np.flatnonzero(drive & np.any(list(far.values()), axis=0))]
+    """Return the rows after which x_in and another channel jump as nowhere else in the run.
+
+    A jump is what a change differs by from the mean of the changes before and after it.
+    """
+    other = trial.repeats[1:] | (np.diff(trial.time_s) > GAP * trial.step_s)
+    known = np.convolve(other, np.ones(5), mode="same")[1:-1] == 0.0
+    far: dict[str, Mask] = {}
+    jumps = np.zeros(0)
+    for name in sorted(moving, key="x_in_mm".__eq__):  # its jumps are the last
+        steps = np.diff(trial.channels[name])
+        jumps = known * np.abs(steps[1:-1] - 0.5 * (steps[:-2] + steps[2:]))
+        usual = max(float(np.sort(jumps)[-_OTHERS:][0]), trial.sizes[name].step)
+        far[name] = jumps > (_TORN if name == "x_in_mm" else _WITH_IT) * usual
+    beside = np.pad(jumps, 1)
+    drive = far.pop("x_in_mm") & (jumps >= beside[:-2]) & (jumps > beside[2:])
+    return [int(row) + 1 for row in np.flatnonzero(drive & np.any(list(far.values()), axis=0))]
 
 
 def _places(
