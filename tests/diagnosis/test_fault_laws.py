@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.faults import search as s
 from tsas_cli.diagnosis.faults import shapes
-from tsas_cli.diagnosis.faults.beside import beside, one
+from tsas_cli.diagnosis.faults.beside import Candidate, beside, one
 from tsas_cli.diagnosis.faults.candidates import candidates
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
 from tsas_cli.diagnosis.faults.words import differing
@@ -311,3 +311,13 @@ def test_frictions_that_differ_by_more_than_scatter_are_said(more, said):
     runs = [Run(id=name, file="a", sha256=64 * "0") for name in "ab"]
     assert said in differing(frictions, runs).sentence
     assert differing(0.55 * frictions, runs) is None
+
+
+@pytest.mark.parametrize(
+    ("noise", "rest", "convinces"),
+    [(100.0, 500.0, True), (100.0, 600.0, False), (160.0, 600.0, True)],
+)
+def test_a_fault_beside_which_all_runs_err_is_no_reason(noise, rest, convinces):
+    """Of squares of 1,600: more than 0.3 of the excess, and four times the noise, are left."""
+    fault = s.FoundFault((Candidate("run-gain", 1, (F,), 0.2, 9.0),), 1.2, 600.0, rest, 1000.0)
+    assert s._convinces(fault, noise) == convinces

@@ -34,6 +34,18 @@ def test_friction_that_does_not_grow_with_the_bend_is_said(bends_rad, frictions,
     assert ("state total_bend_rad of each run" in said) == (None in bends_rad)
 
 
+@pytest.mark.parametrize(("of_last", "exchanged"), [(0.25, True), (0.5, False), (1.0, False)])
+def test_two_bends_that_are_exchanged_are_said(of_last, exchanged):
+    """Of 1 rad and 4 rad: the friction per radian is four times the usual one, and a quarter."""
+    runs = [
+        Run(id=f"r{k}", file="a", sha256=64 * "0", total_bend_rad=bend)
+        for k, bend in enumerate((1.0, 2.0, 3.0, 4.0))
+    ]
+    frictions = np.array([4.0, 1.0, 1.0, of_last])
+    said = differing(frictions / frictions.mean() - 1.0, runs).sentence
+    assert ("with those of runs r0 and r3 exchanged it is the same" in said) == exchanged
+
+
 @pytest.mark.parametrize(
     ("code", "channels", "amount", "between", "said"),
     [

@@ -152,3 +152,18 @@ def test_where_one_run_has_its_bend_a_law_of_friction_is_said_beside_a_wrong_ben
     assert "no other run has its bend" in found.sentence
     shared = record_of([Candidate("run-friction", 0, (), 0.1, 9.0)], ["a"])
     assert "no other run has its bend" not in shared.sentence
+
+
+def test_bends_that_are_exchanged_are_said(tmp_path):
+    dataset = made(tmp_path, "nothing", runs="abcd")
+    manifest = dataset / "dataset.toml"
+    stated = "total_bend_rad = "
+    head, a, b, c, d = manifest.read_text().split(stated)
+    (bend_b, rest_b), (bend_d, rest_d) = b.split("\n", 1), d.split("\n", 1)
+    assert bend_b != bend_d
+    manifest.write_text(stated.join([head, a, f"{bend_d}\n{rest_b}", c, f"{bend_b}\n{rest_d}"]))
+    found = diagnose(dataset)
+    (fault,) = found.record.faults
+    assert (found.verdict, fault.code) == ("unexplained", "run-frictions")
+    assert "with those of runs b and d exchanged it is the same" in fault.sentence
+    assert fault.sentence in found.reason

@@ -11,8 +11,9 @@ from tsas_cli.diagnosis import law as law_module
 from tsas_cli.diagnosis import law_bench
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import bench_folds
+from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.law import _excess, _taken, _worse, describe
-from tsas_cli.diagnosis.law_bench import priors_of
+from tsas_cli.diagnosis.law_bench import folds_by_tension, priors_of
 from tsas_cli.diagnosis.law_words import after_reversal, records_of, sentence_of
 from tsas_cli.diagnosis.moments import LATE
 from tsas_cli.diagnosis.nominal import nominal_fit
@@ -107,6 +108,26 @@ def test_a_parameter_that_does_as_much_as_the_residual_costs_a_tenth_of_a_block(
     assert cost("load_law.compliance_mm_per_N", 0.0025) == pytest.approx(2.5)
     assert cost("tendon_law.start_1", -0.3) == pytest.approx(2.5)
     assert not any(QUANTITIES[name].given for name in priors)
+
+
+@pytest.mark.parametrize(
+    ("highest_N", "fold"),
+    [
+        ((10.0, 50.0, 11.0, 52.0), [[0, 1, 0, 1]]),
+        ((10.0, 12.0, 14.0, 17.0), []),  # each within a quarter of the next
+        ((10.0, 20.0, 40.0, 80.0), []),  # the folds are runs already
+    ],
+)
+def test_runs_of_like_tension_are_held_out_together(highest_N, fold):
+    def run(highest):
+        return SimpleNamespace(run=SimpleNamespace(channel=lambda name: np.full(9, -highest)))
+
+    bench = SimpleNamespace(closed=[run(highest) for highest in highest_N])
+    by_run = np.repeat(np.arange(4), 3)
+    found = folds_by_tension(bench, Folds(by_run, np.arange(12), by_run, by_run=True))
+    assert [folds.fold[::3].tolist() for folds in found] == fold
+    stretches = Folds(by_run, np.arange(12), by_run, by_run=False)
+    assert folds_by_tension(bench, stretches) == []
 
 
 def test_a_cost_that_holds_the_law_back_is_lowered_while_held_out_runs_gain(tmp_path, monkeypatch):

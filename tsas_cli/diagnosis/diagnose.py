@@ -15,6 +15,7 @@ from tsas_cli.diagnosis.faults.words import (
     wandering,
 )
 from tsas_cli.diagnosis.fits import Fits
+from tsas_cli.diagnosis.friction_scatter import frictions_that_explain
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.hypotheses import Hypotheses
 from tsas_cli.diagnosis.intervals import estimates_with_tolerances
@@ -243,8 +244,12 @@ def _concluded(proven: Proven, base: FittedModel, step: Steps) -> Diagnosis:
     )
     fault = wandering(proven.after) if verdict == "unexplained" else None
     follows_nothing = verdict == "unexplained" and not proven.after.depends_on
-    if fault is None and (verdict == "sufficient" or follows_nothing):
-        frictions = frictions_of(final, proven.tolerated, folds.run)
+    if fault is None and verdict in ("sufficient", "unexplained"):
+        frictions = (
+            frictions_of(final, proven.tolerated, folds.run)
+            if verdict == "sufficient" or follows_nothing
+            else frictions_that_explain(bench, final)
+        )
         fault = differing(frictions, [errors.run.run for errors in bench.closed])
         verdict = verdict if fault is None else "unexplained"
     gaining = frozenset[str]() if proven.whole is None else proven.whole.judged.named

@@ -1,8 +1,12 @@
 """The scatter of friction from run to run: what every rig has, and is no cause."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import orthogonal_to, projector
 from tsas_cli.support.arrays import Floats, Indices
 
@@ -11,6 +15,7 @@ PLAUSIBLE = 2.0  # standard deviations of a tolerance
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
 OF_A_LINE = 2  # frictions, that a line goes through
 EQUAL = 1e-3  # relative difference, within which a quantity is the same in two runs
+LEFT = 0.3  # of the excess over the noise, by frictions of the runs' own that are the reason of it
 COINCIDENCE = 1e-3  # probability below which frictions in line are no coincidence
 
 
@@ -29,6 +34,25 @@ def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
     columns = friction_of_runs(trial, run)
     names = [(f"{FRICTION} {k}", k, 1.0) for k in range(columns.shape[1])]
     return trial.with_columns(names, columns, PLAUSIBLE)
+
+
+def frictions_that_explain(bench: Bench, trial: HypothesisFit) -> Floats:
+    """Return by which share each run's own friction exceeds the mean, shape (runs,).
+
+    They are fitted, however much they differ. Empty where they do not explain most of what a trial
+    without effects leaves over the noise.
+    """
+    shared = [u for u in bench.free if u.name == FRICTION and u.run is None]
+    runs = range(len(bench.rigs))
+    others = [u for u in bench.free if u not in shared]
+    own = [replace(u, run=k) for u in shared for k in runs]
+    fitted = replace(bench, free=(*own, *others)).fit(near=trial, on_mesh=trial.on_mesh)
+    if fitted.mean_square - 1.0 > LEFT * (trial.mean_square - 1.0):
+        return np.zeros(0)
+    values = np.array(
+        [QUANTITIES[FRICTION].unscaled(v) for v in fitted.solution.values[: len(own)]]
+    )
+    return np.asarray(values / values.mean() - 1.0)
 
 
 def is_in_line(trial: HypothesisFit, run: Indices, over: Floats) -> bool:

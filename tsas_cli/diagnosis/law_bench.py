@@ -27,6 +27,7 @@ CHANGES = {"drive_law": "f_in_N", "tendon_law": "f_in_N", "load_law": "x_out_mm"
 # Longest width over the longest stroke: an element as wide as half of it only adds a straight line.
 WIDEST = {"drive_law": 0.25, "tendon_law": 0.125, "load_law": 0.25}
 REST, FAST = 1e-3, 0.95  # share of a high speed that is rest, and the quantile of a high speed
+ALIKE = 1.25  # ratio of the highest tensions of two runs, up to which they are alike
 TOLERANCE = 3e-5  # of the squares, for the last step of a fit
 PRIOR = 0.1  # of a block's squares, the cost of a parameter that does as much as the residual
 PLAUSIBLE_FACTOR = 0.3  # of a law that changes the friction,
@@ -80,6 +81,26 @@ def in_channel_units(
         meshed=tuple(_over_rms(run, rms) for run in bench.meshed),
         coarse=tuple(_over_rms(run, rms) for run in bench.coarse),
     )
+
+
+def folds_by_tension(bench: Bench, folds: Folds) -> list[Folds]:
+    """Return folds of the runs whose tensions are alike, in a list; empty where all or none are.
+
+    What is learned from them alone shows how a law extrapolates to another load.
+    """
+    tensions = np.array([_highest_tension(run.run) for run in bench.closed])
+    order = np.argsort(tensions)
+    apart = tensions[order[1:]] > ALIKE * tensions[order[:-1]]
+    group = np.empty_like(order)
+    group[order] = np.concatenate(([0], np.cumsum(apart)))
+    if not folds.by_run or not apart.any() or apart.all():
+        return []
+    return [replace(folds, fold=group[folds.run])]
+
+
+def _highest_tension(run: Prepared) -> float:
+    values = [v for name in ("f_out_N", "f_in_N") if (v := run.channel(name)) is not None]
+    return float(np.nanquantile(np.abs(values[0]), FAST)) if values else 1.0
 
 
 def priors_of(bench: Bench, without: HypothesisFit, folds: Folds) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -23,6 +24,7 @@ STIFFER = "tendon-stiffness"
 PULLEYS = "a part that does not grow with the bend (pulley_friction), "
 LEAST_BENDS = 0.2  # range of the bends over the largest, by which a friction is judged
 IN_LINE = 0.1  # of the variance of the frictions, that a line over 1/bend leaves
+AS_EXCHANGED = 0.2  # of the range of the frictions, that is left where two bends are exchanged
 LEFT_OUT = ", or leave the run out with --runs,"
 
 
@@ -78,12 +80,30 @@ def differing(frictions: Floats, runs: Sequence[Run]) -> RecordingFault | None:
         f"Friction differs from run to run by {' to '.join(said)}, as by "
         + (PULLEYS if _falls_with(bends_rad, frictions) else "humidity, lubrication or wear, ")
         + (
-            "or where the stated bends are wrong"
+            f"or where the stated bends are wrong{_exchanged(bends_rad, frictions, runs)}"
             if all(run.total_bend_rad for run in runs)
             else "or where the bends differ: state total_bend_rad of each run"
         )
     )
     return RecordingFault(code="run-frictions", sentence=sentence)
+
+
+def _exchanged(bends_rad: Floats, frictions: Floats, runs: Sequence[Run]) -> str:
+    """Return which two bends, exchanged, make the frictions the same, or nothing."""
+    spread: dict[tuple[int, ...], float] = {(): float(np.ptp(frictions))}
+    for a, b in combinations(range(frictions.size), 2):
+        exchanged = bends_rad.copy()
+        exchanged[[a, b]] = bends_rad[[b, a]]
+        friction = (1.0 + frictions) * bends_rad / exchanged
+        spread[a, b] = float(np.ptp(friction / friction.mean()))
+    best = min(spread, key=lambda pair: spread[pair])
+    if not best or spread[best] > AS_EXCHANGED * spread[()]:
+        return ""
+    one, other = (runs[k].id for k in best)
+    return (
+        f": with those of runs {one} and {other} exchanged it is the same to within "
+        f"{100.0 * spread[best]:.1g} %"
+    )
 
 
 def _falls_with(bends_rad: Floats, frictions: Floats) -> bool:
