@@ -69,7 +69,7 @@ def test_two_causes_are_one_sentence_and_each_has_its_gain(diagnosed):
 
 def test_what_is_unknown_beside_a_cause_and_a_rival_are_not_kept_back(diagnosed):
     it = diagnosed("partly", named=[CAUSE])
-    assert it.kind == "Cause found, and something unknown beside it"
+    assert it.kind == "Cause found, but not everything agrees with it"
     assert it.verdict == "Backlash"
     it = diagnosed("ambiguous")
     assert it.kind.startswith("Cause found, but these recordings leave open which: normalised")

@@ -34,7 +34,7 @@ Verdict = Literal[
 VERDICTS: dict[Verdict, str] = {
     "named": "Cause found",
     "ambiguous": "Cause found, but these recordings leave open which",
-    "partly": "Cause found, and something unknown beside it",
+    "partly": "Cause found, but not everything agrees with it",
     "described": "Something without a name is missing, and described",
     "stand_in": "Something unknown is missing",
     "sufficient": "Nothing is missing",
