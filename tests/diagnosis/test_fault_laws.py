@@ -11,6 +11,7 @@ from tsas_cli.diagnosis.faults.beside import Candidate, beside, one
 from tsas_cli.diagnosis.faults.candidates import candidates
 from tsas_cli.diagnosis.faults.shapes import passed, runs_at
 from tsas_cli.diagnosis.faults.words import differing
+from tsas_cli.diagnosis.friction_scatter import frictions_that_explain
 from tsas_cli.diagnosis.tolerances import frictions_of
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
@@ -321,3 +322,10 @@ def test_a_fault_beside_which_all_runs_err_is_no_reason(noise, rest, convinces):
     """Of squares of 1,600: more than 0.3 of the excess, and four times the noise, are left."""
     fault = s.FoundFault((Candidate("run-gain", 1, (F,), 0.2, 9.0),), 1.2, 600.0, rest, 1000.0)
     assert s._convinces(fault, noise) == convinces
+
+
+@pytest.mark.parametrize(("free", "mean_square"), [((), 9.0), (("friction_coefficient",), 1.0)])
+def test_where_no_friction_is_fitted_or_only_noise_is_left_none_is_of_a_runs_own(free, mean_square):
+    unknowns = tuple(Unknown(name, None, 0.0, -9.0, 9.0, 1.0) for name in free)
+    bench, trial = SimpleNamespace(free=unknowns), SimpleNamespace(mean_square=mean_square)
+    assert frictions_that_explain(bench, trial).size == 0

@@ -22,7 +22,7 @@ from tsas_cli.identification.run_errors import (
 )
 from tsas_cli.identification.run_simulation import fitted_samples
 from tsas_cli.numerics.noise import Noise, with_memory
-from tsas_cli.numerics.pieces import scaled_without_shape
+from tsas_cli.numerics.sums import scaled_without_shape
 from tsas_studies.challenge.rig.motions import Motion, nested, sine, through, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig

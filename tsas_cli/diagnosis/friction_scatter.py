@@ -40,18 +40,18 @@ def frictions_that_explain(bench: Bench, trial: HypothesisFit) -> Floats:
     """Return by which share each run's own friction exceeds the mean, shape (runs,).
 
     They are fitted, however much they differ. Empty where they do not explain most of what a trial
-    without effects leaves over the noise.
+    without effects leaves over the noise, or no friction is fitted.
     """
-    shared = [u for u in bench.free if u.name == FRICTION and u.run is None]
-    runs = range(len(bench.rigs))
-    others = [u for u in bench.free if u not in shared]
-    own = [replace(u, run=k) for u in shared for k in runs]
+    shared = next((u for u in bench.free if u.name == FRICTION), None)
+    if shared is None or trial.mean_square <= 1.0:
+        return np.zeros(0)
+    own = [replace(shared, run=k) for k in range(len(bench.rigs))]
+    others = [u for u in bench.free if u is not shared]
     fitted = replace(bench, free=(*own, *others)).fit(near=trial, on_mesh=trial.on_mesh)
     if fitted.mean_square - 1.0 > LEFT * (trial.mean_square - 1.0):
         return np.zeros(0)
-    values = np.array(
-        [QUANTITIES[FRICTION].unscaled(v) for v in fitted.solution.values[: len(own)]]
-    )
+    scaled = fitted.solution.values[: len(own)]
+    values = np.array([QUANTITIES[FRICTION].unscaled(v) for v in scaled])
     return np.asarray(values / values.mean() - 1.0)
 
 

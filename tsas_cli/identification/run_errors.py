@@ -28,7 +28,7 @@ from tsas_cli.identification.run_simulation import (
 )
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.numerics.noise import Noise
-from tsas_cli.numerics.pieces import scaled_without_shape, sums_of
+from tsas_cli.numerics.sums import scaled_without_shape, sums_of
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.arrays import Floats, Indices, Mask

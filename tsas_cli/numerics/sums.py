@@ -1,4 +1,4 @@
-"""Series in pieces, which begin at given samples and reach to the next."""
+"""Sums over consecutive parts of a series, which begin at given samples."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from tsas_cli.support.arrays import Floats, Indices
 
 @kernel
 def sums_of(values: Floats, starts: Indices) -> Floats:
-    """Return the sum of each piece, in half the time of numpy's `add.reduceat`."""
+    """Return the sum of each part, in half the time of numpy's `add.reduceat`."""
     out = np.zeros(starts.size)
     for k in range(starts.size):
         end = starts[k + 1] if k + 1 < starts.size else values.size
@@ -21,7 +21,7 @@ def sums_of(values: Floats, starts: Indices) -> Floats:
 def scaled_without_shape(
     values: Floats, scale: Floats, at: Indices, shape: Floats, starts: Indices
 ) -> Floats:
-    """Return e − s (s·e) of each piece, e the values over their scale at some samples, s its shape.
+    """Return e − s (s·e) of each part, e the values over their scale at some samples, s its shape.
 
     Shapes (n,) of values and scale, (m,) of the samples `at` and of the shape.
     """
