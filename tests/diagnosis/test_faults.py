@@ -21,7 +21,7 @@ def simulated_once():
     kept, clean_run = {}, bench.clean_run
 
     def once(*of, **how):
-        if (key := repr(of)) not in kept:
+        if (key := repr((of, how))) not in kept:
             kept[key] = clean_run(*of, **how)
         return kept[key]
 
