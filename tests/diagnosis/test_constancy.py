@@ -68,12 +68,20 @@ def test_a_value_that_changes_with_a_signal_is_split_by_it(signal):
     assert low < middle < high
 
 
-def test_a_value_of_one_run_is_split_by_run():
-    found = worst(np.where(RUN == 2, 1.5, 1.0))
+@pytest.mark.parametrize("times", [1.25, 1.5])
+def test_a_value_of_one_run_is_split_by_run(times):
+    found = worst(np.where(RUN == 2, times, 1.0))
     assert found.by == "run"
     values = dict(found.values)
-    assert values["run c"] / values["run a"] == pytest.approx(1.5, abs=0.05)
+    assert values["run c"] / values["run a"] == pytest.approx(times, abs=0.05)
     assert values["run b"] / values["run a"] == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_value_that_differs_from_run_to_run_by_less_than_a_fifth_is_that_of_the_mounting():
+    of_run = np.where(RUN == 2, 1.15, 1.0)
+    assert worst(of_run) is None
+    pulls = SIGNALS["direction"] > 0.0
+    assert worst(np.where(pulls, 1.4 * of_run, of_run)).by == "direction"
 
 
 def test_a_value_at_its_bound_is_not_split():

@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.proof import BY_NAME, failures, may_be_zero, of_one_size, split_in_words
+from tsas_cli.diagnosis.proof import BY_NAME, failures, may_be_zero, split_in_words
 from tsas_cli.diagnosis.refitted import HeldOutFit
 from tsas_cli.identification.estimate import Estimate
 
@@ -242,4 +242,4 @@ def test_a_size_that_is_known_at_each_shape_is_not_zero():
 )
 def test_an_effect_of_another_law_is_about_as_large_everywhere(parameter, values, of_one):
     parts = tuple(zip("abc", values, strict=False))
-    assert of_one_size(Split(parameter, "speed", CLEAR, parts)) == of_one
+    assert Split(parameter, "speed", CLEAR, parts).of_one_size() == of_one

@@ -3,9 +3,10 @@
 A mechanism has one value; what stands in for another mechanism has another one wherever it is
 asked (invariant prediction, Peters, Buehlmann and Meinshausen 2016). An effect's columns of the
 Jacobian are split by direction, by thirds of each signal, and by run. Where values of their own for
-the parts predict held-out data better than one value does, the effect is not constant. Each run has
-a friction of its own meanwhile, unless that is all the effect does, and load cells and bend are
-within their tolerances. Linear: no simulation.
+the parts predict held-out data better than one value does, the effect is not constant; but from run
+to run, mounted anew, it may differ by a fifth. Each run has a friction of its own meanwhile, unless
+that is all the effect does, and load cells and bend are within their tolerances. Linear: no
+simulation.
 """
 
 from dataclasses import dataclass, replace
@@ -29,6 +30,10 @@ from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_GAIN = 0.03  # least reduction of the squares by values of their own; right names reach 0.01
+MOST_APART = 2.0  # factor between the sizes in the parts of a split; of right names at most 1.8
+OF_MOUNTING = (
+    1.2  # factor between the sizes in runs, which are mounted anew: right names reach 1.15
+)
 THIRDS = ("low", "middle", "high")
 DIRECTIONS = ("releasing", "pulling")
 
@@ -45,6 +50,14 @@ class Split:
     by: str
     gain: Reduction
     values: tuple[tuple[str, float], ...]
+
+    def of_one_size(self, most: float = MOST_APART) -> bool:
+        """Return whether the sizes in the parts are within a factor of each other."""
+        quantity = QUANTITIES[self.parameter]
+        neutral = 0.0 if quantity.shape else quantity.default
+        sizes = sorted(value - neutral for _, value in self.values)
+        nearest, farthest = sorted((sizes[0], sizes[-1]), key=abs)
+        return nearest * farthest > 0.0 and abs(farthest) <= most * abs(nearest)
 
 
 def worst_split(
@@ -73,8 +86,9 @@ def worst_split(
         found = gain(before(by == RUN), after)
         if found.beyond(LEAST_GAIN) and (worst is None or found.part > worst.gain.part):
             name, values = _values(trial, extended, columns, shape)
-            pairs = tuple(zip(labels, values, strict=True))
-            worst = Split(name, by, found, pairs)
+            split = Split(name, by, found, tuple(zip(labels, values, strict=True)))
+            if by != RUN or not split.of_one_size(OF_MOUNTING):
+                worst = split
     return worst
 
 

@@ -26,7 +26,6 @@ from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import listed
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
-MOST_APART = 2.0  # factor between its sizes in the parts of a split; of right names at most 1.8
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 MOST_PARTS = 4  # of a split that a sentence lists
@@ -199,15 +198,6 @@ def may_be_zero(
     precision = np.linalg.pinv(related, hermitian=True)[np.ix_(rows, rows)]
     z = TWO_SIDED * np.array(deviations)
     return float(z @ precision @ z) <= float(chdtri(len(rows), 0.05))
-
-
-def of_one_size(split: Split) -> bool:
-    """Return whether an effect is about as large in each part of a split as in the others."""
-    quantity = QUANTITIES[split.parameter]
-    neutral = 0.0 if quantity.shape else quantity.default
-    sizes = sorted(value - neutral for _, value in split.values)
-    nearest, farthest = sorted((sizes[0], sizes[-1]), key=abs)
-    return nearest * farthest > 0.0 and abs(farthest) <= MOST_APART * abs(nearest)
 
 
 def split_in_words(split: Split) -> str:

@@ -22,7 +22,6 @@ from tsas_cli.diagnosis.proof import (
     FoundCause,
     failures,
     may_be_zero,
-    of_one_size,
     split_in_words,
 )
 from tsas_cli.diagnosis.refitted import HeldOutFit, gain_anywhere, refitted
@@ -190,7 +189,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     law = "" if split is None or _within_interval(split, own) else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
     much_left = last.structure > ANOTHER_LAW * excess
-    if split is not None and (much_left or (law and not of_one_size(split))):
+    if split is not None and (much_left or (law and not split.of_one_size())):
         failed, law = (f"is not constant {split_in_words(split)}", *failed), ""
     interval = gains[1], gains[2]
     negligible = not again.convincing and (zero or again.part < LEAST_REDUCTION)
