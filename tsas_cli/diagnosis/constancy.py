@@ -31,9 +31,7 @@ from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_GAIN = 0.03  # least reduction of the squares by values of their own; right names reach 0.01
 MOST_APART = 2.0  # factor between the sizes in the parts of a split; of right names at most 1.8
-OF_MOUNTING = (
-    1.2  # factor between the sizes in runs, which are mounted anew: right names reach 1.15
-)
+OF_MOUNTING = 1.2  # the same, of runs, which are mounted anew: of a right name 1.15
 THIRDS = ("low", "middle", "high")
 DIRECTIONS = ("releasing", "pulling")
 

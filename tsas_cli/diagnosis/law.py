@@ -147,7 +147,7 @@ def _found(
     scatter = scatter_is_no_effect(start, folds.run)
     held_out: dict[bool, tuple[HypothesisFit, HeldOutFit]] = {}
     found: list[_Predicting] = []
-    fits: list[HypothesisFit] = []
+    fits: dict[tuple[str, ...], HypothesisFit] = {}
     for names in sets:
         step.doing(f"fits laws of unnamed origin: {' + '.join(names)}")
         mesh = start.on_mesh or bench.on_mesh(names)
@@ -156,13 +156,10 @@ def _found(
             held_out[mesh] = without, refitted(bench, without, folds, scatter=scatter)
         without, before = held_out[mesh]
         bench = replace(bench, priors=priors_of(bench, without, folds))
-        near = min(
-            (f for f in fits if f.on_mesh == mesh and {*names} > {*f.effects} - {*start.effects}),
-            key=lambda f: f.mean_square,
-            default=without,
-        )
+        smaller = (f for of, f in fits.items() if f.on_mesh == mesh and {*of} < {*names})
+        near = min(smaller, key=lambda f: f.mean_square, default=without)
         fitted = bench.fit([*sorted(start.effects), *names], near=near, on_mesh=mesh)
-        fits.append(fitted)
+        fits[names] = fitted
         step()
         fewer = [f.trial.mean_square for f in found if len(f.names) < len(names)]
         enough = LEAST_TAKEN * _excess(noise, before)
@@ -224,20 +221,22 @@ def _at_lower_cost(
     it gained on the loads that were learned, and lost 0.5 N of 1.2 N on a new one.
     """
     by_tension = folds_by_tension(bench, folds)
-    known = [best.after, *(refitted(bench, best.trial, f, scatter=scatter) for f in by_tension)]
+
+    def squares(of: Bench, trial: HypothesisFit, held_out: Folds) -> float:
+        return float(refitted(of, trial, held_out, scatter=scatter).squares.sum())
+
     for _ in range(LIGHTER):
         priors = {name: prior * LOWER for name, prior in bench.priors.items()}
         lighter, of_trial = replace(bench, priors=priors), best.trial
         fitted = lighter.fit(sorted(of_trial.effects), near=of_trial, on_mesh=of_trial.on_mesh)
-        held_out = [refitted(lighter, fitted, f, scatter=scatter) for f in (folds, *by_tension)]
-        gains = [
-            float(now.squares.sum()) < float(before.squares.sum())
-            for now, before in zip(held_out, known, strict=True)
-        ]
-        if not all(gains) or _worse(best.before, held_out[0]):
+        after = refitted(lighter, fitted, folds, scatter=scatter)
+        if after.squares.sum() >= best.after.squares.sum() or _worse(best.before, after):
             break
-        bench, known = lighter, held_out
-        best = best._replace(trial=fitted, after=held_out[0])
+        if by_tension is not None:
+            before = squares(bench, of_trial, by_tension)
+            if squares(lighter, fitted, by_tension) >= before:
+                break
+        bench, best = lighter, best._replace(trial=fitted, after=after)
     return bench, best
 
 

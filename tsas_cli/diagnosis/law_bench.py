@@ -83,8 +83,8 @@ def in_channel_units(
     )
 
 
-def folds_by_tension(bench: Bench, folds: Folds) -> list[Folds]:
-    """Return folds of the runs whose tensions are alike, in a list; empty where all or none are.
+def folds_by_tension(bench: Bench, folds: Folds) -> Folds | None:
+    """Return folds of the runs whose tensions are alike, or None where all or none are.
 
     What is learned from them alone shows how a law extrapolates to another load.
     """
@@ -94,8 +94,8 @@ def folds_by_tension(bench: Bench, folds: Folds) -> list[Folds]:
     group = np.empty_like(order)
     group[order] = np.concatenate(([0], np.cumsum(apart)))
     if not folds.by_run or not apart.any() or apart.all():
-        return []
-    return [replace(folds, fold=group[folds.run])]
+        return None
+    return replace(folds, fold=group[folds.run])
 
 
 def _highest_tension(run: Prepared) -> float:

@@ -24,8 +24,8 @@ from tsas_cli.support.arrays import Floats, Indices
 
 MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
-PER_MEAN = 4.0  # simulated samples
-PER_STROKE = 75.0  # times as many, at least
+PER_MEAN = 4.0  # simulated samples for each mean
+MEANS_OF_STROKE = 75  # that a stroke counts for in that, at least
 SHARP = 4  # strides after a reversal in which every sample is simulated
 
 
@@ -42,7 +42,7 @@ def points(run: Prepared, per_mean: float = PER_MEAN) -> Indices:
     """
     n = run.time_s.size
     reversals = run.conditioned[run.drive_column].reversals
-    wanted = per_mean * max(MOST_MEANS, PER_STROKE * (reversals.size - 1))
+    wanted = per_mean * max(MOST_MEANS, MEANS_OF_STROKE * (reversals.size - 1))
     stride = max(1, int(n // wanted))
     followed = np.arange(n) % stride == 0
     for reversal in reversals:  # the last sample is one of them

@@ -99,9 +99,7 @@ def test_a_run_is_torn_where_the_drive_goes_ten_times_and_another_three_times_as
 ):
     """As the least of the twenty largest jumps, those of the tear among them."""
     far = np.arange(N) > 150
-    jerky = 0.1 * (np.arange(N) // 2) + np.arange(
-        N
-    )  # each change differs from those beside it by 0.1
+    jerky = 0.1 * (np.arange(N) // 2) + np.arange(N)  # each change is 0.1 from the next
     columns = {
         "x_in_mm": jerky + 0.1 * (1.0 - by) * far,
         "f_in_N": jerky + 0.1 * (1.0 - other) * far,

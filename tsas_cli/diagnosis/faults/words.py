@@ -90,14 +90,14 @@ def differing(frictions: Floats, runs: Sequence[Run]) -> RecordingFault | None:
 
 def _exchanged(bends_rad: Floats, frictions: Floats, runs: Sequence[Run]) -> str:
     """Return which two bends, exchanged, make the frictions the same, or nothing."""
-    spread: dict[tuple[int, ...], float] = {(): float(np.ptp(frictions))}
+    spread = {}
     for a, b in combinations(range(frictions.size), 2):
         exchanged = bends_rad.copy()
         exchanged[[a, b]] = bends_rad[[b, a]]
         friction = (1.0 + frictions) * bends_rad / exchanged
         spread[a, b] = float(np.ptp(friction / friction.mean()))
-    best = min(spread, key=lambda pair: spread[pair])
-    if not best or spread[best] > AS_EXCHANGED * spread[()]:
+    best = min(spread, key=spread.__getitem__)
+    if spread[best] > AS_EXCHANGED * np.ptp(frictions):
         return ""
     one, other = (runs[k].id for k in best)
     return (

@@ -93,15 +93,14 @@ def _torn(trial: RunSignals, moving: Sequence[str]) -> list[int]:
     """
     other = trial.repeats[1:] | (np.diff(trial.time_s) > GAP * trial.step_s)
     known = np.convolve(other, np.ones(5), mode="same")[1:-1] == 0.0
-    far: dict[str, Mask] = {}
-    jumps = np.zeros(0)
-    for name in sorted(moving, key="x_in_mm".__eq__):  # its jumps are the last
+    jumps, far = {}, {}
+    for name in moving:
         steps = np.diff(trial.channels[name])
-        jumps = known * np.abs(steps[1:-1] - 0.5 * (steps[:-2] + steps[2:]))
-        usual = max(float(np.sort(jumps)[-_OTHERS:][0]), trial.sizes[name].step)
-        far[name] = jumps > (_TORN if name == "x_in_mm" else _WITH_IT) * usual
-    beside = np.pad(jumps, 1)
-    drive = far.pop("x_in_mm") & (jumps >= beside[:-2]) & (jumps > beside[2:])
+        jumps[name] = known * np.abs(steps[1:-1] - 0.5 * (steps[:-2] + steps[2:]))
+        usual = max(float(np.sort(jumps[name])[-_OTHERS:][0]), trial.sizes[name].step)
+        far[name] = jumps[name] > (_TORN if name == "x_in_mm" else _WITH_IT) * usual
+    of_drive, beside = jumps["x_in_mm"], np.pad(jumps["x_in_mm"], 1)
+    drive = far.pop("x_in_mm") & (of_drive >= beside[:-2]) & (of_drive > beside[2:])
     return [int(row) + 1 for row in np.flatnonzero(drive & np.any(list(far.values()), axis=0))]
 
 
