@@ -18,6 +18,7 @@ from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
 from tsas_cli.diagnosis.tolerances import (
     tolerances,
     with_tolerances,
+    with_zeros_of_runs,
     without_tolerances,
     without_travel,
 )
@@ -110,7 +111,8 @@ class Fits:
         """Return the share of the squares with these effects that tolerances take away."""
         if names not in self.taken:
             trial = self.trial(names)
-            left = without_tolerances(trial, self.tolerated[trial.on_mesh], self.folds.run)
+            tolerated = with_zeros_of_runs(self.bench, trial, self.tolerated[trial.on_mesh])
+            left = without_tolerances(trial, tolerated, self.folds.run)
             self.taken[names] = 1.0 - float(left @ left) / float(np.sum(trial.solution.residual**2))
         return self.taken[names]
 

@@ -17,7 +17,12 @@ from tsas_cli.diagnosis.held_out import Folds, in_stretches
 from tsas_cli.diagnosis.moments import at_moments, oscillation, ripple
 from tsas_cli.diagnosis.regression import hats, regressed
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals, signals_at_residuals
-from tsas_cli.diagnosis.tolerances import rigs_with_tolerances, tolerances, without_tolerances
+from tsas_cli.diagnosis.tolerances import (
+    rigs_with_tolerances,
+    tolerances,
+    with_zeros_of_runs,
+    without_tolerances,
+)
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.hypothesis_fit import HypothesisFit
 from tsas_cli.numerics.covariance import autocovariance
@@ -27,6 +32,7 @@ DEPENDS = 0.02  # least share of the squares that a signal alone explains
 STRUCTURE = 0.05  # of the noise's square, that a complete model leaves unexplained at most
 MOST_SLOW = 2.0  # square of slow noise over that of white noise, beyond which it is an error
 LEAST_SLOW = 0.15  # the same, below which there is none
+LINEAR = 2e-4  # of a channel's range: RMS by which good sensors are off the line
 JERK_S = 0.2  # memory of an error up to which it is no drift
 
 
@@ -109,15 +115,16 @@ def remainder(
 ) -> Remainder:
     """Return the remaining residual of a trial, with the signals at its residuals.
 
-    What is plausible on every rig is left out: friction of each run's own, and `tolerated`, changes
-    of the residuals by one standard deviation of tolerances, shape (n, m).
+    What is plausible on every rig is left out: friction and zeros of each run's own, and
+    `tolerated`, changes of the residuals by one standard deviation of tolerances, shape (n, m).
     """
     fitted = [bench.rig(trial, k) for k in range(len(bench.rigs))]
     runs = bench.errors_for(trial)
     by_run = [run.errors(rig) for run, rig in zip(runs, fitted, strict=True)]
     errors = {n: [of_run[n] for of_run in by_run if n in of_run] for n in bench.channels}
+    tolerated = with_zeros_of_runs(bench, trial, tolerated)
     residual = without_tolerances(trial, tolerated, folds.run)
-    by_channel = _by_channel(trial, folds, at_residuals, residual, errors)
+    by_channel = _by_channel(bench, trial, folds, at_residuals, residual, errors)
     count = sum(part.samples for part in by_channel.values())
     alone = {s: 0.0 for s in at_residuals.signals if s != DIRECTION}
     for part in by_channel.values():
@@ -175,6 +182,7 @@ class _OfChannel:
 
 
 def _by_channel(
+    bench: Bench,
     trial: HypothesisFit,
     folds: Folds,
     at_residuals: AtResiduals,
@@ -202,6 +210,8 @@ def _by_channel(
         squares = sum(float(part @ part) for part in parts)
         of_mean = float(np.mean(own**2)) * own.size / samples
         explained = max(best.part, 0.0) * of_mean if best.convincing else 0.0
+        if explained < _linear_over_noise(bench, name) ** 2:
+            explained = 0.0
         share = best.part if explained > 0.0 else 0.0
         by_tolerances = float(np.sum(trial.solution.residual[here] ** 2)) - total
         slow = (squares - by_tolerances) / samples - explained - 1.0
@@ -212,6 +222,15 @@ def _by_channel(
             by_signal[signal] = max(total - float(rest @ rest), 0.0)
         out[name] = _OfChannel(samples, squares, explained, share, structure, slow, by_signal)
     return out
+
+
+def _linear_over_noise(bench: Bench, name: str) -> float:
+    """Return to how many times its noise a channel is linear, as no sensor is better."""
+    recorded = [run.run for run in bench.closed if name in run.samples]
+    values = np.concatenate([run.measured[name] for run in recorded])
+    noise = float(np.median([run.noise[name] for run in recorded]))
+    span = float(np.nanmax(values) - np.nanmin(values))
+    return LINEAR * span / noise if noise > 0.0 else 0.0
 
 
 def _memory_s(bench: Bench, name: str, errors: list[Floats]) -> float:

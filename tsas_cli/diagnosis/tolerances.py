@@ -30,7 +30,7 @@ GROWTH = f"{PRESLIDING}.growth"
 TRAVEL, TRAVEL_MM = f"{PRESLIDING}.length_mm", 0.003  # asperities of metal give way by so much
 LONGEST_MM = PLAUSIBLE * TRAVEL_MM
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
-ZERO = 0.001  # the same of its zero, from run to run
+ZERO = 0.002  # the same of its zero, from run to run
 FORCES = "f_in_N", "f_out_N"
 
 # What is wrong of a load cell; with a channel, by newton of its largest reading.
@@ -91,6 +91,21 @@ def largest_forces(bench: Bench) -> dict[str, float]:
     }
 
 
+def with_zeros_of_runs(bench: Bench, trial: HypothesisFit, tolerated: Floats) -> Floats:
+    """Return what tolerances change, (n, m), with the zeros of the force sensors of each run."""
+    from scipy.linalg import block_diag
+
+    runs = bench.errors_for(trial)
+    sizes = {name: ZERO * size for name, size in largest_forces(bench).items()}
+    if len(runs) < 2 or not sizes:
+        return tolerated
+    columns = []
+    for run in runs:
+        one = np.ones(run.run.time_s.size)
+        columns.append(np.stack([run.changed({n: size * one}) for n, size in sizes.items()]).T)
+    return np.hstack((tolerated, block_diag(*columns)))
+
+
 def without_tolerances(
     trial: HypothesisFit, tolerated: Floats, run: Indices | None = None
 ) -> Floats:
@@ -117,8 +132,8 @@ def rigs_with_tolerances(
     lower, upper = np.array([(u.lower, u.upper) for u in trial.unknowns]).T
     values = np.clip(trial.solution.values - trial.moved_by(columns) @ amounts, lower, upper)
     fitted, sizes = trial.values(), _sizes(bench)
-    frictions, of_effects, bends = np.split(
-        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes)))
+    frictions, of_effects, bends, _ = np.split(
+        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes), len(BEND)))
     )
     of_effects[len(LOAD_CELLS)] = max(of_effects[len(LOAD_CELLS)], 0.0)  # no length is negative
     set_to = {

@@ -12,6 +12,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.faults.beside import HIDDEN, TINY, Beside, Candidate, beside, one
 from tsas_cli.diagnosis.faults.candidates import (
+    MOST_SCATTER,
     OF_A_SIZE,
     OF_THE_CATALOGUE,
     OWN_FRICTION,
@@ -23,6 +24,8 @@ from tsas_cli.diagnosis.faults.shapes import WINDOWS, ReadRun, runs_at
 from tsas_cli.diagnosis.fits import Fits
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.diagnosis.signals import channel_of_residuals
+from tsas_cli.diagnosis.tolerances import ZERO, largest_forces
+from tsas_cli.identification.extension import Bench
 from tsas_cli.support.arrays import Floats
 
 LEAST_EXCESS = 0.05  # of the squares of the noise, that a fault is sought for
@@ -74,7 +77,18 @@ def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | No
         own = of_frictions(trial, tolerated, run, [rig.total_bend_rad for rig in bench.rigs])
         choices += [_judged([c], squares, run.size) for c, squares in own]
     convincing = [fault for fault in choices if _convinces(fault, run.size)]
-    return min(convincing, key=lambda fault: fault.rest) if convincing else None
+    best = min(convincing, key=lambda fault: fault.rest, default=None)
+    if best is None or any(_is_tolerated_zero(bench, one) for one in best.found):
+        return None
+    return best
+
+
+def _is_tolerated_zero(bench: Bench, fault: Candidate) -> bool:
+    """Return whether a fault is a zero of a force sensor no further off than that of every run."""
+    forces = largest_forces(bench)
+    least = min((forces[name] for name in fault.channels if name in forces), default=0.0)
+    whole_run = fault.code == "run-offset" and not fault.edges
+    return whole_run and abs(fault.amount) <= MOST_SCATTER * ZERO * least
 
 
 def simplest(found: Sequence[Candidate]) -> Candidate:
