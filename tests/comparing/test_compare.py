@@ -8,7 +8,9 @@ import tomlkit
 
 from tests.comparing.made import NOMINAL, calibrated
 from tsas_cli.comparing.compare import compare
+from tsas_cli.comparing.predictions import Predictions
 from tsas_cli.comparing.sentences import findings, notes
+from tsas_cli.comparing.sides import read_side
 from tsas_cli.comparing.stage import record_of, tables
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.stages.calibrate import calibrate
@@ -129,6 +131,15 @@ def test_another_recording_of_the_same_name_keeps_its_own_preload(root, tmp_path
     own = compare(whole, spoiled, on=read_dataset(root / "data-1"))
     slow = [r.ratio for r in own.errors if r.run_a == "slow" and r.channel == "f_out_N"]
     assert slow[0] > 10.0
+
+
+def test_each_side_is_held_to_its_runs_under_its_own_conditions(root):
+    """A recording that both have read is prepared for each, where they state another bend."""
+    stated = read_dataset(root / "data-1")
+    side, predictions = read_side(root / "calibrated-1"), Predictions()
+    for data in (stated, stated.under(total_bend_rad=1.0)):
+        bends = {one.run.run.total_bend_rad for one in predictions.of(side, data)}
+        assert bends == {run.total_bend_rad for run in data.runs}
 
 
 def test_two_model_files_alone_give_their_values_and_say_what_gives_more(root):

@@ -100,6 +100,14 @@ def test_a_recording_of_an_even_clock_and_channels_at_rest_is_taken(tmp_path, pa
     assert "1000000 rows" in numbers
 
 
+@pytest.mark.parametrize("name", ["own", "my.own"])
+def test_a_column_of_lists_is_refused_whatever_its_name(tmp_path, name):
+    pq.write_table(pa.table({name: [[1.0], [2.0, 3.0]]}), tmp_path / "a.parquet")
+    with open_parquet(tmp_path / "a.parquet") as file:
+        said = refusal(lambda: check_size(file, tmp_path / "a.parquet", [name], whole=False))
+    assert f"column {name}.list.element holds lists" in said
+
+
 def test_the_page_states_the_limits():
     text = (ROOT / "docs/untrusted.md").read_text(encoding="utf-8").replace(",", "")
     numbers = {int(n) for n in re.findall(r"\d+", text)}

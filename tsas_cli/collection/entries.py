@@ -99,8 +99,8 @@ def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> Entry:
     try:
         return _manifest(connection, folder) if file == MANIFEST else _diagnosis(folder)
     except InputError as error:
-        without_location = InputError(error.what, expected=error.expected, remedy=error.remedy)
-        return {"problems": [without_location.line()]}
+        error.where = ""  # the index knows the file
+        return {"problems": [error.line()]}
     except OSError as error:
         return {"problems": [f"cannot be read ({error.strerror})"]}
     except (ValueError, OverflowError) as error:  # a time or number beyond what can be held

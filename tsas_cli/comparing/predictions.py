@@ -11,6 +11,7 @@ from tsas_cli.identification.own_values import with_own_values
 from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.session import seconds_into
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.writing import check_rows, columns_of, names_of, result_file
@@ -71,7 +72,7 @@ class Predictions:
 
     def __init__(self, step: Steps = NO_PROGRESS) -> None:
         """Take what is called after each run."""
-        self._prepared: dict[tuple[Location, str], Prepared] = {}
+        self._prepared: dict[tuple[Location, Run], Prepared] = {}
         self._step = step
 
     def of(
@@ -83,7 +84,7 @@ class Predictions:
         start = None if side.model is None else side.model.session_start(dataset.manifest)
         out = []
         for run in dataset.runs:
-            key = (dataset.folder.resolve(), run.id)
+            key = (dataset.folder.resolve(), run)  # whose conditions a side may have replaced
             if key not in self._prepared:
                 self._prepared[key] = prepare(dataset[run.id])
             ready = self._prepared[key]

@@ -96,7 +96,8 @@ def check_size(
     expanded = Expanded(path, of_file, limits.PARQUET_EXPANSION)
     metadata = file.metadata
     every = (metadata.schema.column(leaf) for leaf in range(metadata.num_columns))
-    leaves = [leaf for leaf in every if leaf.path.split(".")[0] in names]
+    # The path of a leaf begins with its column's name, which may hold dots itself.
+    leaves = [leaf for leaf in every if f"{leaf.path}.".startswith(tuple(f"{n}." for n in names))]
     for leaf in leaves:
         if leaf.max_repetition_level > 0:
             raise InputError(f"column {leaf.path} holds lists", where=path, expected="numbers")

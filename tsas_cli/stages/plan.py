@@ -1,7 +1,6 @@
 """The plan stage: what a dataset's or a rig file's runs could show, as JSON and as tables."""
 
 import math
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import TINY
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
+from tsas_cli.recordings.storage import location_text
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, path_of, place_of
@@ -94,7 +94,7 @@ def plan(
             of, planned = counted.dataset.header(path), plan_dataset(counted, step)
         else:
             file = read_rig_file(runs)
-            where = Path(os.path.relpath(runs.resolve(), (path or Path()).resolve())).as_posix()
+            where = location_text(path or Path(), runs)
             rig = {"name": file.name, "file": where, "sha256": sha256_of(runs)}
             of, planned = {"rig": rig}, plan_rig(file, step)
         record = record_of(planned, **of)

@@ -97,10 +97,8 @@ def upload(
         manifest.write_bytes(content)
     except InputError as error:
         there = f"{len(files)} of {count_of(len(dataset.runs), 'recording')} are there"
-        remedy = "; ".join(filter(None, (error.remedy, there, "the next call goes on")))
-        raise InputError(
-            error.what, where=error.where, expected=error.expected, remedy=remedy
-        ) from error
+        error.remedy = "; ".join(filter(None, (error.remedy, there, "the next call goes on")))
+        raise
     files[MANIFEST_FILE] = len(content)
     summary = heading("upload") | {"folder": str(source), "address": str(target), "files": files}
     return UploadResult(summary, None)

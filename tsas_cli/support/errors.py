@@ -34,6 +34,9 @@ class InputError(Exception):
         self.what, self.where, self.expected, self.remedy = what, str(where), expected, remedy
         super().__init__(self.line())
 
+    def __str__(self) -> str:
+        return self.line()
+
     def line(self) -> str:
         """Return the whole message on one line, with control characters escaped."""
         expected = f"expected {self.expected}" if self.expected else ""

@@ -257,12 +257,8 @@ def _named(temporary: Path, path: Path) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if str(temporary) not in error.where:
-            raise
-        where = error.where.replace(str(temporary), str(path))
-        raise InputError(
-            error.what, where=where, expected=error.expected, remedy=error.remedy
-        ) from error
+        error.where = error.where.replace(str(temporary), str(path))
+        raise
 
 
 def unwritable(path: Path, error: OSError) -> InputError:

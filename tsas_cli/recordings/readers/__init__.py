@@ -152,9 +152,7 @@ def _checked(
             file = converted.converted(file, options, partial(_call, "convert"))
         yield module, file
     except InputError as error:
-        if file != path:
-            error.where = error.where.replace(str(file), str(path))
-            error.args = (error.line(),)
+        error.where = error.where.replace(str(file), str(path))
         raise
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error
