@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tsas_cli.diagnosis.tolerances import LONGEST_MM
+from tsas_cli.diagnosis.tolerances import LONGEST_MM, TRAVEL_MM
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.rig import Rig
@@ -33,6 +33,7 @@ SHARP, ASIDE = 3.0, 1.3  # so many times that of any wave whose period differs b
 CYCLES = 5.0, 60.0, 0.2  # of such a wave within the longest stroke: from, to, step
 MOST = 1000  # errors of a run that are taken for it
 SAME = 0.1  # relative difference of frequencies that are the same
+TINY_MM = 1e-9
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
 
 
@@ -52,7 +53,7 @@ def at_moments(
         if _is_late(np.concatenate(seen)):
             late.append(name)
         if any(
-            _is_brief(part[name], _unseen(run, name) / run.weights[name][run.samples[name]])
+            _is_brief(part[name], _unseen_in(run, name))
             for (run, _), part in zip(pairs, parts, strict=True)
             if name in part
         ):
@@ -66,6 +67,21 @@ def _unseen(run: RunErrors, name: str) -> float:
     if not name.endswith("_mm") or not drive.endswith("_mm"):
         return 0.0
     return max(LONGEST_MM, run.run.conditioned[drive].step)
+
+
+def _unseen_in(run: RunErrors, name: str) -> Floats | float:
+    """Return up to which error each sample of a channel may be off unseen, over its weight.
+
+    A force changes with a contact's travel as it does with the noise of the drive.
+    """
+    at = run.samples[name]
+    weight = run.weights[name][at]
+    if name.endswith("_mm") or not run.run.drive_column.endswith("_mm"):
+        return _unseen(run, name) / weight
+    drive = run.run.conditioned[run.run.drive_column]
+    of_drive = np.sqrt(np.maximum(weight**2 - run.run.noise[name] ** 2, 0.0))
+    moved = np.maximum(drive.sd[at], TINY_MM)
+    return np.asarray(of_drive / moved * max(TRAVEL_MM, drive.step) / weight)
 
 
 def _is_brief(errors: Floats, least: Floats | float = 0.0) -> bool:

@@ -122,8 +122,8 @@ def remainder(
     runs = bench.errors_for(trial)
     by_run = [run.errors(rig) for run, rig in zip(runs, fitted, strict=True)]
     errors = {n: [of_run[n] for of_run in by_run if n in of_run] for n in bench.channels}
-    tolerated = with_zeros_of_runs(bench, trial, tolerated)
-    residual = without_tolerances(trial, tolerated, folds.run)
+    beside = with_zeros_of_runs(bench, trial, tolerated)
+    residual = without_tolerances(trial, beside, folds.run)
     by_channel = _by_channel(bench, trial, folds, at_residuals, residual, errors)
     count = sum(part.samples for part in by_channel.values())
     alone = {s: 0.0 for s in at_residuals.signals if s != DIRECTION}

@@ -1,8 +1,8 @@
 """What every rig has by a small amount, and is no cause.
 
-Load cells whose scale is off or bent or that feel the other force, friction that reverses over a
-few micrometres and not at once, a sheath that is bent unevenly; beside them the friction of each
-run (`friction_scatter`).
+Sensors whose scale is off or bent, load cells that feel the other force, friction that reverses
+over a few micrometres and not at once, a sheath that is bent unevenly; beside them the friction of
+each run (`friction_scatter`).
 """
 
 import math
@@ -29,17 +29,18 @@ PRESLIDING = "presliding"
 GROWTH = f"{PRESLIDING}.growth"
 TRAVEL, TRAVEL_MM = f"{PRESLIDING}.length_mm", 0.003  # asperities of metal give way by so much
 LONGEST_MM = PLAUSIBLE * TRAVEL_MM
-LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
-ZERO = 0.002  # the same of its zero, from run to run
+SENSOR = 0.0025  # standard deviation of a sensor's error, of its largest reading
+ZERO = 0.002  # the same of a load cell's zero, from run to run
 FORCES = "f_in_N", "f_out_N"
 
-# What is wrong of a load cell; with a channel, by newton of its largest reading.
-LOAD_CELLS = {
+# What is wrong of a sensor; with a channel, by newton of its largest reading.
+SENSORS = {
     "force_sensor_gain.f_out_gain": None,
     "force_crosstalk.f_in_of_f_out": None,
     "force_crosstalk.f_out_of_f_in": None,
     "force_sensor_curvature.f_in_per_N": "f_in_N",
     "force_sensor_curvature.f_out_per_N": "f_out_N",
+    "position_sensor_gain.x_out_gain": None,
 }
 
 
@@ -59,15 +60,15 @@ def _sizes(bench: Bench) -> dict[str, float]:
     """Return one standard deviation of each parameter of an effect that is a tolerance."""
     largest = largest_forces(bench)
     cells = {
-        name: LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
-        for name, channel in LOAD_CELLS.items()
+        name: SENSOR / (1.0 if channel is None else largest.get(channel, 1.0))
+        for name, channel in SENSORS.items()
     }
     return cells | {TRAVEL: TRAVEL_MM}
 
 
 def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
     """Return what tolerances change, without those that an effect of the trial is about."""
-    own = [name.partition(".")[0] in trial.effects for name in (*LOAD_CELLS, TRAVEL)]
+    own = [name.partition(".")[0] in trial.effects for name in (*SENSORS, TRAVEL)]
     others = tolerated.copy()
     others[:, : len(own)][:, own] = 0.0
     return others
@@ -75,7 +76,7 @@ def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
 
 def without_travel(tolerated: Floats) -> Floats:
     """Return what tolerances change but for the elastic travel."""
-    return np.delete(tolerated, len(LOAD_CELLS), axis=1)
+    return np.delete(tolerated, len(SENSORS), axis=1)
 
 
 def largest_forces(bench: Bench) -> dict[str, float]:
@@ -132,10 +133,10 @@ def rigs_with_tolerances(
     lower, upper = np.array([(u.lower, u.upper) for u in trial.unknowns]).T
     values = np.clip(trial.solution.values - trial.moved_by(columns) @ amounts, lower, upper)
     fitted, sizes = trial.values(), _sizes(bench)
-    frictions, of_effects, bends, _ = np.split(
-        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes), len(BEND)))
+    frictions, of_effects, bends = np.split(
+        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes)))
     )
-    of_effects[len(LOAD_CELLS)] = max(of_effects[len(LOAD_CELLS)], 0.0)  # no length is negative
+    of_effects[len(SENSORS)] = max(of_effects[len(SENSORS)], 0.0)  # no length is negative
     set_to = {
         name: QUANTITIES[name].scaled(QUANTITIES[name].default + size * float(part))
         for (name, size), part in zip(sizes.items(), of_effects, strict=True)

@@ -47,7 +47,7 @@ LOAD_DEPENDENT_FRICTION = Effect(
     closed_form=False,
     equation="μ → μ·(T/10 N)^n",
     doc=__doc__,
-    parameters=(Parameter("exponent", "1", neutral=0.0, start=0.2, lower=-1.5, upper=1.5),),
+    parameters=(Parameter("exponent", "1", neutral=0.0, start=0.05, lower=-1.5, upper=1.5),),
     experiment="The same strokes at preloads far apart: ln(f_in/f_out) in full slip over the "
     "tension.",
 )
