@@ -1,5 +1,6 @@
 """Each fault of a recording is told by its own law, on two short runs that are made up."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -286,6 +287,22 @@ def test_a_tension_that_is_the_only_channel_and_fades_may_be_that_of_a_load(monk
     monkeypatch.setattr("tsas_cli.diagnosis.faults.candidates._common", lambda reads: (F,))
     found = told(lost)
     assert found is None or found.found[0].code != "ac-coupled"
+
+
+@pytest.mark.parametrize(
+    ("zero", "first_s", "tolerated"),
+    [(0.29, None, True), (-0.29, None, True), (0.31, None, False), (0.29, 3.0, False)],
+)
+def test_a_zero_within_three_deviations_of_every_rigs_is_no_fault(zero, first_s, tolerated):
+    """Six thousandths of 50 N; a zero that steps in a run is a fault."""
+    errors = SimpleNamespace(
+        run=SimpleNamespace(measured={F: np.array([-50.0, 9.0])}), samples={F: np.array([0, 1])}
+    )
+    bench = SimpleNamespace(closed=[errors], channels=[F])
+    fault = Candidate("run-offset", 1, (F,), zero, 9.0, 0 if first_s is None else 1, first_s)
+    assert s._is_tolerated_zero(bench, fault) == tolerated
+    assert not s._is_tolerated_zero(bench, replace(fault, code="run-gain"))
+    assert not s._is_tolerated_zero(bench, replace(fault, channels=(X,)))
 
 
 @pytest.mark.parametrize(("friction", "found"), [(0.055, False), (0.065, True), (-0.065, True)])

@@ -14,6 +14,7 @@ from tsas_cli.diagnosis.remainder import Remainder, SlowPart, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
 SIZE, ROWS = 800, 400
+RANGE = 10.0  # of all readings, in units of noise
 TIME_S = 0.05 * np.arange(SIZE)
 X = 10.0 - 10.0 * np.cos(2.0 * np.pi * TIME_S / 10.0)
 REVERSALS = np.array([0, *range(100, SIZE, 100), SIZE - 1])
@@ -24,12 +25,16 @@ class Run:
     """A run with errors at its samples, or at some of them."""
 
     def __init__(self, errors, time_s=TIME_S, x=X, reversals=REVERSALS, samples=None):
-        drive = SimpleNamespace(values=x, reversals=reversals, step=0.002)
+        drive = SimpleNamespace(
+            values=x, reversals=reversals, step=0.002, sd=np.full(time_s.size, 1e-4)
+        )
         self.run = SimpleNamespace(
             time_s=time_s,
             drive_column="x_in_mm",
             conditioned={"x_in_mm": drive},
             channel={"x_in_mm": x}.get,
+            measured={name: np.resize([-RANGE, RANGE], time_s.size) for name in errors},
+            noise=dict.fromkeys(errors, 1.0),
         )
         everything = np.arange(time_s.size)
         self.samples = dict.fromkeys(errors, everything if samples is None else samples)
@@ -39,6 +44,9 @@ class Run:
 
     def errors(self, rig):
         return self.given
+
+    def changed(self, changes):
+        return np.concatenate([changes.get(n, 0.0 * e)[: e.size] for n, e in self.given.items()])
 
     def delays(self, rig):
         return dict.fromkeys(self.given, self.lags)
@@ -75,8 +83,9 @@ def left_of(*errors, made=Run):
     block = np.arange(residual.size) // 40
     run = np.repeat(np.arange(len(errors)), [sum(e.size for e in one.values()) for one in errors])
     folds = Folds(block % 4, block, run, by_run=False)
-    trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
     none = np.zeros((residual.size, 0))
+    solution = SimpleNamespace(residual=residual, jacobian=none, at_bound=np.zeros(0, np.bool_))
+    trial = SimpleNamespace(unknowns=[], solution=solution)
     return remainder(bench, trial, folds, signals_at_residuals(bench, trial), none)
 
 
@@ -104,6 +113,26 @@ def test_noise_depends_on_nothing():
     assert found.mean_square == pytest.approx(1.0, rel=0.1)
     assert (found.slow, found.structure) == ({}, 0.0)
     assert found.complete
+
+
+@pytest.mark.parametrize(("size", "left"), [(0.25, 0.0), (0.5, 0.25)])
+def test_what_is_below_the_linearity_of_a_sensor_is_no_structure(monkeypatch, size, left):
+    """Two ten-thousandths of a range of 2000 are 0.4 of the noise."""
+    monkeypatch.setattr(f"{__name__}.RANGE", 1000.0)
+    wave = size * np.sign(np.sin(0.9 * X))
+    found = left_of(*({"x_out_mm": wave + noise(k)} for k in range(6)))
+    assert found.explained["x_out_mm"] == pytest.approx(left, abs=0.4 * left)
+    assert found.complete == (left == 0.0)
+
+
+@pytest.mark.parametrize(("most", "complete"), [(1000.0, True), (100.0, False)])
+def test_zeros_of_the_runs_own_are_left_out_as_they_are_plausible(monkeypatch, most, complete):
+    """As large as the noise, within two deviations of two thousandths of 1000, not of 100."""
+    monkeypatch.setattr(f"{__name__}.RANGE", most)
+    runs = Run({"f_in_N": 1.0 + noise(1)}, x=1.1 * X), Run({"f_in_N": noise(2) - 1.0}, x=0.3 * X)
+    in_turn = iter(runs)
+    found = left_of(*(run.given for run in runs), made=lambda errors: next(in_turn))
+    assert found.complete == complete
 
 
 def test_structure_is_not_complete():
@@ -179,6 +208,22 @@ def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():
     swing = 4.0 * np.sin(2.0 * np.pi * 1.7 * TIME_S)
     found = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": swing + noise(2)})
     assert found.depends_on[0] == "time_s (f_in_N oscillates at 1.7 Hz)"
+
+
+@pytest.mark.parametrize(
+    ("moment_s", "weight", "brief"),
+    [
+        (20.0, 1.0, True),  # noise of the drive does nothing there
+        (0.5, 1.0, False),  # a load may still remember what came before the run
+        (20.0, 1.05, False),  # 0.32 N by 0.1 µm: 9.6 N by a contact's 3 µm
+    ],
+)
+def test_a_force_deviates_briefly_by_more_than_a_contacts_travel_does(moment_s, weight, brief):
+    here = np.abs(TIME_S - moment_s) < 0.3
+    run = Run({"f_in_N": noise(1) + 8.0 * here})
+    run.weights["f_in_N"] = np.where(here, weight, 1.0)
+    found = at_moments(bench_of(run), [run], [None])[1]
+    assert found == (("f_in_N",) if brief else ())
 
 
 def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not():

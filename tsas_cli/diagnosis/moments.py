@@ -22,6 +22,7 @@ Errors = Mapping[str, Floats]  # of one run, by channel
 FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
 FAR, FARTHEST = 4.0, 10.0  # standard deviations, and where one error counts for no more
+START_S = 1.0  # of a run, in which a load still moves that was moved just before
 FEWEST_FAR = 8  # errors that far: fewer may be a reversal out of place
 UPPER_QUARTILE = 0.67449  # of the normal distribution, in standard deviations
 BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run with brief errors
@@ -53,7 +54,7 @@ def at_moments(
         if _is_late(np.concatenate(seen)):
             late.append(name)
         if any(
-            _is_brief(part[name], _unseen_in(run, name))
+            _deviates_briefly(run, name, part[name])
             for (run, _), part in zip(pairs, parts, strict=True)
             if name in part
         ):
@@ -69,7 +70,13 @@ def _unseen(run: RunErrors, name: str) -> float:
     return max(LONGEST_MM, run.run.conditioned[drive].step)
 
 
-def _unseen_in(run: RunErrors, name: str) -> Floats | float:
+def _deviates_briefly(run: RunErrors, name: str, errors: Floats) -> bool:
+    """Return whether a channel deviates at a few moments of a run, but for those of its start."""
+    since = run.run.time_s[run.samples[name]] > run.run.time_s[0] + START_S
+    return bool(since.any()) and _is_brief(errors[since], _unseen_in(run, name)[since])
+
+
+def _unseen_in(run: RunErrors, name: str) -> Floats:
     """Return up to which error each sample of a channel may be off unseen, over its weight.
 
     A force changes with a contact's travel as it does with the noise of the drive.
@@ -77,7 +84,7 @@ def _unseen_in(run: RunErrors, name: str) -> Floats | float:
     at = run.samples[name]
     weight = run.weights[name][at]
     if name.endswith("_mm") or not run.run.drive_column.endswith("_mm"):
-        return _unseen(run, name) / weight
+        return np.asarray(_unseen(run, name) / weight)
     drive = run.run.conditioned[run.run.drive_column]
     of_drive = np.sqrt(np.maximum(weight**2 - run.run.noise[name] ** 2, 0.0))
     moved = np.maximum(drive.sd[at], TINY_MM)

@@ -134,7 +134,7 @@ def remainder(
     oscillates = oscillation(runs, by_run) or ripple(runs, by_run)
     late, brief = at_moments(bench, runs, fitted)
     if late or brief:  # what tolerances do at reversals has no weight in the fit
-        rigs = rigs_with_tolerances(bench, trial, tolerated, folds.run)
+        rigs = rigs_with_tolerances(bench, trial, beside, folds.run)
         late, brief = at_moments(bench, bench.meshed, rigs)
     return Remainder(
         mean_square=sum(part.squares for part in by_channel.values()) / count,

@@ -6,7 +6,7 @@ each run (`friction_scatter`).
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -93,18 +93,25 @@ def largest_forces(bench: Bench) -> dict[str, float]:
 
 
 def with_zeros_of_runs(bench: Bench, trial: HypothesisFit, tolerated: Floats) -> Floats:
-    """Return what tolerances change, (n, m), with the zeros of the force sensors of each run."""
+    """Return what tolerances change, (n, m), with the zeros of the force sensors of each run.
+
+    These come last, run by run, where there are several.
+    """
     from scipy.linalg import block_diag
 
-    runs = bench.errors_for(trial)
-    sizes = {name: ZERO * size for name, size in largest_forces(bench).items()}
-    if len(runs) < 2 or not sizes:
+    runs, zeros = bench.errors_for(trial), _zeros(bench)
+    if len(runs) < 2 or not zeros:
         return tolerated
     columns = []
     for run in runs:
         one = np.ones(run.run.time_s.size)
-        columns.append(np.stack([run.changed({n: size * one}) for n, size in sizes.items()]).T)
+        columns.append(np.stack([run.changed({n: size * one}) for n, size in zeros.items()]).T)
     return np.hstack((tolerated, block_diag(*columns)))
+
+
+def _zeros(bench: Bench) -> dict[str, float]:
+    """Return one standard deviation of the zero of each force sensor that is compared [N]."""
+    return {name: ZERO * size for name, size in largest_forces(bench).items()}
 
 
 def without_tolerances(
@@ -133,9 +140,8 @@ def rigs_with_tolerances(
     lower, upper = np.array([(u.lower, u.upper) for u in trial.unknowns]).T
     values = np.clip(trial.solution.values - trial.moved_by(columns) @ amounts, lower, upper)
     fitted, sizes = trial.values(), _sizes(bench)
-    frictions, of_effects, bends = np.split(
-        -amounts, np.cumsum((columns.shape[1] - tolerated.shape[1], len(sizes)))
-    )
+    parts = columns.shape[1] - tolerated.shape[1], len(sizes), len(BEND)
+    frictions, of_effects, bends, zeros = np.split(-amounts, np.cumsum(parts))
     of_effects[len(SENSORS)] = max(of_effects[len(SENSORS)], 0.0)  # no length is negative
     set_to = {
         name: QUANTITIES[name].scaled(QUANTITIES[name].default + size * float(part))
@@ -145,12 +151,24 @@ def rigs_with_tolerances(
     unknowns = [*trial.unknowns, *map(unknown_of, set_to)]
     uneven = dict(zip(BEND, UNEVEN * bends, strict=True))
     friction = np.array([u.name == FRICTION for u in trial.unknowns])
-    rigs = []
+    rigs, count = [], len(bench.rigs)
     for k, rig in enumerate(bench.rigs):
         moved = values + friction * (SCATTER * frictions[k] if frictions.size else 0.0)
         at = rig_at(rig, k, unknowns, np.append(moved, list(set_to.values())))
+        if zeros.size:
+            at = with_values(at, _moved_zeros(at, _zeros(bench), zeros.reshape(count, -1)[k]))
         rigs.append(with_values(at, uneven))
     return rigs
+
+
+def _moved_zeros(rig: Rig, sizes: Mapping[str, float], amounts: Floats) -> dict[str, float]:
+    """Return the offsets of the force sensors of a rig, moved by so many standard deviations."""
+    offsets = rig.effects.force_sensor_offset._asdict()
+    moved = {}
+    for (channel, size), amount in zip(sizes.items(), amounts.tolist(), strict=True):
+        name = f"{channel.removesuffix('_N')}_offset_N"
+        moved[f"force_sensor_offset.{name}"] = offsets[name] + size * amount
+    return moved
 
 
 def _explained_by(

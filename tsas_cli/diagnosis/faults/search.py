@@ -85,10 +85,11 @@ def fault_of_recording(fits: Fits, accepted: Collection[str]) -> FoundFault | No
 
 def _is_tolerated_zero(bench: Bench, fault: Candidate) -> bool:
     """Return whether a fault is a zero of a force sensor no further off than that of every run."""
+    if fault.code != "run-offset" or fault.edges:
+        return False
     forces = largest_forces(bench)
-    least = min((forces[name] for name in fault.channels if name in forces), default=0.0)
-    whole_run = fault.code == "run-offset" and not fault.edges
-    return whole_run and abs(fault.amount) <= MOST_SCATTER * ZERO * least
+    limits = [MOST_SCATTER * ZERO * forces[name] for name in fault.channels if name in forces]
+    return bool(limits) and abs(fault.amount) <= min(limits)
 
 
 def simplest(found: Sequence[Candidate]) -> Candidate:
