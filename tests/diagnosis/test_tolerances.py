@@ -215,7 +215,7 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
         changes_on_chain=changes_on_chain,
     )
     columns = tolerances(bench, SimpleNamespace(values=lambda: fitted))
-    sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0, 0.0025]
+    sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0, 0.001]
     assert columns[:, :6] == pytest.approx(np.diag(sizes))
     assert np.all(columns[:, 6:] == 7.0)
 

@@ -29,8 +29,8 @@ from tsas_cli.diagnosis.remainder import Remainder, remainder, remainder_of
 from tsas_cli.diagnosis.rivals import leaving_noise, rivals_within
 from tsas_cli.diagnosis.signals import signal_in_words, signals_at_residuals
 from tsas_cli.diagnosis.tolerances import (
+    LOAD_CELL,
     PRESLIDING,
-    SENSOR,
     largest_forces,
     tolerances,
     within_tolerances,
@@ -181,7 +181,7 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
     zero = _may_be_zero(last, name)
     failed = failures(
         *(name, own, again, fewer, all_of_them),
-        tolerance_N={n: SENSOR * size for n, size in largest_forces(judged.bench).items()},
+        tolerance_N={n: LOAD_CELL * size for n, size in largest_forces(judged.bench).items()},
         stroke_mm=judged.bench.longest_stroke_mm,
         zero=zero,
     )

@@ -29,18 +29,19 @@ PRESLIDING = "presliding"
 GROWTH = f"{PRESLIDING}.growth"
 TRAVEL, TRAVEL_MM = f"{PRESLIDING}.length_mm", 0.003  # asperities of metal give way by so much
 LONGEST_MM = PLAUSIBLE * TRAVEL_MM
-SENSOR = 0.0025  # standard deviation of a sensor's error, of its largest reading
+LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
+POSITION = 0.001  # the same of a position sensor's scale
 ZERO = 0.002  # the same of a load cell's zero, from run to run
 FORCES = "f_in_N", "f_out_N"
 
-# What is wrong of a sensor; with a channel, by newton of its largest reading.
+# What is wrong of a sensor: by how much, and of which channel by newton of its largest reading.
 SENSORS = {
-    "force_sensor_gain.f_out_gain": None,
-    "force_crosstalk.f_in_of_f_out": None,
-    "force_crosstalk.f_out_of_f_in": None,
-    "force_sensor_curvature.f_in_per_N": "f_in_N",
-    "force_sensor_curvature.f_out_per_N": "f_out_N",
-    "position_sensor_gain.x_out_gain": None,
+    "force_sensor_gain.f_out_gain": (LOAD_CELL, None),
+    "force_crosstalk.f_in_of_f_out": (LOAD_CELL, None),
+    "force_crosstalk.f_out_of_f_in": (LOAD_CELL, None),
+    "force_sensor_curvature.f_in_per_N": (LOAD_CELL, "f_in_N"),
+    "force_sensor_curvature.f_out_per_N": (LOAD_CELL, "f_out_N"),
+    "position_sensor_gain.x_out_gain": (POSITION, None),
 }
 
 
@@ -60,8 +61,8 @@ def _sizes(bench: Bench) -> dict[str, float]:
     """Return one standard deviation of each parameter of an effect that is a tolerance."""
     largest = largest_forces(bench)
     cells = {
-        name: SENSOR / (1.0 if channel is None else largest.get(channel, 1.0))
-        for name, channel in SENSORS.items()
+        name: size / (1.0 if channel is None else largest.get(channel, 1.0))
+        for name, (size, channel) in SENSORS.items()
     }
     return cells | {TRAVEL: TRAVEL_MM}
 
