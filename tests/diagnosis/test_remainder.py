@@ -26,7 +26,7 @@ class Run:
 
     def __init__(self, errors, time_s=TIME_S, x=X, reversals=REVERSALS, samples=None):
         drive = SimpleNamespace(
-            values=x, reversals=reversals, step=0.002, sd=np.full(time_s.size, 1e-4)
+            values=x, reversals=reversals, step=0.002, sd=np.full(time_s.size, 1e-4), window_s=0.1
         )
         self.run = SimpleNamespace(
             time_s=time_s,
@@ -211,17 +211,21 @@ def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():
 
 
 @pytest.mark.parametrize(
-    ("moment_s", "weight", "brief"),
+    ("moment_s", "within_s", "weight", "brief"),
     [
-        (20.0, 1.0, True),  # noise of the drive does nothing there
-        (0.5, 1.0, False),  # a load may still remember what came before the run
-        (20.0, 1.05, False),  # 0.32 N by 0.1 µm: 9.6 N by a contact's 3 µm
+        (20.0, 0.8, 1.0, True),  # noise of the drive does nothing there
+        (0.4, 0.8, 1.0, False),  # a load may still remember what came before the run
+        (20.0, 0.8, 1.05, False),  # 0.32 N by 0.1 µm: 9.6 N by a contact's 3 µm
+        (20.0, 0.52, 1.05, False),  # within a window of 0.1 s of each sample
+        (20.0, 0.08, 1.05, True),
     ],
 )
-def test_a_force_deviates_briefly_by_more_than_a_contacts_travel_does(moment_s, weight, brief):
-    here = np.abs(TIME_S - moment_s) < 0.3
-    run = Run({"f_in_N": noise(1) + 8.0 * here})
-    run.weights["f_in_N"] = np.where(here, weight, 1.0)
+def test_a_force_deviates_briefly_by_more_than_a_contacts_travel_does(
+    moment_s, within_s, weight, brief
+):
+    from_moment_s = np.abs(TIME_S - moment_s)
+    run = Run({"f_in_N": noise(1) + 8.0 * (from_moment_s < 0.6)})
+    run.weights["f_in_N"] = np.where(from_moment_s < within_s, weight, 1.0)
     found = at_moments(bench_of(run), [run], [None])[1]
     assert found == (("f_in_N",) if brief else ())
 

@@ -8,6 +8,7 @@ from tsas_cli.effects import LAWS, Effects
 from tsas_cli.effects.bend_drift import BendDrift, drifted_bend
 from tsas_cli.effects.friction_drift import FrictionDrift, friction_factor
 from tsas_cli.effects.laws.tendon_law import TendonLaw, tendon_law_factor
+from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, load_factor
 from tsas_cli.effects.load_hysteresis import LoadHysteresis, element_force
 from tsas_cli.effects.presliding import friction_share, friction_share_rate
 from tsas_cli.physics.ends import DriveInput
@@ -63,6 +64,15 @@ def test_friction_follows_the_tension_and_not_the_preload(preload_N, exponent):
     wrap = rig.friction_coefficient * rig.total_bend_rad
     f_in = (found.f_out_N[-1] ** -exponent - exponent * wrap * 10.0**-exponent) ** (-1.0 / exponent)
     assert found.f_in_N[-1] == pytest.approx(f_in, rel=1e-4)
+
+
+@pytest.mark.parametrize("tension_N", [0.2, 2.0, 600.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_an_exponent_of_the_tension_is_screened_where_friction_is_linear_in_it(tension_N, sign):
+    """At −0.2 and 600 N it is not, and a true exponent looked as if it explained nothing."""
+    exponent = sign * LOAD_DEPENDENT_FRICTION.parameters[0].start
+    linear = 1.0 + exponent * np.log(tension_N / 10.0)
+    assert load_factor(tension_N, exponent) == pytest.approx(linear, rel=0.03)
 
 
 TIME_S = np.linspace(0.0, 12.0, 1201)

@@ -79,8 +79,11 @@ def _deviates_briefly(run: RunErrors, name: str, errors: Floats) -> bool:
 def _unseen_in(run: RunErrors, name: str) -> Floats:
     """Return up to which error each sample of a channel may be off unseen, over its weight.
 
-    A force changes with a contact's travel as it does with the noise of the drive.
+    A force changes with a contact's travel as it does with the noise of the drive, and at most as
+    it does within a window of the drive's cleaning.
     """
+    from scipy.ndimage import maximum_filter1d
+
     at = run.samples[name]
     weight = run.weights[name][at]
     if name.endswith("_mm") or not run.run.drive_column.endswith("_mm"):
@@ -88,7 +91,10 @@ def _unseen_in(run: RunErrors, name: str) -> Floats:
     drive = run.run.conditioned[run.run.drive_column]
     of_drive = np.sqrt(np.maximum(weight**2 - run.run.noise[name] ** 2, 0.0))
     moved = np.maximum(drive.sd[at], TINY_MM)
-    return np.asarray(of_drive / moved * max(TRAVEL_MM, drive.step) / weight)
+    stiffness = of_drive / moved
+    step_s = float(np.median(np.diff(run.run.time_s[at])))
+    near = maximum_filter1d(stiffness, 1 + 2 * round(drive.window_s / step_s))
+    return np.asarray(near * max(TRAVEL_MM, drive.step) / weight)
 
 
 def _is_brief(errors: Floats, least: Floats | float = 0.0) -> bool:
