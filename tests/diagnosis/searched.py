@@ -59,7 +59,7 @@ def without_tolerances(monkeypatch):
     monkeypatch.setattr(fits_module, "with_tolerances", lambda trial, tolerated: trial)
     tolerances_take(monkeypatch, 0.0)
     monkeypatch.setattr(fits_module, "without_travel", lambda tolerated: tolerated)
-    monkeypatch.setattr(fits_module, "with_zeros_of_runs", lambda bench, trial, none: none)
+    monkeypatch.setattr(fits_module, "with_scale_and_zeros", lambda bench, trial, none: none)
     monkeypatch.setattr(fits_module, "with_friction_of_runs", lambda trial, run: trial)
     monkeypatch.setattr(fits_module, "is_in_line", lambda trial, run, session_s: False)
 

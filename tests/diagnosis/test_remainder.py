@@ -42,6 +42,10 @@ class Run:
         self.given, self.f_in = errors, 7.0 * everything
         self.lags, self.delay_unit = np.array([0.1, -0.2, 0.1, 0.0]), 0.001
 
+    @property
+    def count(self):
+        return sum(errors.size for errors in self.given.values())
+
     def errors(self, rig):
         return self.given
 
@@ -52,7 +56,7 @@ class Run:
         return dict.fromkeys(self.given, self.lags)
 
     def predict(self, rig):
-        return {"f_in_N": self.f_in}
+        return {"f_in_N": self.f_in, "x_out_mm": np.zeros(self.f_in.size)}
 
 
 def one_stroke(errors, time_s=SHORT_S, samples=None):

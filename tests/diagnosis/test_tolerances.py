@@ -9,11 +9,13 @@ from tests.physics.references import GROUP_A
 from tsas_cli.diagnosis.friction_scatter import is_in_line, is_scatter, within_scatter
 from tsas_cli.diagnosis.held_out import folds_of, held_out_squares
 from tsas_cli.diagnosis.tolerances import (
+    _of_sensors,
     moved_by_tolerances,
     of_others,
+    scale_is_tolerated,
     tolerances,
+    with_scale_and_zeros,
     with_tolerances,
-    with_zeros_of_runs,
     within_tolerances,
     without_tolerances,
     zeros_are_tolerated,
@@ -185,13 +187,12 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
         "force_crosstalk.f_out_of_f_in": 2,
         "force_sensor_curvature.f_in_per_N": 3,
         "force_sensor_curvature.f_out_per_N": 4,
-        "position_sensor_gain.x_out_gain": 5,
     }
     fitted = {"force_crosstalk.f_in_of_f_out": 0.04, "presliding.length_mm": 0.03}
-    neutral = {"force_sensor_gain.f_out_gain": 1.0, "position_sensor_gain.x_out_gain": 1.0}
+    neutral = {"force_sensor_gain.f_out_gain": 1.0}
 
     def errors_at(trial, changes):
-        out = np.zeros(6)
+        out = np.zeros(5)
         for name, row in at.items():
             out[row] = (neutral | fitted | changes).get(name, 0.0)
         return out
@@ -202,7 +203,7 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
             {"bend_slope": 0.05},
             {"bend_bow": 0.05},
         ]
-        return np.full((6, 3), 7.0)
+        return np.full((5, 3), 7.0)
 
     # What is not compared, as between the samples of a slower clock, is no reading.
     measured = {"f_in_N": np.array([3.0, np.nan, -50.0]), "f_out_N": np.array([20.0, 5.0, 900.0])}
@@ -215,46 +216,75 @@ def test_tolerances_are_a_quarter_of_a_percent_of_the_largest_reading_beside_wha
         changes_on_chain=changes_on_chain,
     )
     columns = tolerances(bench, SimpleNamespace(values=lambda: fitted))
-    sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0, 0.001]
-    assert columns[:, :6] == pytest.approx(np.diag(sizes))
-    assert np.all(columns[:, 6:] == 7.0)
+    sizes = [0.0025, 0.0025, 0.0025, 0.0025 / 50.0, 0.0025 / 20.0]
+    assert columns[:, :5] == pytest.approx(np.diag(sizes))
+    assert np.all(columns[:, 5:] == 7.0)
 
 
 class Reads:
-    """A run that reads forces of up to 50 and 20 N; a residual is an error over 0.1 N."""
+    """A run that reads forces of up to 50 and 20 N; a residual is an error over 0.1 of a unit."""
 
     def __init__(self, *channels):
         self.samples = {name: np.arange(3) for name in channels}
         measured = {"f_in_N": np.array([3.0, 8.0, -50.0]), "f_out_N": np.array([20.0, 5.0, 1.0])}
         self.run = SimpleNamespace(measured=measured, time_s=np.arange(3.0))
+        self.count = 3 * len(channels)
+
+    def predict(self, rig):
+        return {"x_out_mm": np.array([0.0, 100.0, 300.0])}
 
     def changed(self, changes):
         return np.concatenate([changes.get(n, np.zeros(3)) / 0.1 for n in self.samples])
 
 
-def test_each_run_has_zeros_of_its_own():
-    """0.1 and 0.04 N: one and 0.4 residuals; the second run has no f_out."""
-    runs = Reads("f_in_N", "f_out_N"), Reads("f_in_N")
-    channels = ["f_in_N", "f_out_N", "x_out_mm"]
-    bench = SimpleNamespace(errors_for=lambda trial: runs, closed=runs, channels=channels)
-    columns = with_zeros_of_runs(bench, None, np.full((9, 1), 7.0))
-    zeros = np.zeros((9, 4))
-    zeros[:3, 0], zeros[3:6, 1], zeros[6:, 2] = 1.0, 0.4, 1.0
-    assert columns == pytest.approx(np.column_stack((np.full(9, 7.0), zeros)))
-    alone = SimpleNamespace(errors_for=lambda trial: runs[:1], closed=runs, channels=channels)
-    assert with_zeros_of_runs(alone, None, columns) is columns  # one run's are fitted
+def reading(*runs):
+    return SimpleNamespace(
+        errors_for=lambda trial: runs,
+        rig=lambda trial, k: None,
+        rigs=[None] * len(runs),
+        closed=runs,
+        channels=["f_in_N", "f_out_N", "x_out_mm"],
+    )
+
+
+def test_each_run_has_zeros_of_its_own_and_all_have_one_scale():
+    """Zeros of 0.1 and 0.04 N are one and 0.4 residuals; a thousandth of 100 mm is one."""
+    runs = Reads("f_in_N", "f_out_N"), Reads("f_in_N", "x_out_mm")
+    columns = with_scale_and_zeros(reading(*runs), None, np.full((12, 1), 7.0))
+    further = np.zeros((12, 5))
+    further[9:, 0] = 0.0, 1.0, 3.0
+    further[:3, 1], further[3:6, 2], further[6:9, 3] = 1.0, 0.4, 1.0
+    assert columns == pytest.approx(np.column_stack((np.full(12, 7.0), further)))
+    alone = with_scale_and_zeros(reading(runs[1]), None, np.zeros((6, 0)))
+    assert alone == pytest.approx(further[6:, :1])  # the zeros of one run alone are fitted
+
+
+@pytest.mark.parametrize(("gain", "tolerated"), [(1.0019, True), (0.9981, True), (1.0021, False)])
+def test_a_scale_of_x_out_within_two_thousandths_is_a_tolerance(gain, tolerated):
+    trial = SimpleNamespace(values=lambda: {"position_sensor_gain.x_out_gain": gain})
+    assert scale_is_tolerated(trial) == tolerated
+
+
+def test_the_rig_of_each_run_is_moved_by_what_its_residuals_show():
+    """The second run reads 0.05 N more of f_in; x_out reads a thousandth less in both."""
+    rig = with_values(GROUP_A, {"force_sensor_offset.f_in_offset_N": 0.3})
+    moved = [
+        with_values(rig, _of_sensors(rig, -1.0, {"f_in_N": 0.1}, np.array([amount])))
+        for amount in (0.0, 0.5)
+    ]
+    offsets = [one.effects.force_sensor_offset.f_in_offset_N for one in moved]
+    assert offsets == pytest.approx([0.3, 0.35])
+    gains = [one.effects.position_sensor_gain.x_out_gain for one in moved]
+    assert gains == pytest.approx([0.999, 0.999])
 
 
 def test_an_effect_that_is_named_has_no_tolerance_of_its_own():
-    given = np.arange(18.0).reshape(2, 9) + 1.0
+    given = np.arange(16.0).reshape(2, 8) + 1.0
     others = of_others(SimpleNamespace(effects=("force_crosstalk",)), given)
-    assert others.tolist() == [
-        [1, 0, 0, 4, 5, 6, 7, 8, 9],
-        [10, 0, 0, 13, 14, 15, 16, 17, 18],
-    ]
+    assert others.tolist() == [[1, 0, 0, 4, 5, 6, 7, 8], [9, 0, 0, 12, 13, 14, 15, 16]]
     assert given[0, 1] == 2.0
     others = of_others(SimpleNamespace(effects=("presliding",)), given)
-    assert np.flatnonzero(others[0] == 0.0).tolist() == [6]
+    assert np.flatnonzero(others[0] == 0.0).tolist() == [5]
     assert of_others(SimpleNamespace(effects=()), given).tolist() == given.tolist()
 
 

@@ -17,8 +17,8 @@ from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.diagnosis.hypotheses import Hypotheses, Names
 from tsas_cli.diagnosis.tolerances import (
     tolerances,
+    with_scale_and_zeros,
     with_tolerances,
-    with_zeros_of_runs,
     without_tolerances,
     without_travel,
 )
@@ -111,7 +111,7 @@ class Fits:
         """Return the share of the squares with these effects that tolerances take away."""
         if names not in self.taken:
             trial = self.trial(names)
-            tolerated = with_zeros_of_runs(self.bench, trial, self.tolerated[trial.on_mesh])
+            tolerated = with_scale_and_zeros(self.bench, trial, self.tolerated[trial.on_mesh])
             left = without_tolerances(trial, tolerated, self.folds.run)
             self.taken[names] = 1.0 - float(left @ left) / float(np.sum(trial.solution.residual**2))
         return self.taken[names]

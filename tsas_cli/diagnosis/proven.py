@@ -32,12 +32,14 @@ from tsas_cli.diagnosis.tolerances import (
     LOAD_CELL,
     PRESLIDING,
     largest_forces,
+    scale_is_tolerated,
     tolerances,
     within_tolerances,
     zeros_are_tolerated,
 )
 from tsas_cli.diagnosis.tolerated_travel import is_tolerated, with_tolerated_travel
 from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT
+from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
@@ -198,6 +200,8 @@ def _cause(last: _LastFit, name: str) -> FoundCause:
         tolerated = is_tolerated(judged.bench, judged.trial(named))
     elif name == FORCE_SENSOR_DRIFT.name and zeros_are_tolerated(judged.bench, judged.trial(named)):
         tolerated = True
+    elif name == POSITION_SENSOR_GAIN.name:
+        tolerated = scale_is_tolerated(judged.trial(named))
     else:
         tolerated = within_tolerances(judged.trial(named), name, last.tolerated, reduction)
     if tolerated:

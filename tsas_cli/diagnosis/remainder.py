@@ -20,7 +20,7 @@ from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals, signals_at_residu
 from tsas_cli.diagnosis.tolerances import (
     rigs_with_tolerances,
     tolerances,
-    with_zeros_of_runs,
+    with_scale_and_zeros,
     without_tolerances,
 )
 from tsas_cli.identification.extension import Bench
@@ -122,7 +122,7 @@ def remainder(
     runs = bench.errors_for(trial)
     by_run = [run.errors(rig) for run, rig in zip(runs, fitted, strict=True)]
     errors = {n: [of_run[n] for of_run in by_run if n in of_run] for n in bench.channels}
-    beside = with_zeros_of_runs(bench, trial, tolerated)
+    beside = with_scale_and_zeros(bench, trial, tolerated)
     residual = without_tolerances(trial, beside, folds.run)
     by_channel = _by_channel(bench, trial, folds, at_residuals, residual, errors)
     count = sum(part.samples for part in by_channel.values())

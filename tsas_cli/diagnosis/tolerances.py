@@ -1,8 +1,9 @@
 """What every rig has by a small amount, and is no cause.
 
-Sensors whose scale is off or bent, load cells that feel the other force, friction that reverses
-over a few micrometres and not at once, a sheath that is bent unevenly; beside them the friction of
-each run (`friction_scatter`).
+Load cells whose scale is off or bent or that feel the other force, friction that reverses over a
+few micrometres and not at once, a sheath that is bent unevenly; beside them the friction of each
+run (`friction_scatter`). The scale of a position sensor and the zeros of load cells in each run
+count in what is left, and are not free beside a search: they would take a free length of tendon.
 """
 
 import math
@@ -32,16 +33,15 @@ LONGEST_MM = PLAUSIBLE * TRAVEL_MM
 LOAD_CELL = 0.0025  # standard deviation of a load cell's error, of its largest reading
 POSITION = 0.001  # the same of a position sensor's scale
 ZERO = 0.002  # the same of a load cell's zero, from run to run
-FORCES = "f_in_N", "f_out_N"
+FORCES, X_OUT = ("f_in_N", "f_out_N"), "x_out_mm"
 
-# What is wrong of a sensor: by how much, and of which channel by newton of its largest reading.
-SENSORS = {
-    "force_sensor_gain.f_out_gain": (LOAD_CELL, None),
-    "force_crosstalk.f_in_of_f_out": (LOAD_CELL, None),
-    "force_crosstalk.f_out_of_f_in": (LOAD_CELL, None),
-    "force_sensor_curvature.f_in_per_N": (LOAD_CELL, "f_in_N"),
-    "force_sensor_curvature.f_out_per_N": (LOAD_CELL, "f_out_N"),
-    "position_sensor_gain.x_out_gain": (POSITION, None),
+# What is wrong of a load cell; with a channel, by newton of its largest reading.
+LOAD_CELLS = {
+    "force_sensor_gain.f_out_gain": None,
+    "force_crosstalk.f_in_of_f_out": None,
+    "force_crosstalk.f_out_of_f_in": None,
+    "force_sensor_curvature.f_in_per_N": "f_in_N",
+    "force_sensor_curvature.f_out_per_N": "f_out_N",
 }
 
 
@@ -61,15 +61,15 @@ def _sizes(bench: Bench) -> dict[str, float]:
     """Return one standard deviation of each parameter of an effect that is a tolerance."""
     largest = largest_forces(bench)
     cells = {
-        name: size / (1.0 if channel is None else largest.get(channel, 1.0))
-        for name, (size, channel) in SENSORS.items()
+        name: LOAD_CELL / (1.0 if channel is None else largest.get(channel, 1.0))
+        for name, channel in LOAD_CELLS.items()
     }
     return cells | {TRAVEL: TRAVEL_MM}
 
 
 def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
     """Return what tolerances change, without those that an effect of the trial is about."""
-    own = [name.partition(".")[0] in trial.effects for name in (*SENSORS, TRAVEL)]
+    own = [name.partition(".")[0] in trial.effects for name in (*LOAD_CELLS, TRAVEL)]
     others = tolerated.copy()
     others[:, : len(own)][:, own] = 0.0
     return others
@@ -77,7 +77,7 @@ def of_others(trial: HypothesisFit, tolerated: Floats) -> Floats:
 
 def without_travel(tolerated: Floats) -> Floats:
     """Return what tolerances change but for the elastic travel."""
-    return np.delete(tolerated, len(SENSORS), axis=1)
+    return np.delete(tolerated, len(LOAD_CELLS), axis=1)
 
 
 def largest_forces(bench: Bench) -> dict[str, float]:
@@ -93,21 +93,21 @@ def largest_forces(bench: Bench) -> dict[str, float]:
     }
 
 
-def with_zeros_of_runs(bench: Bench, trial: HypothesisFit, tolerated: Floats) -> Floats:
-    """Return what tolerances change, (n, m), with the zeros of the force sensors of each run.
+def with_scale_and_zeros(bench: Bench, trial: HypothesisFit, tolerated: Floats) -> Floats:
+    """Return what tolerances change, (n, m), with the scale of x_out and the zeros of each run.
 
-    These come last, run by run, where there are several.
+    The zeros of the force sensors come last, run by run, where there are several runs.
     """
     from scipy.linalg import block_diag
 
-    runs, zeros = bench.errors_for(trial), _zeros(bench)
-    if len(runs) < 2 or not zeros:
-        return tolerated
-    columns = []
-    for run in runs:
-        one = np.ones(run.run.time_s.size)
-        columns.append(np.stack([run.changed({n: size * one}) for n, size in zeros.items()]).T)
-    return np.hstack((tolerated, block_diag(*columns)))
+    runs, zeros = bench.errors_for(trial), _zeros(bench) if len(bench.rigs) > 1 else {}
+    scale, own = [], []
+    for k, run in enumerate(runs):
+        x_out = run.predict(bench.rig(trial, k))[X_OUT]
+        scale.append(run.changed({X_OUT: POSITION * x_out}))
+        columns = [run.changed({n: np.full(x_out.size, size)}) for n, size in zeros.items()]
+        own.append(np.reshape(columns, (len(zeros), run.count)).T)
+    return np.column_stack((tolerated, np.concatenate(scale), block_diag(*own)))
 
 
 def _zeros(bench: Bench) -> dict[str, float]:
@@ -141,9 +141,9 @@ def rigs_with_tolerances(
     lower, upper = np.array([(u.lower, u.upper) for u in trial.unknowns]).T
     values = np.clip(trial.solution.values - trial.moved_by(columns) @ amounts, lower, upper)
     fitted, sizes = trial.values(), _sizes(bench)
-    parts = columns.shape[1] - tolerated.shape[1], len(sizes), len(BEND)
-    frictions, of_effects, bends, zeros = np.split(-amounts, np.cumsum(parts))
-    of_effects[len(SENSORS)] = max(of_effects[len(SENSORS)], 0.0)  # no length is negative
+    parts = columns.shape[1] - tolerated.shape[1], len(sizes), len(BEND), 1
+    frictions, of_effects, bends, scale, zeros = np.split(-amounts, np.cumsum(parts))
+    of_effects[len(LOAD_CELLS)] = max(of_effects[len(LOAD_CELLS)], 0.0)  # no length is negative
     set_to = {
         name: QUANTITIES[name].scaled(QUANTITIES[name].default + size * float(part))
         for (name, size), part in zip(sizes.items(), of_effects, strict=True)
@@ -156,19 +156,21 @@ def rigs_with_tolerances(
     for k, rig in enumerate(bench.rigs):
         moved = values + friction * (SCATTER * frictions[k] if frictions.size else 0.0)
         at = rig_at(rig, k, unknowns, np.append(moved, list(set_to.values())))
-        if zeros.size:
-            at = with_values(at, _moved_zeros(at, _zeros(bench), zeros.reshape(count, -1)[k]))
+        own = zeros.reshape(count, -1)[k] if zeros.size else zeros
+        at = with_values(at, _of_sensors(at, float(scale.sum()), _zeros(bench), own))
         rigs.append(with_values(at, uneven))
     return rigs
 
 
-def _moved_zeros(rig: Rig, sizes: Mapping[str, float], amounts: Floats) -> dict[str, float]:
-    """Return the offsets of the force sensors of a rig, moved by so many standard deviations."""
-    offsets = rig.effects.force_sensor_offset._asdict()
-    moved = {}
-    for (channel, size), amount in zip(sizes.items(), amounts.tolist(), strict=True):
+def _of_sensors(
+    rig: Rig, scale: float, zeros: Mapping[str, float], amounts: Floats
+) -> dict[str, float]:
+    """Return the scale of x_out and the offsets of a rig, moved by so many standard deviations."""
+    gain, offsets = rig.effects.position_sensor_gain.x_out_gain, rig.effects.force_sensor_offset
+    moved = {"position_sensor_gain.x_out_gain": gain * (1.0 + POSITION * scale)}
+    for (channel, size), amount in zip(zeros.items(), amounts.tolist(), strict=False):
         name = f"{channel.removesuffix('_N')}_offset_N"
-        moved[f"force_sensor_offset.{name}"] = offsets[name] + size * amount
+        moved[f"force_sensor_offset.{name}"] = getattr(offsets, name) + size * amount
     return moved
 
 
@@ -215,6 +217,11 @@ def within_tolerances(trial: HypothesisFit, effect: str, columns: Floats, reduct
     plausible = bool(np.all(np.abs(amounts) <= PLAUSIBLE))
     squares = float(change @ change)
     return plausible and squares - float(left @ left) > 0.5 * max(squares, reduction)
+
+
+def scale_is_tolerated(trial: HypothesisFit) -> bool:
+    """Return whether the scale of a position sensor is off by no more than a good one's is."""
+    return abs(trial.values()["position_sensor_gain.x_out_gain"] - 1.0) <= PLAUSIBLE * POSITION
 
 
 def zeros_are_tolerated(bench: Bench, trial: HypothesisFit) -> bool:
