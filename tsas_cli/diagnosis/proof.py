@@ -135,8 +135,7 @@ def _alike_in_both(effect: str, sensors: tuple[Estimate, Estimate], *, zero: boo
     both = [e.value for e in sensors]
     apart, size = np.ptp(both), abs(np.mean(both))
     near, unsure = apart < ALIKE * size, not zero and all(e.holds(*both) for e in sensors)
-    both_there = not any(e.holds(0.0) for e in sensors)
-    if not (near or (unsure and (both_there or apart < 2.0 * ALIKE * size))):
+    if not (near or (unsure and apart < 2.0 * ALIKE * size)):
         return []
     values = f"{both[0]:.3g} and {both[1]:.3g} {_unit(sensors[0].unit)}".rstrip()
     are = "is" if near else "may be"
