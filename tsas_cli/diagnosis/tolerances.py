@@ -134,8 +134,8 @@ def rigs_with_tolerances(
 ) -> list[Rig]:
     """Return the rig of each run with the plausible tolerances that its residuals show.
 
-    Linear: by the columns of `without_tolerances`, the other parameters moved by them within their
-    bounds.
+    Linear: by the columns of `without_tolerances`, those `with_scale_and_zeros` or without, the
+    other parameters moved by them within their bounds.
     """
     columns, amounts = _explained_by(trial, tolerated, run)
     lower, upper = np.array([(u.lower, u.upper) for u in trial.unknowns]).T
@@ -152,13 +152,14 @@ def rigs_with_tolerances(
     unknowns = [*trial.unknowns, *map(unknown_of, set_to)]
     uneven = dict(zip(BEND, UNEVEN * bends, strict=True))
     friction = np.array([u.name == FRICTION for u in trial.unknowns])
-    rigs, count = [], len(bench.rigs)
+    sizes_N = _zeros(bench) if zeros.size else {}
+    own_zeros = zeros.reshape(len(bench.rigs), len(sizes_N))
+    rigs = []
     for k, rig in enumerate(bench.rigs):
         moved = values + friction * (SCATTER * frictions[k] if frictions.size else 0.0)
         at = rig_at(rig, k, unknowns, np.append(moved, list(set_to.values())))
-        own = zeros.reshape(count, -1)[k] if zeros.size else zeros
-        at = with_values(at, _of_sensors(at, float(scale.sum()), _zeros(bench), own))
-        rigs.append(with_values(at, uneven))
+        of_sensors = _of_sensors(at, float(scale.sum()), sizes_N, own_zeros[k])
+        rigs.append(with_values(at, uneven | of_sensors))
     return rigs
 
 
@@ -168,7 +169,7 @@ def _of_sensors(
     """Return the scale of x_out and the offsets of a rig, moved by so many standard deviations."""
     gain, offsets = rig.effects.position_sensor_gain.x_out_gain, rig.effects.force_sensor_offset
     moved = {"position_sensor_gain.x_out_gain": gain * (1.0 + POSITION * scale)}
-    for (channel, size), amount in zip(zeros.items(), amounts.tolist(), strict=False):
+    for (channel, size), amount in zip(zeros.items(), amounts.tolist(), strict=True):
         name = f"{channel.removesuffix('_N')}_offset_N"
         moved[f"force_sensor_offset.{name}"] = getattr(offsets, name) + size * amount
     return moved

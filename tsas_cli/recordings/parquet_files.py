@@ -97,7 +97,8 @@ def check_size(
     metadata = file.metadata
     every = (metadata.schema.column(leaf) for leaf in range(metadata.num_columns))
     # The path of a leaf begins with its column's name, which may hold dots itself.
-    leaves = [leaf for leaf in every if f"{leaf.path}.".startswith(tuple(f"{n}." for n in names))]
+    starts = tuple(f"{name}." for name in names)
+    leaves = [leaf for leaf in every if f"{leaf.path}.".startswith(starts)]
     for leaf in leaves:
         if leaf.max_repetition_level > 0:
             raise InputError(f"column {leaf.path} holds lists", where=path, expected="numbers")
